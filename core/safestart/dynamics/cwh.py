@@ -1,0 +1,106 @@
+"""Clohessy-Wiltshire-Hill relative motion in closed form (paper 000, eqs. 1-2).
+
+Every entry is tau^k times a smooth function of the phase n tau, so nothing is lost to cancellation as
+n tau -> 0 and n = 0 (the double integrator) is exact.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from safestart.errors import invalid
+from safestart.scenario import Floats
+
+
+def _phase_functions(phase: float) -> tuple[float, float, float]:
+    """sin(p)/p, (1 - cos p)/p^2 and (p - sin p)/p^3, by series where the direct form cancels."""
+    if abs(phase) < 0.5:
+        square = phase * phase
+        sinc = versine = cubic = 0.0
+        term = 1.0
+        for k in range(11):
+            # term = (-1)^k p^(2k) / (2k)!
+            sinc += term / (2 * k + 1)
+            versine += term / ((2 * k + 1) * (2 * k + 2))
+            cubic += term / ((2 * k + 1) * (2 * k + 2) * (2 * k + 3))
+            term *= -square / ((2 * k + 1) * (2 * k + 2))
+        return sinc, versine, cubic
+    sine = math.sin(phase)
+    half = math.sin(0.5 * phase)
+    return sine / phase, 2.0 * half * half / phase**2, (phase - sine) / phase**3
+
+
+def _check(mean_motion: float, tau: float) -> None:
+    if not (math.isfinite(mean_motion) and mean_motion >= 0.0):
+        raise invalid("mean_motion", "a finite number >= 0 rad/s", mean_motion)
+    if not math.isfinite(tau):
+        raise invalid("tau", "a finite time in seconds", tau)
+
+
+def system_matrix(mean_motion: float) -> Floats:
+    """Continuous-time A, shape (6, 6), of eq. (1); the input matrix is [0; I]."""
+    _check(mean_motion, 0.0)
+    n = mean_motion
+    a = np.zeros((6, 6))
+    a[:3, 3:] = np.eye(3)
+    a[3, 0], a[3, 4], a[4, 3], a[5, 2] = 3.0 * n * n, 2.0 * n, -2.0 * n, -n * n
+    return a
+
+
+def transition_matrix(mean_motion: float, tau: float) -> Floats:
+    """State-transition matrix Phi(tau), shape (6, 6), state (x, y, z, vx, vy, vz) (eq. 2).
+
+    ``tau`` in seconds may be negative; ``mean_motion`` in rad/s may be 0.
+    """
+    _check(mean_motion, tau)
+    n = mean_motion
+    p = n * tau
+    f1, f2, f3 = _phase_functions(p)
+    c = math.cos(p)
+    phi = np.zeros((6, 6))
+    phi[0] = [1.0 + 3.0 * p * p * f2, 0.0, 0.0, tau * f1, 2.0 * tau * p * f2, 0.0]
+    phi[1] = [-6.0 * p**3 * f3, 1.0, 0.0, -2.0 * tau * p * f2, tau * (4.0 * f1 - 3.0), 0.0]
+    phi[2] = [0.0, 0.0, c, 0.0, 0.0, tau * f1]
+    phi[3] = [3.0 * n * p * f1, 0.0, 0.0, c, 2.0 * p * f1, 0.0]
+    phi[4] = [-6.0 * n * p * p * f2, 0.0, 0.0, -2.0 * p * f1, 4.0 * c - 3.0, 0.0]
+    phi[5] = [0.0, 0.0, -n * p * f1, 0.0, 0.0, c]
+    return phi
+
+
+def input_matrix(mean_motion: float, tau: float) -> Floats:
+    """Zero-order-hold input matrix B_d(tau), shape (6, 3): the integral of Phi(s) [0; I] over [0, tau]."""
+    _check(mean_motion, tau)
+    p = mean_motion * tau
+    f1, f2, f3 = _phase_functions(p)
+    square = tau * tau
+    bd = np.zeros((6, 3))
+    bd[0, :2] = [square * f2, 2.0 * square * p * f3]
+    bd[1, :2] = [-2.0 * square * p * f3, square * (4.0 * f2 - 1.5)]
+    bd[2, 2] = square * f2
+    bd[3, :2] = [tau * f1, 2.0 * tau * p * f2]
+    bd[4, :2] = [-2.0 * tau * p * f2, tau * (4.0 * f1 - 3.0)]
+    bd[5, 2] = tau * f1
+    return bd
+
+
+_PLANE = np.array([0, 1, 3, 4])
+
+
+def planar_transition(mean_motion: float, tau: float) -> Floats:
+    """Phi(tau) of the planar state (x, y, vx, vy), shape (4, 4)."""
+    return transition_matrix(mean_motion, tau)[np.ix_(_PLANE, _PLANE)]
+
+
+def planar_input(mean_motion: float, tau: float) -> Floats:
+    """B_d(tau) of the planar state, shape (4, 2)."""
+    return input_matrix(mean_motion, tau)[_PLANE, :2]
+
+
+def feedforward(mean_motion: float, position: Floats, velocity: Floats) -> Floats:
+    """Acceleration that cancels the CWH terms, shape (..., 3) (eq. 6): the negative of A's lower rows."""
+    n = mean_motion
+    x, z = position[..., 0], position[..., 2]
+    vx, vy = velocity[..., 0], velocity[..., 1]
+    return np.stack([-(3.0 * n * n * x + 2.0 * n * vy), 2.0 * n * vx, n * n * z], axis=-1)

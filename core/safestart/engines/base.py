@@ -1,0 +1,97 @@
+"""The one interface of all engines: a problem in, a mask with margin, timings and a result code out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Any, Protocol
+
+from safestart.corridor import corridor_of
+from safestart.errors import invalid
+from safestart.progress import Context
+from safestart.scenario import Bools, Floats, Grid, Rest, Scenario, SetKind, number
+
+MAX_HORIZON = 3600.0
+
+
+class ResultCode(StrEnum):
+    """How a computation ended. Everything but ``OK`` comes without a mask."""
+
+    OK = "ok"
+    NUMERICAL_FAILURE = "numerical_failure"
+    NOT_APPLICABLE = "not_applicable"
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """What an engine is asked: which starts of the grid, at rest, belong to its set.
+
+    ``horizon`` and ``dt`` in seconds (``dt`` is the control interval of the sampled engines; the horizon is a
+    whole number of them), ``options`` holds per-engine settings by engine name.
+    """
+
+    scenario: Scenario
+    grid: Grid = field(default_factory=Grid)
+    horizon: float = 40.0
+    dt: float = 2.0
+    rest: Rest = Rest.LVLH
+    kind: SetKind = SetKind.FIXED
+    seed: int = 0
+    options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        number("horizon", self.horizon, 0.0, MAX_HORIZON, open_low=True)
+        number("dt", self.dt, 0.0, self.horizon, open_low=True)
+        if abs(self.steps * self.dt - self.horizon) > 1e-9 * self.horizon:
+            raise invalid("horizon", f"a whole number of intervals of {self.dt:g} s", self.horizon)
+        self.grid.axes(self.scenario.corridor)
+
+    @property
+    def steps(self) -> int:
+        """Number of control intervals N = horizon / dt."""
+        return round(self.horizon / self.dt)
+
+    def points(self) -> Floats:
+        """Body-frame start positions (ny, nx, 2) in metres."""
+        return self.grid.points(self.scenario.corridor)
+
+    def inside(self) -> Bools:
+        """Grid points inside the corridor at t = 0, (ny, nx): every engine's region is restricted to them."""
+        return corridor_of(self.scenario.corridor).contains(self.points())
+
+    def option(self, engine: str, name: str, default: Any) -> Any:
+        """Setting ``name`` of an engine, or its default."""
+        return self.options.get(engine, {}).get(name, default)
+
+
+@dataclass(frozen=True, slots=True)
+class EngineResult:
+    """Answer of an engine.
+
+    ``mask`` (ny, nx) is True where the start belongs to the engine's set; None unless ``code`` is OK.
+    ``margin`` (ny, nx), metres, positive inside, for engines that have one. ``compile_s`` holds what was spent on
+    compilation and is not part of ``run_s``. ``detail`` holds JSON-able facts (variant, grid, bounds);
+    ``arrays`` further arrays worth keeping (value slices).
+    """
+
+    engine: str
+    code: ResultCode
+    mask: Bools | None
+    margin: Floats | None
+    run_s: float
+    compile_s: float = 0.0
+    message: str = ""
+    detail: Mapping[str, Any] = field(default_factory=dict)
+    arrays: Mapping[str, Floats] = field(default_factory=dict)
+
+
+class Engine(Protocol):
+    """A reachability engine: ``name``, what it computes, and ``solve``."""
+
+    name: str
+    summary: str
+
+    def solve(self, problem: Problem, context: Context) -> EngineResult:
+        """Decide every cell; bad input raises ``InvalidInput``, numerical trouble is a result code."""
+        ...

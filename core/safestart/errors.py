@@ -1,0 +1,90 @@
+"""One root for every error a caller can cause or meet; each message says what was required and what came.
+
+Bad input raises one of these. A numerical failure does not: it is a result code
+(:class:`safestart.engines.base.ResultCode`).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+
+class SafestartError(Exception):
+    """Root of all errors raised on purpose.
+
+    ``status`` is the HTTP status the service answers with and ``slug`` the last part of the problem type
+    (RFC 9457), so that one handler maps every error.
+    """
+
+    status = 500
+    slug = "internal"
+    title = "Internal error"
+
+    def __init__(
+        self, detail: str, *, field: str | None = None, required: str | None = None, received: Any = None
+    ) -> None:
+        super().__init__(detail)
+        self.detail = detail
+        self.field = field
+        self.required = required
+        self.received = received
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle with the keyword arguments: errors cross process boundaries."""
+        return _rebuild, (type(self), self.detail, self.field, self.required, self.received)
+
+
+def _rebuild(
+    kind: type[SafestartError], detail: str, field: str | None, required: str | None, received: Any
+) -> SafestartError:
+    return kind(detail, field=field, required=required, received=received)
+
+
+class InvalidInput(SafestartError):
+    """A value outside what the method is defined for."""
+
+    status = 422
+    slug = "invalid-input"
+    title = "Invalid input"
+
+
+class NotFound(SafestartError):
+    """A process, job, result or artifact that does not exist."""
+
+    status = 404
+    slug = "not-found"
+    title = "Not found"
+
+
+class Conflict(SafestartError):
+    """A request that the present state of a job does not allow."""
+
+    status = 409
+    slug = "conflict"
+    title = "Conflict"
+
+
+class Unavailable(SafestartError):
+    """Something this request needs (database, optional package, port) is not there."""
+
+    status = 503
+    slug = "unavailable"
+    title = "Unavailable"
+
+
+class Cancelled(SafestartError):
+    """Raised inside a process when its context says that the job was dismissed."""
+
+    status = 409
+    slug = "cancelled"
+    title = "Cancelled"
+
+
+def invalid(field: str, required: str, received: Any) -> InvalidInput:
+    """Build the usual :class:`InvalidInput`: field, what was required, what came."""
+    shown = repr(received)
+    if len(shown) > 120:
+        shown = shown[:117] + "..."
+    return InvalidInput(
+        f"{field}: required {required}, received {shown}", field=field, required=required, received=received
+    )

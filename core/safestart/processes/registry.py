@@ -1,0 +1,32 @@
+"""The processes by id; one line each. Specs are light: importing them loads no engine."""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib import import_module
+
+from safestart.errors import NotFound
+from safestart.processes.base import ProcessSpec
+
+_SPECS = {
+    "go-no-go": "safestart.processes.go_no_go.spec",
+    "certificate": "safestart.processes.certificate.spec",
+    "coverage": "safestart.processes.coverage.spec",
+    "benchmark": "safestart.processes.benchmark.spec",
+}
+
+PROCESS_IDS = tuple(_SPECS)
+
+
+@cache
+def process(process_id: str) -> ProcessSpec:
+    """Return the spec of a process; raises ``NotFound`` that names the known ones."""
+    if process_id not in _SPECS:
+        raise NotFound(
+            f"no process {process_id!r}; there are: {', '.join(PROCESS_IDS)}",
+            field="processID",
+            required=f"one of {', '.join(PROCESS_IDS)}",
+            received=process_id,
+        )
+    spec: ProcessSpec = import_module(_SPECS[process_id]).SPEC
+    return spec
