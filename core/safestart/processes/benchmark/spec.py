@@ -1,0 +1,130 @@
+"""benchmark: the certificate against every reachability engine (paper 000, Table 2)."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from pydantic import Field, field_validator, model_validator
+
+from safestart.processes.base import ProcessSpec, WireModel
+from safestart.processes.wire import GridInput, ScenarioInput, Seed
+from safestart.scenario import Rest, SetKind
+
+EngineName = Literal["analytical", "exact", "backward", "forward", "hamilton_jacobi", "monte_carlo"]
+ALL_ENGINES: tuple[EngineName, ...] = (
+    "analytical",
+    "exact",
+    "backward",
+    "forward",
+    "hamilton_jacobi",
+    "monte_carlo",
+)
+DT_S = 2.0
+
+
+class HamiltonJacobiInput(WireModel):
+    """Discretisation of the level-set engine."""
+
+    accuracy: Literal["low", "medium", "high", "very_high"] = Field("low", description="Scheme of hj-reachability.")
+    nodes_xy: int = Field(41, ge=11, le=81, description="Nodes per position axis.")
+    nodes_v: int = Field(15, ge=7, le=41, description="Nodes per velocity axis.")
+
+
+class BenchmarkInputs(ScenarioInput):
+    """One operating point and what to compare."""
+
+    grid: GridInput = Field(default_factory=GridInput)
+    engines: list[EngineName] = Field(list(ALL_ENGINES), min_length=1, max_length=6, description="Engines to run.")
+    horizon_s: float = Field(40.0, gt=0, le=600, description="Horizon of the reachable sets, s; a multiple of 2 s.")
+    rest: Rest = Field(Rest.LVLH, description="Frame in which the starts are at rest.")
+    set: SetKind = Field(
+        SetKind.FIXED,
+        description="fixed: in the corridor at the horizon; tube: at some time up to it (the whole corridor at t = 0).",
+    )
+    hamilton_jacobi: HamiltonJacobiInput = Field(default_factory=HamiltonJacobiInput)
+    seed: Seed = 0
+
+    @field_validator("engines")
+    @classmethod
+    def _distinct(cls, value: list[EngineName]) -> list[EngineName]:
+        if len(set(value)) != len(value):
+            raise ValueError("each engine at most once")
+        return value
+
+    @field_validator("horizon_s")
+    @classmethod
+    def _whole_steps(cls, value: float) -> float:
+        if abs(value / DT_S - round(value / DT_S)) > 1e-9:
+            raise ValueError(f"a multiple of {DT_S:g} s")
+        return value
+
+    @model_validator(mode="after")
+    def _affordable(self) -> BenchmarkInputs:
+        if self.grid.nx * self.grid.ny > 40_401:
+            raise ValueError("grid: nx * ny at most 40401 (201 x 201) for a benchmark")
+        if self.grid.y_max_m <= self.corridor.r_h_m:
+            raise ValueError("grid.y_max_m: more than corridor.r_h_m")
+        return self
+
+
+class Confusion(WireModel):
+    """Certificate (positive: certified) against an engine (actual: in its set), over the corridor's cells."""
+
+    tp: int
+    fp: int
+    fn: int
+    tn: int
+    precision: float | None
+    recall: float | None
+    accuracy: float
+    f1: float | None
+    mcc: float | None
+
+
+class EngineRow(WireModel):
+    """What one engine found; measures that its code or an absent reference forbids are null."""
+
+    engine: EngineName
+    code: str
+    message: str
+    cells: int | None = Field(description="Cells of the grid in the engine's set.")
+    area_m2: float | None
+    area_ratio_vs_hj: float | None
+    area_ratio_vs_exact: float | None
+    iou_vs_hj: float | None
+    iou_vs_exact: float | None
+    violation_vs_hj: float | None = Field(description="|A minus HJ| / |A|.")
+    violation_vs_exact: float | None = Field(description="|A minus exact| / |A|.")
+    confusion: Confusion | None = Field(description="The certificate against this engine.")
+    run_s: float
+    compile_s: float
+    speedup_vs_hj: float | None
+    detail: dict[str, Any]
+
+
+class BenchmarkOutputs(WireModel):
+    """Rows in the order of the engines asked for; masks and values are in the NPZ artifact."""
+
+    corridor_cells: int
+    cell_area_m2: float
+    containment_horizon_s: float | None = Field(
+        description="Smallest horizon at which every certified start is in the exact fixed-time set; null: none found."
+    )
+    rows: list[EngineRow]
+    notes: list[str]
+
+
+SPEC = ProcessSpec(
+    id="benchmark",
+    title="Certificate against the reachability engines",
+    description=(
+        "Runs the chosen engines on one operating point and grid and compares their safe-start regions: areas, IoU, "
+        "violation fractions, confusion matrices, times. The closed-form certificate is answered at submission."
+    ),
+    inputs=BenchmarkInputs,
+    outputs=BenchmarkOutputs,
+    run="safestart.processes.benchmark.run:run",
+    instant="safestart.processes.certificate.run:answer",
+    keywords=("reachability", "Hamilton-Jacobi", "Monte Carlo", "IoU"),
+    example={"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "grid": {"nx": 31, "ny": 31, "y_max_m": 150}, "horizon_s": 40},
+)

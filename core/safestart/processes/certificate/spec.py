@@ -1,0 +1,44 @@
+"""certificate: the closed-form safe-start region of one operating point on a grid."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from safestart.processes.base import ProcessSpec, WireModel
+from safestart.processes.wire import GridInput, ScenarioInput
+from safestart.scenario import Rest
+
+
+class CertificateInputs(ScenarioInput):
+    """One operating point, a grid and the frame in which starts are at rest."""
+
+    grid: GridInput = Field(default_factory=GridInput)
+    rest: Rest = Field(Rest.LVLH, description="Frame in which the starts are at rest.")
+
+
+class CertificateOutputs(WireModel):
+    """The region: mask and margin, row-major ``[iy][ix]``."""
+
+    r_sync_m: float | None = Field(description="Synchronization range limit, m; null when there is none.")
+    r_sync_reason: str | None = Field(None, description="Why r_sync_m is null.")
+    safe_fraction: float = Field(description="Share of the corridor's grid points that are certified.")
+    x_m: list[float]
+    y_m: list[float]
+    mask: list[list[bool]]
+    margin_m: list[list[float]]
+
+
+SPEC = ProcessSpec(
+    id="certificate",
+    title="Closed-form safe-start certificate",
+    description=(
+        "Certifies every point of a body-frame grid at once: synchronization radius, safe fraction of the corridor, "
+        "mask and margin in metres. Sufficient, not necessary."
+    ),
+    inputs=CertificateInputs,
+    outputs=CertificateOutputs,
+    run="safestart.processes.certificate.run:run",
+    light=True,
+    keywords=("certificate", "safe-start region"),
+    example={"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "grid": {"nx": 31, "ny": 31, "y_max_m": 150}},
+)

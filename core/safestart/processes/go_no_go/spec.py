@@ -1,0 +1,64 @@
+"""go-no-go: may a chaser at rest at this point start its approach?"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from safestart.processes.base import ProcessSpec, WireModel
+from safestart.processes.wire import ScenarioInput
+from safestart.scenario import MAX_RANGE, Rest
+
+MAX_STATES = 100_000
+
+
+class StateInput(WireModel):
+    """A start at rest: body-frame position in metres."""
+
+    x_m: float = Field(ge=-MAX_RANGE, le=MAX_RANGE, description="Body-frame x, m.", examples=[5.0])
+    y_m: float = Field(ge=-MAX_RANGE, le=MAX_RANGE, description="Body-frame y, along the corridor, m.", examples=[40.0])
+    z_m: float | None = Field(
+        None, ge=-MAX_RANGE, le=MAX_RANGE, description="Body-frame z, m; absent: the planar question."
+    )
+
+
+class GoNoGoInputs(ScenarioInput):
+    """One operating point and up to 100 000 starts."""
+
+    states: list[StateInput] = Field(min_length=1, max_length=MAX_STATES, description="Starts at rest.")
+    rest: Rest = Field(Rest.LVLH, description="Frame in which the starts are at rest.")
+    method: Literal["closed_form"] = Field("closed_form", description="How the verdict is reached.")
+
+
+class GoNoGoOutputs(WireModel):
+    """Arrays over the states, in their order; margins per face in metres."""
+
+    method: Literal["closed_form"]
+    rest: Rest
+    r_sync_m: float | None = Field(description="Synchronization range limit, m; null when there is none.")
+    r_sync_reason: str | None = Field(None, description="Why r_sync_m is null.")
+    faces: list[str] = Field(description="Names of the corridor's faces, in the order of face_margins_m.")
+    verdict: list[Literal["GO", "NO_GO"]]
+    margin_m: list[float] = Field(description="Smallest margin of each state, m; GO needs it positive.")
+    face_margins_m: list[list[float]] = Field(description="Margin after erosion per state and face, m.")
+    range_margin_m: list[float | None] = Field(description="r_sync minus range, m; null without a limit.")
+    binding: list[str] = Field(description="What gives the smallest margin: a face or 'range'.")
+    violated_faces: list[list[str]] = Field(description="Faces of the corridor that the start itself is outside of.")
+    reason: list[str] = Field(description="The verdict in a sentence.")
+
+
+SPEC = ProcessSpec(
+    id="go-no-go",
+    title="Go/no-go for starts at rest",
+    description=(
+        "Answers at once, by the closed-form certificate (directional erosion and synchronization range), whether "
+        "a chaser at rest may start its approach. GO is sufficient; NO_GO means that the start is not certified."
+    ),
+    inputs=GoNoGoInputs,
+    outputs=GoNoGoOutputs,
+    run="safestart.processes.go_no_go.run:run",
+    light=True,
+    keywords=("certificate", "go/no-go"),
+    example={"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "states": [{"x_m": 5, "y_m": 40}]},
+)

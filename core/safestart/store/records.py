@@ -1,0 +1,106 @@
+"""What the store hands out: frozen records, free of SQLAlchemy. Times are timezone-aware UTC."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import datetime
+from enum import StrEnum
+from typing import Any
+
+
+class JobStatus(StrEnum):
+    """Statuses of OGC API - Processes 1.0."""
+
+    ACCEPTED = "accepted"
+    RUNNING = "running"
+    SUCCESSFUL = "successful"
+    FAILED = "failed"
+    DISMISSED = "dismissed"
+
+    @property
+    def ended(self) -> bool:
+        """True when nothing will change any more."""
+        return self not in (JobStatus.ACCEPTED, JobStatus.RUNNING)
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """One submitted job as the database has it.
+
+    ``progress`` is 0..100; ``eta_s`` the estimated seconds left while it runs; ``problem`` a problem document
+    (RFC 9457 members) when it failed; ``instant`` the answer given at submission; ``versions`` the package
+    versions, git revision and machine that produced the result.
+    """
+
+    id: str
+    process_id: str
+    status: JobStatus
+    inputs: dict[str, Any]
+    instant: dict[str, Any] | None
+    progress: float
+    message: str
+    eta_s: float | None
+    attempts: int
+    cancel_requested: bool
+    timeout_s: float
+    owner: str | None
+    lease_expires_at: datetime | None
+    created_at: datetime
+    started_at: datetime | None
+    finished_at: datetime | None
+    updated_at: datetime
+    problem: dict[str, Any] | None
+    versions: dict[str, Any] | None
+
+
+@dataclass(frozen=True, slots=True)
+class Claim:
+    """A worker's hold on a running job; ``token`` grows with every claim, so that a late writer is refused."""
+
+    job_id: str
+    owner: str
+    token: int
+    process_id: str
+    inputs: dict[str, Any]
+    attempt: int
+    timeout_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class JobPage:
+    """One page of jobs, newest first, and the cursor of the next page (None on the last)."""
+
+    jobs: tuple[Job, ...]
+    next_cursor: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class StoredResult:
+    """The result document of a job with its SHA-256 over the canonical JSON of ``outputs``."""
+
+    job_id: str
+    schema_version: int
+    document: dict[str, Any]
+    sha256: str
+    created_at: datetime
+
+
+@dataclass(frozen=True, slots=True)
+class ArtifactInfo:
+    """An artifact without its bytes."""
+
+    name: str
+    media_type: str
+    size: int
+    sha256: str
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """One thing that happened to a job: ``kind`` is status, progress or log; ``id`` grows over the whole store."""
+
+    id: int
+    job_id: str
+    at: datetime
+    kind: str
+    data: dict[str, Any]
