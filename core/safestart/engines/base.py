@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any, Protocol
@@ -64,15 +64,22 @@ class Problem:
         """Setting ``name`` of an engine, or its default."""
         return self.options.get(engine, {}).get(name, default)
 
+    def check_options(self, engine: str, allowed: Collection[str] = ()) -> None:
+        """Raise ``InvalidInput`` when the settings of an engine hold a name it does not know."""
+        for name in self.options.get(engine, {}):
+            if name not in allowed:
+                known = ", ".join(sorted(allowed)) or "no options"
+                raise invalid(f"options.{engine}", f"only known options ({known})", name)
+
 
 @dataclass(frozen=True, slots=True)
 class EngineResult:
     """Answer of an engine.
 
     ``mask`` (ny, nx) is True where the start belongs to the engine's set; None unless ``code`` is OK.
-    ``margin`` (ny, nx), metres, positive inside, for engines that have one. ``compile_s`` holds what was spent on
-    compilation and is not part of ``run_s``. ``detail`` holds JSON-able facts (variant, grid, bounds);
-    ``arrays`` further arrays worth keeping (value slices).
+    ``margin`` (ny, nx), metres, positive inside, for engines that have one. ``compile_s`` holds what was
+    spent on compilation and is not part of ``run_s``. ``detail`` holds JSON-able facts (variant, grid,
+    bounds); ``arrays`` further arrays worth keeping (value slices).
     """
 
     engine: str
