@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from hashlib import sha256
 from importlib import import_module
 from typing import Any
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
+from safestart.artifact import Artifact as Artifact
 from safestart.errors import InvalidInput
 from safestart.progress import Context
 
@@ -18,20 +18,6 @@ class WireModel(BaseModel):
     """Base of every model that crosses the wire: unknown fields are refused, NaN and infinity too."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, strict=False)
-
-
-@dataclass(frozen=True, slots=True)
-class Artifact:
-    """A file that belongs to a result: name, IANA media type, bytes."""
-
-    name: str
-    media_type: str
-    data: bytes
-
-    @property
-    def sha256(self) -> str:
-        """Hex digest of the bytes."""
-        return sha256(self.data).hexdigest()
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,5 @@
+"""``python -m safestart``."""
+
+from safestart.cli import main
+
+main()

@@ -1,0 +1,43 @@
+"""The command line: ``safestart``. Service and worker add their commands by the entry-point group below."""
+
+from __future__ import annotations
+
+import sys
+from importlib.metadata import entry_points
+
+import typer
+
+from safestart.cli import bench, demo, go_no_go, reproduce, run, up
+from safestart.errors import SafestartError
+
+COMMAND_GROUP = "safestart.commands"
+
+
+def build() -> typer.Typer:
+    """The application with every installed distribution's commands."""
+    app = typer.Typer(
+        name="safestart",
+        help="May this chaser start its approach to that tumbling target?",
+        no_args_is_help=True,
+        add_completion=False,
+        pretty_exceptions_enable=False,
+        rich_markup_mode=None,
+    )
+    for module in (up, go_no_go, run, reproduce, demo, bench):
+        module.register(app)
+    for point in sorted(entry_points(group=COMMAND_GROUP), key=lambda p: p.name):
+        point.load()(app)
+    return app
+
+
+def main() -> None:
+    """Run the command line; our own errors end it with one line and exit code 2."""
+    try:
+        build()()
+    except SafestartError as error:
+        sys.stderr.write(f"safestart: {error.detail}\n")
+        sys.exit(2)
+    except BrokenPipeError:
+        # The reader (head, less) went away: nothing is wrong.
+        sys.stderr.close()
+        sys.exit(0)

@@ -1,0 +1,55 @@
+"""``safestart bench``: every benchmark beside its peer, in one run."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from pathlib import Path
+from typing import Any
+
+import typer
+from rich.table import Table
+
+import safestart
+from safestart.cli.console import Json, err, out, print_json
+from safestart.errors import Unavailable
+from safestart.provenance import versions
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+
+    @app.command("bench")
+    def bench(as_json: Json = False) -> None:
+        """Time each engine beside its peer on this machine (a checkout is needed: the peers are not shipped)."""
+        suite = _suite()
+        ratios: dict[str, float] = {}
+        times: dict[str, float] = {}
+        for name in suite.BENCHMARKS:
+            err.print(f"{name} ...", highlight=False)
+            measured = importlib.import_module(f"benchmarks.{name}").measure()
+            ratios |= measured["ratios"]
+            times |= measured["times"]
+        document: dict[str, Any] = {"ratios": ratios, "times": times, "machine": versions()["machine"]}
+        if as_json:
+            print_json(document)
+        else:
+            _show(document)
+
+
+def _suite() -> Any:
+    root = Path(safestart.__file__).resolve().parents[2]
+    if not (root / "benchmarks" / "__init__.py").is_file():
+        raise Unavailable(f"bench: required a checkout with its benchmarks/ folder, found none at {root}")
+    sys.path.insert(0, str(root))
+    return importlib.import_module("benchmarks")
+
+
+def _show(document: dict[str, Any]) -> None:
+    for title, unit in (("ratios", "x"), ("times", "s")):
+        table = Table(title=f"{title} (medians, one run, compile time apart)", title_justify="left")
+        table.add_column(title)
+        table.add_column(unit, justify="right")
+        for key, value in document[title].items():
+            table.add_row(key, f"{value:,.3g}" if unit == "s" else f"{value:,.2f}")
+        out.print(table)

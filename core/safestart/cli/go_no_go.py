@@ -1,0 +1,57 @@
+"""``safestart go-no-go``: one start, one verdict."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from safestart.cli.console import Json, out, print_json
+from safestart.processes.execute import execute
+from safestart.scenario import Rest
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+
+    @app.command("go-no-go")
+    def go_no_go(
+        omega_t_deg_s: Annotated[float, typer.Option(help="Tumble rate of the target, deg/s.")],
+        a_max_m_s2: Annotated[float, typer.Option(help="Maximum thrust acceleration, m/s^2.")],
+        x_m: Annotated[float, typer.Option(help="Start, body-frame x, m.")],
+        y_m: Annotated[float, typer.Option(help="Start, body-frame y (along the corridor), m.")],
+        z_m: Annotated[float | None, typer.Option(help="Start, body-frame z, m; absent: planar.")] = None,
+        rest: Annotated[Rest, typer.Option(help="Frame in which the start is at rest.")] = Rest.LVLH,
+        mean_motion_rad_s: Annotated[float, typer.Option(help="Mean motion of the orbit, rad/s.")] = 1.1e-3,
+        as_json: Json = False,
+    ) -> None:
+        """May a chaser at rest at this point start its approach? Answers at once, by the closed form."""
+        state = {"x_m": x_m, "y_m": y_m} | ({} if z_m is None else {"z_m": z_m})
+        inputs = {
+            "omega_t_deg_s": omega_t_deg_s,
+            "a_max_m_s2": a_max_m_s2,
+            "mean_motion_rad_s": mean_motion_rad_s,
+            "states": [state],
+            "rest": rest.value,
+        }
+        document = execute("go-no-go", inputs).document
+        answer = document["outputs"]
+        if as_json:
+            print_json(single(answer))
+            return
+        go = answer["verdict"][0] == "GO"
+        out.print(f"[bold {'green' if go else 'red'}]{answer['verdict'][0]}[/]: {answer['reason'][0]}", highlight=False)
+        r_sync = answer["r_sync_m"]
+        shown = f"{r_sync:.2f} m" if r_sync is not None else f"none ({answer['r_sync_reason']})"
+        out.print(f"  synchronization range limit: {shown}", highlight=False)
+        for face, margin in zip(answer["faces"], answer["face_margins_m"][0], strict=True):
+            out.print(f"  margin {face:<11} {margin:9.2f} m", highlight=False)
+
+
+def single(answer: dict[str, object]) -> dict[str, object]:
+    """The outputs of one state without the array around each value."""
+    per_state = ("verdict", "margin_m", "range_margin_m", "binding", "violated_faces", "reason")
+    flat: dict[str, object] = {key: answer[key][0] for key in per_state}  # type: ignore[index]
+    margins = dict(zip(answer["faces"], answer["face_margins_m"][0], strict=True))  # type: ignore[call-overload, index]
+    rest = {key: answer[key] for key in ("method", "rest", "r_sync_m", "r_sync_reason")}
+    return flat | {"face_margins_m": margins} | rest

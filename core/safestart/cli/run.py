@@ -1,0 +1,71 @@
+"""``safestart run PROCESS``: any process, in this process, with a progress bar."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from safestart.cli.console import Json, err, print_json, reporting
+from safestart.errors import InvalidInput, invalid
+from safestart.processes.execute import Execution, execute
+from safestart.processes.registry import PROCESS_IDS, process
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+
+    @app.command("run")
+    def run(
+        process_id: Annotated[str, typer.Argument(metavar="PROCESS", help=f"One of: {', '.join(PROCESS_IDS)}.")],
+        input_file: Annotated[
+            str, typer.Option("--input", help="JSON file with the inputs; '-' reads stdin; absent: the defaults.")
+        ] = "",
+        output_file: Annotated[
+            Path | None,
+            typer.Option("--output", help="Where to write the document; artifacts (PNG, NPZ) go beside it."),
+        ] = None,
+        as_json: Json = False,
+    ) -> None:
+        """Run a process here and write {"inputs", "outputs", "provenance"}, with its pictures beside it."""
+        spec = process(process_id)
+        inputs = _read(input_file)
+        spec.parse(inputs)
+        with reporting(process_id) as context:
+            result = execute(process_id, inputs, context)
+        if output_file is not None:
+            _write(output_file, result)
+        if as_json or output_file is None:
+            print_json(result.document)
+
+
+def _read(source: str) -> Any:
+    if not source:
+        return {}
+    try:
+        text = sys.stdin.read() if source == "-" else Path(source).read_text(encoding="utf-8")
+    except OSError as error:
+        raise invalid("--input", "a readable file", f"{source} ({error.strerror})") from None
+    except UnicodeDecodeError:
+        raise invalid("--input", "UTF-8 text", source) from None
+    try:
+        return json.loads(text)
+    except (json.JSONDecodeError, RecursionError) as error:
+        raise InvalidInput(f"--input: required JSON, received text that is not ({error})") from None
+
+
+def _write(path: Path, result: Execution) -> None:
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(json.dumps(result.document, allow_nan=False, indent=2) + "\n", encoding="utf-8")
+        written = [path]
+        for artifact in result.artifacts:
+            written.append(path.with_name(f"{path.stem}.{artifact.name}"))
+            written[-1].write_bytes(artifact.data)
+    except OSError as error:
+        raise invalid("--output", "a writable path", f"{path} ({error.strerror})") from None
+    for item in written:
+        err.print(f"wrote {item}", highlight=False, soft_wrap=True)

@@ -1,0 +1,34 @@
+"""``safestart up``: database, service, worker and cluster in one process tree."""
+
+from __future__ import annotations
+
+import sys
+from typing import Annotated
+
+import typer
+
+from safestart.cli.console import err
+from safestart.settings import settings
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+
+    @app.command("up")
+    def up(
+        host: Annotated[str, typer.Option(help="Address to bind to.")] = "",
+        port: Annotated[int, typer.Option(help="Port to bind to; -1: the setting's.")] = -1,
+    ) -> None:
+        """Start everything on this machine and keep it running; Ctrl-C stops every part."""
+        from safestart.supervise import Child, Supervisor
+
+        configured = settings()
+        host = host or configured.host
+        port = configured.port if port < 0 else port
+        command = [sys.executable, "-m", "safestart"]
+        children = [
+            Child("service", [*command, "serve", "--host", host, "--port", str(port)]),
+            Child("worker", [*command, "worker"]),
+        ]
+        err.print(f"safestart: dashboard at http://{host}:{port}/dashboard (Ctrl-C stops everything)", highlight=False)
+        raise typer.Exit(Supervisor(children).run())

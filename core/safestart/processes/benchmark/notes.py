@@ -1,0 +1,47 @@
+"""What a reader of a benchmark must know to read its numbers rightly."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from safestart.processes.benchmark.spec import BenchmarkInputs
+from safestart.scenario import SetKind
+
+
+def notes(inputs: BenchmarkInputs, rows: Sequence[dict[str, Any]], contained: float | None) -> list[str]:
+    """Sentences about the sets compared, drawn from the result itself."""
+    by_engine = {row["engine"]: row for row in rows}
+    out: list[str] = []
+    if inputs.set is SetKind.TUBE:
+        out.append(
+            "The tube contains its target: restricted to the corridor it is the whole corridor (reached at t = 0), "
+            "so IoU against it is the certificate's share of the corridor."
+        )
+    else:
+        out.append(
+            f"Reachable sets are fixed-time: in the rotated corridor at exactly {inputs.horizon_s:g} s, with any "
+            "velocity. The certificate asks to stay inside and to match the rotation, with no horizon."
+        )
+    analytical = by_engine.get("analytical", {})
+    outside = analytical.get("violation_vs_exact")
+    if outside:
+        when = (
+            f"every certified start is in the exact set from a horizon of {contained:g} s on"
+            if contained is not None
+            else "no horizon searched holds all of them at once"
+        )
+        out.append(
+            f"{100 * outside:.1f} % of the certified cells are outside the exact set at {inputs.horizon_s:g} s: the "
+            f"horizon is too short to fly there, not the certificate wrong; {when}."
+        )
+    hj = by_engine.get("hamilton_jacobi", {})
+    if hj.get("iou_vs_exact") is not None and hj["iou_vs_exact"] < 1.0:
+        out.append(
+            f"The level set's own error on this grid: IoU {hj['iou_vs_exact']:.3f} against the exact set "
+            "(no grid); compare areas against exact where it is there."
+        )
+    out.extend(
+        f"{row['engine']}: {row['code']}, {row['message']}" for row in rows if row["code"] != "ok"
+    )
+    return out

@@ -1,0 +1,106 @@
+"""Pictures of a benchmark: all regions on one map, and each engine against the exact set."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
+from matplotlib.lines import Line2D
+from matplotlib.patches import Circle, Patch
+
+from safestart.engines.base import EngineResult, Problem
+from safestart.processes.base import Artifact
+from safestart.processes.plotting import LABELS, PALETTE, draw_corridor, figure, png
+from safestart.scenario import Floats
+
+_STYLES = {"exact": "-", "hamilton_jacobi": "-", "backward": "--", "forward": ":", "monte_carlo": "-."}
+_BOTH, _ONLY_ENGINE, _ONLY_REFERENCE = "#009E73", "#D55E00", "#0072B2"
+
+
+def _title(problem: Problem) -> str:
+    s = problem.scenario
+    return (
+        f"{math.degrees(s.target.tumble_rate):g} deg/s, {s.chaser.max_acceleration:g} m/s², "
+        f"{problem.kind.value} set at {problem.horizon:g} s, rest in {problem.rest.value.upper()}"
+    )
+
+
+def overlay_map(problem: Problem, results: Mapping[str, EngineResult]) -> Artifact:
+    """Certificate filled, the other engines as outlines, the range limit as a circle."""
+    shape = problem.scenario.corridor
+    drawing = figure(8.6, 5.0)
+    axes = drawing.subplots()
+    draw_corridor(axes, shape, problem.grid.y_max)
+    x, y = problem.grid.axes(shape)
+    handles: list[Line2D | Patch] = []
+    for name, result in results.items():
+        if result.mask is None:
+            continue
+        label = f"{LABELS[name]}: {np.count_nonzero(result.mask)} cells"
+        if not result.mask.any():
+            handles.append(Line2D([], [], color="none", label=label))
+        elif name == "analytical":
+            axes.contourf(x, y, result.mask.astype(float), levels=[0.5, 1.5], colors=[PALETTE[name]], alpha=0.75)
+            handles.append(Patch(color=PALETTE[name], alpha=0.75, label=label))
+        else:
+            style = _STYLES[name]
+            axes.contour(x, y, _level(result), levels=[0.0], colors=[PALETTE[name]], linestyles=[style], linewidths=1.8)
+            handles.append(Line2D([], [], color=PALETTE[name], linestyle=style, linewidth=1.8, label=label))
+    limit = problem.scenario.sync_radius
+    if math.isfinite(limit):
+        axes.add_patch(Circle((0, 0), limit, fill=False, color="#333333", linestyle=(0, (1, 2)), linewidth=1.0))
+        handles.append(Line2D([], [], color="#333333", linestyle=(0, (1, 2)), label=f"r_sync = {limit:.1f} m"))
+    axes.set_title(_title(problem), fontsize=11)
+    drawing.legend(handles=handles, loc="outside lower center", ncols=2, frameon=False, fontsize=9)
+    return png("overlay.png", drawing)
+
+
+def _level(result: EngineResult) -> Floats:
+    """Field whose zero level outlines the mask: +-0.5 on cells, so that the outline runs between them."""
+    assert result.mask is not None
+    return np.where(result.mask, 0.5, -0.5)
+
+
+def agreement_panels(problem: Problem, results: Mapping[str, EngineResult]) -> Artifact:
+    """One panel per engine: cells in both sets, in the engine's only, in the reference's only."""
+    reference = next((n for n in ("exact", "hamilton_jacobi") if n in results and results[n].mask is not None), None)
+    names = [n for n, r in results.items() if r.mask is not None and n != reference]
+    columns = max(1, min(3, len(names)))
+    lines = max(1, -(-len(names) // columns))
+    drawing = figure(4.3 * columns, 2.5 * lines + 0.9)
+    panels = drawing.subplots(lines, columns, squeeze=False)
+    for panel, name in zip(panels.flat, names, strict=False):
+        _panel(panel, problem, results[name], results[reference] if reference else None)
+    for panel in panels.flat[len(names) :]:
+        panel.set_axis_off()
+    against = LABELS[reference] if reference else "nothing"
+    drawing.legend(
+        handles=[
+            Patch(color=_BOTH, label="in both"),
+            Patch(color=_ONLY_ENGINE, label="only in the engine's set"),
+            Patch(color=_ONLY_REFERENCE, label=f"only in {against}"),
+        ],
+        loc="outside lower center",
+        ncols=3,
+        frameon=False,
+        fontsize=9,
+    )
+    drawing.suptitle(f"Each engine against {against}: {_title(problem)}", fontsize=11)
+    return png("agreement.png", drawing)
+
+
+def _panel(axes: Axes, problem: Problem, result: EngineResult, reference: EngineResult | None) -> None:
+    shape = problem.scenario.corridor
+    draw_corridor(axes, shape, problem.grid.y_max)
+    x, y = problem.grid.axes(shape)
+    mask = result.mask
+    assert mask is not None
+    other = reference.mask if reference is not None and reference.mask is not None else mask
+    code = np.where(mask & other, 1, np.where(mask, 2, np.where(other, 3, 0))).astype(float)
+    cells = np.ma.masked_equal(code, 0)
+    colours = ListedColormap([_BOTH, _ONLY_ENGINE, _ONLY_REFERENCE])
+    axes.pcolormesh(x, y, cells, cmap=colours, vmin=0.5, vmax=3.5, shading="nearest", alpha=0.85)
+    axes.set_title(LABELS[result.engine], fontsize=10)

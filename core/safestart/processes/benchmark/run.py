@@ -1,0 +1,121 @@
+"""Run benchmark: every chosen engine on one problem, then the comparison (paper 000, Table 2)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from safestart.engines.base import EngineResult, Problem
+from safestart.engines.exact import containment_horizon
+from safestart.engines.registry import engine
+from safestart.metrics import ConfusionMatrix, iou, ratio, violation
+from safestart.processes.base import Artifact, ProcessOutput
+from safestart.processes.benchmark.notes import notes
+from safestart.processes.benchmark.plots import agreement_panels, overlay_map
+from safestart.processes.benchmark.spec import DT_S, BenchmarkInputs
+from safestart.processes.plotting import npz
+from safestart.progress import Context
+from safestart.scenario import Bools
+
+# Shares of the progress bar, roughly the share of the time.
+_WEIGHTS = {"hamilton_jacobi": 90.0, "monte_carlo": 6.0}
+_FINISH = 3.0
+
+
+def problem_of(inputs: BenchmarkInputs) -> Problem:
+    """The engines' problem in SI units."""
+    hj = inputs.hamilton_jacobi
+    shape = [hj.nodes_xy, hj.nodes_xy, hj.nodes_v, hj.nodes_v]
+    return Problem(
+        inputs.scenario(),
+        inputs.grid.grid(),
+        inputs.horizon_s,
+        DT_S,
+        inputs.rest,
+        inputs.set,
+        inputs.seed,
+        {"hamilton_jacobi": {"accuracy": hj.accuracy, "shape": shape}},
+    )
+
+
+def run(inputs: BenchmarkInputs, context: Context) -> ProcessOutput:
+    """Solve, compare, draw. An engine that fails keeps its row, with its code and reason and no measures."""
+    problem = problem_of(inputs)
+    results = _solve(problem, inputs, context)
+    inside = problem.inside()
+    masks = {name: r.mask for name, r in results.items() if r.mask is not None}
+    cell_area = problem.grid.cell_area(problem.scenario.corridor)
+    certified = masks.get("analytical")
+    contained = None
+    if certified is not None and certified.any():
+        contained = containment_horizon(problem.scenario, problem.points()[certified], problem.rest)
+    rows = [_row(result, masks, inside, cell_area, results) for result in results.values()]
+    document = {
+        "corridor_cells": int(np.count_nonzero(inside)),
+        "cell_area_m2": cell_area,
+        "containment_horizon_s": contained,
+        "rows": rows,
+        "notes": notes(inputs, rows, contained),
+    }
+    return ProcessOutput(document, _artifacts(problem, results))
+
+
+def _solve(problem: Problem, inputs: BenchmarkInputs, context: Context) -> dict[str, EngineResult]:
+    total = sum(_WEIGHTS.get(name, 1.0) for name in inputs.engines) + _FINISH
+    done = 0.0
+    results: dict[str, EngineResult] = {}
+    for name in inputs.engines:
+        share = _WEIGHTS.get(name, 1.0)
+        results[name] = engine(name).solve(problem, context.part(done, share, total, name))
+        done += share
+        context.step(done, total, f"{name} done")
+    return results
+
+
+def _row(
+    result: EngineResult,
+    masks: Mapping[str, Bools],
+    inside: Bools,
+    cell_area: float,
+    results: Mapping[str, EngineResult],
+) -> dict[str, Any]:
+    mask, certified = result.mask, masks.get("analytical")
+    hj = results.get("hamilton_jacobi")
+    row: dict[str, Any] = {
+        "engine": result.engine,
+        "code": result.code.value,
+        "message": result.message,
+        "cells": None if mask is None else int(np.count_nonzero(mask)),
+        "area_m2": None if mask is None else cell_area * int(np.count_nonzero(mask)),
+        "confusion": None,
+        "run_s": result.run_s,
+        "compile_s": result.compile_s,
+        "speedup_vs_hj": ratio(hj.run_s, result.run_s) if hj is not None and hj.mask is not None else None,
+        "detail": dict(result.detail),
+    }
+    if mask is not None and certified is not None:
+        row["confusion"] = ConfusionMatrix.of(certified, mask, inside).document()
+    for short, name in (("hj", "hamilton_jacobi"), ("exact", "exact")):
+        other = masks.get(name)
+        measured = mask is not None and other is not None
+        row[f"area_ratio_vs_{short}"] = (
+            ratio(np.count_nonzero(mask), np.count_nonzero(other)) if measured else None
+        )
+        row[f"iou_vs_{short}"] = iou(mask, other) if measured else None
+        row[f"violation_vs_{short}"] = violation(mask, other) if measured else None
+    return row
+
+
+def _artifacts(problem: Problem, results: Mapping[str, EngineResult]) -> tuple[Artifact, ...]:
+    x, y = problem.grid.axes(problem.scenario.corridor)
+    arrays: dict[str, Any] = {"x_m": x, "y_m": y, "inside": problem.inside()}
+    for name, result in results.items():
+        if result.mask is not None:
+            arrays[f"{name}_mask"] = result.mask
+        if result.margin is not None:
+            arrays[f"{name}_margin_m"] = result.margin
+        for key, value in result.arrays.items():
+            arrays[f"{name}_{key}"] = value
+    return overlay_map(problem, results), agreement_panels(problem, results), npz("maps.npz", arrays)

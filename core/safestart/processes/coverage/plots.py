@@ -1,0 +1,51 @@
+"""Picture of coverage: nested certified regions per thrust level, one panel per tumble rate (Fig. 3)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.patches import Patch
+
+from safestart.processes.base import Artifact
+from safestart.processes.plotting import draw_corridor, figure, png
+from safestart.scenario import Bools, CorridorShape, Grid
+
+_MAX_PANELS = 6
+_MAX_LEVELS = 6
+
+
+def coverage_map(
+    shape: CorridorShape, grid: Grid, rates: Sequence[float], thrusts: Sequence[float], masks: Bools
+) -> Artifact:
+    """Panels of at most six tumble rates, spread over the list; the least thrust is drawn last, on top."""
+    panels = _spread(len(rates), _MAX_PANELS)
+    levels = sorted(_spread(len(thrusts), _MAX_LEVELS), key=lambda k: -thrusts[k])
+    colours = mpl.colormaps["viridis"](np.linspace(0.92, 0.12, len(levels)))
+    columns = min(3, len(panels))
+    lines = -(-len(panels) // columns)
+    drawing = figure(4.3 * columns, 2.6 * lines + 0.8)
+    axes = drawing.subplots(lines, columns, squeeze=False)
+    x, y = grid.axes(shape)
+    for panel, i in zip(axes.flat, panels, strict=False):
+        draw_corridor(panel, shape, grid.y_max)
+        panel.set_title(f"{rates[i]:g} deg/s", fontsize=10)
+        for colour, k in zip(colours, levels, strict=True):
+            if masks[i, k].any():
+                panel.contourf(x, y, masks[i, k].astype(float), levels=[0.5, 1.5], colors=[colour])
+    for panel in axes.flat[len(panels) :]:
+        panel.set_axis_off()
+    drawing.legend(
+        handles=[Patch(color=c, label=f"{thrusts[k]:g} m/s²") for c, k in zip(colours, levels, strict=True)],
+        title="certified start at rest, by thrust",
+        loc="outside lower center",
+        ncols=len(levels),
+        frameon=False,
+    )
+    return png("coverage.png", drawing)
+
+
+def _spread(count: int, most: int) -> list[int]:
+    """Indices of at most ``most`` entries, first and last included."""
+    return sorted({round(v) for v in np.linspace(0, count - 1, min(count, most))})

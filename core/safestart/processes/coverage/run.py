@@ -1,0 +1,49 @@
+"""Run coverage: one certificate map per pair of tumble rate and thrust."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from safestart.certificates.closed_form import certify_grid
+from safestart.processes.base import ProcessOutput
+from safestart.processes.coverage.plots import coverage_map
+from safestart.processes.coverage.spec import CoverageInputs
+from safestart.processes.plotting import npz
+from safestart.processes.wire import finite
+from safestart.progress import Context
+from safestart.scenario import Bools, Chaser, Scenario, Target
+
+
+def run(inputs: CoverageInputs, context: Context) -> ProcessOutput:
+    """Certify every pair; artifacts are the picture and the masks ``[rate][thrust][iy][ix]``."""
+    shape, grid = inputs.corridor.shape(), inputs.grid.grid()
+    rates, thrusts = inputs.omega_t_deg_s, inputs.a_max_m_s2
+    cells: list[dict[str, Any]] = []
+    masks: Bools = np.zeros((len(rates), len(thrusts), grid.ny, grid.nx), dtype=np.bool_)
+    for i, rate in enumerate(rates):
+        for k, thrust in enumerate(thrusts):
+            target = Target(math.radians(rate), inputs.mean_motion_rad_s)
+            region = certify_grid(Scenario(target, Chaser(thrust), shape), grid)
+            masks[i, k] = region.mask
+            cells.append(
+                {
+                    "omega_t_deg_s": rate,
+                    "a_max_m_s2": thrust,
+                    "safe_percent": 100.0 * region.safe_fraction,
+                    "r_sync_m": finite(region.range_limit),
+                }
+            )
+            context.step(len(cells), len(rates) * len(thrusts) + 1, f"{rate:g} deg/s, {thrust:g} m/s^2")
+    x, y = grid.axes(shape)
+    arrays = {
+        "mask": masks,
+        "x_m": x,
+        "y_m": y,
+        "omega_t_deg_s": np.array(rates),
+        "a_max_m_s2": np.array(thrusts),
+    }
+    picture = coverage_map(shape, grid, rates, thrusts, masks)
+    return ProcessOutput({"cells": cells}, (picture, npz("masks.npz", arrays)))

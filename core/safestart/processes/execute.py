@@ -1,0 +1,48 @@
+"""Execute a process by id: the one path that service, worker, CLI and notebook share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from typing import Any
+
+from safestart.processes.base import Artifact
+from safestart.processes.registry import process
+from safestart.progress import Context
+from safestart.provenance import versions
+
+SCHEMA_VERSION = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Execution:
+    """A finished run: the document ``{schema_version, process, inputs, outputs, provenance}`` and its artifacts."""
+
+    document: dict[str, Any]
+    artifacts: tuple[Artifact, ...]
+
+
+def execute(process_id: str, inputs: Any, context: Context | None = None) -> Execution:
+    """Validate the inputs, run the process, state where the answer came from.
+
+    Raises ``NotFound`` for an unknown process and ``InvalidInput`` for inputs outside the spec.
+    """
+    spec = process(process_id)
+    parsed = spec.parse(inputs)
+    started = datetime.now(UTC)
+    output = spec.runner()(parsed, context or Context())
+    dumped = parsed.model_dump(mode="json")
+    document = {
+        "schema_version": SCHEMA_VERSION,
+        "process": {"id": spec.id, "version": spec.version},
+        "inputs": dumped,
+        "outputs": output.document,
+        "provenance": {
+            "seed": dumped.get("seed"),
+            "started": started.isoformat(),
+            "finished": datetime.now(UTC).isoformat(),
+            "artifacts": {artifact.name: artifact.sha256 for artifact in output.artifacts},
+            **versions(),
+        },
+    }
+    return Execution(document, output.artifacts)

@@ -1,0 +1,70 @@
+"""What every picture shares: headless figures, a colour-blind-safe palette, the corridor, PNG and NPZ bytes."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from safestart.processes.base import Artifact
+from safestart.scenario import CorridorShape
+
+mpl.use("Agg")
+
+PALETTE = {
+    "analytical": "#009E73",
+    "exact": "#000000",
+    "backward": "#0072B2",
+    "forward": "#56B4E9",
+    "hamilton_jacobi": "#D55E00",
+    "monte_carlo": "#CC79A7",
+}
+"""Okabe-Ito colours, one per engine, the same in every picture."""
+
+LABELS = {
+    "analytical": "certificate (closed form)",
+    "exact": "exact",
+    "backward": "backward (box input)",
+    "forward": "forward (outer)",
+    "hamilton_jacobi": "Hamilton-Jacobi",
+    "monte_carlo": "Monte Carlo (flown)",
+}
+
+
+def figure(width: float, height: float) -> Figure:
+    """Empty figure in inches, free of global pyplot state (safe in threads)."""
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def draw_corridor(axes: Axes, shape: CorridorShape, y_max: float) -> None:
+    """Outline of the corridor, target at the origin, equal axes and units on the labels."""
+    half = shape.x0 + shape.c_x * (y_max - shape.hold_radius)
+    x = [-half, -shape.x0, shape.x0, half, -half]
+    y = [y_max, shape.hold_radius, shape.hold_radius, y_max, y_max]
+    axes.fill(x, y, facecolor="#F2F2F2", edgecolor="#666666", linewidth=1.0, zorder=0)
+    axes.plot(0.0, 0.0, marker="s", color="#333333", markersize=5, zorder=5)
+    axes.set_aspect("equal")
+    axes.set_xlim(-1.03 * half, 1.03 * half)
+    axes.set_ylim(-0.05 * y_max, 1.03 * y_max)
+    axes.set_xlabel("x body [m]")
+    axes.set_ylabel("y body, along the corridor [m]")
+
+
+def png(name: str, drawing: Figure, dpi: int = 130) -> Artifact:
+    """Figure as a PNG artifact; no time stamp inside, so equal pictures are equal bytes."""
+    buffer = io.BytesIO()
+    drawing.savefig(buffer, format="png", dpi=dpi, metadata={"Software": None})
+    return Artifact(name, "image/png", buffer.getvalue())
+
+
+def npz(name: str, arrays: Mapping[str, NDArray[Any]]) -> Artifact:
+    """Arrays as a compressed NPZ artifact (numpy stamps entries with a fixed date, so bytes are reproducible)."""
+    buffer = io.BytesIO()
+    np.savez_compressed(buffer, allow_pickle=False, **dict(arrays))
+    return Artifact(name, "application/x-npz", buffer.getvalue())
