@@ -64,12 +64,49 @@ class Conflict(SafestartError):
     title = "Conflict"
 
 
+class LeaseLost(Conflict):
+    """A worker's hold on a job has passed on; whatever it still wants to write is refused."""
+
+    slug = "lease-lost"
+    title = "Lease lost"
+
+
+class IdempotencyMismatch(SafestartError):
+    """An idempotency key that came back with another request body."""
+
+    status = 422
+    slug = "idempotency-mismatch"
+    title = "Idempotency key used with another request"
+
+
+class ResultNotReady(NotFound):
+    """The results of a job that has not ended yet (the name is OGC API - Processes 1.0's)."""
+
+    slug = "result-not-ready"
+    title = "Result not ready"
+
+
+class JobFailed(NotFound):
+    """The results of a job that failed; the detail is the reason of the failure."""
+
+    slug = "job-failed"
+    title = "The job failed"
+
+
 class Unavailable(SafestartError):
     """Something this request needs (database, optional package, port) is not there."""
 
     status = 503
     slug = "unavailable"
     title = "Unavailable"
+
+
+class QueueFull(Unavailable):
+    """As many jobs wait as the service accepts; try again later."""
+
+    status = 429
+    slug = "queue-full"
+    title = "Queue full"
 
 
 class Cancelled(SafestartError):

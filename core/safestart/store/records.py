@@ -55,7 +55,7 @@ class Job:
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """A worker's hold on a running job; ``token`` grows with every claim, so that a late writer is refused."""
+    """A worker's hold on a running job; ``token`` grows with every claim, so a late writer is refused."""
 
     job_id: str
     owner: str
@@ -76,7 +76,7 @@ class JobPage:
 
 @dataclass(frozen=True, slots=True)
 class StoredResult:
-    """The result document of a job with its SHA-256 over the canonical JSON of ``outputs``."""
+    """The result document of a job with its SHA-256 (:func:`safestart.comparable.digest`)."""
 
     job_id: str
     schema_version: int
@@ -97,7 +97,7 @@ class ArtifactInfo:
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """One thing that happened to a job: ``kind`` is status, progress or log; ``id`` grows over the whole store."""
+    """One thing that happened to a job: ``kind`` is status, progress or log; ``id`` grows store-wide."""
 
     id: int
     job_id: str

@@ -1,0 +1,20 @@
+"""A file that belongs to a result; shared by the processes that make it and the store that keeps it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from hashlib import sha256
+
+
+@dataclass(frozen=True, slots=True)
+class Artifact:
+    """A file that belongs to a result: name, IANA media type, bytes."""
+
+    name: str
+    media_type: str
+    data: bytes
+
+    @property
+    def sha256(self) -> str:
+        """Hex digest of the bytes."""
+        return sha256(self.data).hexdigest()

@@ -1,0 +1,126 @@
+"""The database: its engine, its sessions, and the one place where database errors become ours."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from sqlalchemy import Engine, create_engine, text
+from sqlalchemy.engine import URL, make_url
+from sqlalchemy.exc import ArgumentError, DBAPIError, SQLAlchemyError
+from sqlalchemy.orm import Session
+
+from safestart.errors import InvalidInput, Unavailable
+from safestart.store import schema
+from safestart.store.dialect import BUSY_TIMEOUT_S, prepare
+
+_REQUIRED = (
+    "sqlite:///PATH of a file in an existing, writable directory, or postgresql://USER:PASSWORD@HOST/NAME"
+)
+
+
+class Database:
+    """An SQLAlchemy URL with sessions; connecting happens at first use."""
+
+    def __init__(self, url: str) -> None:
+        self._url = _parse(url)
+        self.shown = self._url.render_as_string(hide_password=True)
+        self._engine = _engine(self._url)
+        prepare(self._engine)
+        # Same pool; the option makes SQLite take the write lock at the start of the transaction.
+        self._writer = self._engine.execution_options(safestart_write=True)
+
+    @contextmanager
+    def session(self, *, write: bool = False) -> Iterator[Session]:
+        """One transaction: committed at the end, rolled back on any error; raises ``Unavailable``.
+
+        A session that changes anything says ``write=True``.
+        """
+        with (
+            self._translated(),
+            Session(self._writer if write else self._engine, expire_on_commit=False) as session,
+            session.begin(),
+        ):
+            yield session
+
+    def migrate(self) -> None:
+        """Bring the schema to this version's; safe when several processes do it at once."""
+        with self._translated():
+            schema.migrate(self._writer)
+
+    def ping(self) -> None:
+        """Ask the database for an answer; raises ``Unavailable`` when none comes."""
+        with self.session() as session:
+            session.execute(text("SELECT 1"))
+
+    def close(self) -> None:
+        """Close every pooled connection."""
+        self._engine.dispose()
+
+    @contextmanager
+    def _translated(self) -> Iterator[None]:
+        try:
+            yield
+        except SQLAlchemyError as error:
+            raise self._unavailable(error) from error
+
+    def _unavailable(self, error: SQLAlchemyError) -> Unavailable:
+        # Never str(error): it holds the statement and its parameters.
+        reason = str(error.orig) if isinstance(error, DBAPIError) else type(error).__name__
+        reason = " ".join(reason.split())
+        if self._url.password:
+            reason = reason.replace(str(self._url.password), "***")
+        return Unavailable(
+            f"the database {self.shown} did not do what was asked: {reason}; required: {_REQUIRED}",
+            field="database_url",
+            required=_REQUIRED,
+            received=self.shown,
+        )
+
+
+def _parse(url: str) -> URL:
+    try:
+        parsed = make_url(url)
+    except (ArgumentError, ValueError):
+        # What cannot be parsed may hold a password, so it is not repeated.
+        raise _refused("something that is no URL") from None
+    if parsed.get_backend_name() == "postgresql" and parsed.drivername == "postgresql":
+        parsed = parsed.set(drivername="postgresql+psycopg")
+    if parsed.get_backend_name() not in ("sqlite", "postgresql"):
+        raise _refused(parsed.render_as_string(hide_password=True))
+    if parsed.get_backend_name() == "sqlite" and parsed.database in (None, "", ":memory:"):
+        raise _refused("a SQLite database in memory, which service and worker could not share")
+    return parsed
+
+
+def _refused(shown: str) -> InvalidInput:
+    return InvalidInput(
+        f"database_url: required {_REQUIRED}, received {shown}",
+        field="database_url",
+        required=_REQUIRED,
+        received=shown,
+    )
+
+
+def _dumps(value: object) -> str:
+    return json.dumps(value, separators=(",", ":"), allow_nan=False)
+
+
+def _engine(url: URL) -> Engine:
+    sqlite = url.get_backend_name() == "sqlite"
+    try:
+        return create_engine(
+            url,
+            json_serializer=_dumps,
+            pool_pre_ping=not sqlite,
+            connect_args={"timeout": BUSY_TIMEOUT_S} if sqlite else {},
+        )
+    except ModuleNotFoundError as error:
+        raise Unavailable(
+            f"a {url.get_backend_name()} database requires the package {error.name}, which is not installed",
+            field="database_url",
+            required=f"the package {error.name}",
+        ) from None
+    except (ArgumentError, SQLAlchemyError):
+        raise _refused(url.render_as_string(hide_password=True)) from None

@@ -1,0 +1,109 @@
+"""All that differs between SQLite and PostgreSQL: the clock, the kind of transaction, the schema lock.
+
+Leases are compared on the database's clock, never on a client's: workers on several machines then agree on
+who holds a job, however far their own clocks are apart.
+"""
+
+from __future__ import annotations
+
+import sqlite3
+import time
+from datetime import UTC, datetime
+from typing import Any
+
+from sqlalchemy import Connection, DateTime, Dialect, Engine, event, text
+from sqlalchemy.ext.compiler import compiles
+from sqlalchemy.sql.expression import ColumnElement, literal
+from sqlalchemy.sql.functions import FunctionElement
+from sqlalchemy.types import Float, TypeDecorator
+
+BUSY_TIMEOUT_S = 30.0
+_SCHEMA_LOCK = 0x5AFE57A27
+# SQLite keeps times as text; this layout is what SQLAlchemy writes, so that text order is time order.
+_SQLITE_TIME = "'%Y-%m-%d %H:%M:%f000', 'now'"
+
+
+class UtcTime(TypeDecorator[datetime]):
+    """A timezone-aware UTC time; SQLite keeps it without zone, so the zone is put back when it is read."""
+
+    impl = DateTime(timezone=True)
+    cache_ok = True
+
+    def process_bind_param(self, value: datetime | None, dialect: Dialect) -> datetime | None:  # noqa: ARG002
+        """Turn an aware time into UTC; a naive one is a mistake in our code."""
+        if value is None:
+            return None
+        if value.tzinfo is None:
+            raise ValueError("a timezone-aware time is required")
+        return value.astimezone(UTC)
+
+    def process_result_value(self, value: Any, dialect: Dialect) -> datetime | None:  # noqa: ARG002
+        """Return an aware UTC time."""
+        if value is None:
+            return None
+        read: datetime = value
+        return read.replace(tzinfo=UTC) if read.tzinfo is None else read.astimezone(UTC)
+
+
+class _After(FunctionElement[datetime]):
+    """The database's present time plus its one argument in seconds."""
+
+    type = UtcTime()
+    inherit_cache = True
+    name = "safestart_after"
+
+
+def after(seconds: float = 0.0) -> ColumnElement[datetime]:
+    """The database's clock, ``seconds`` from now (negative: ago)."""
+    return _After(literal(float(seconds), Float()))
+
+
+@compiles(_After, "sqlite")
+def _after_sqlite(element: _After, compiler: Any, **kw: Any) -> str:
+    seconds = compiler.process(element.clauses, **kw)
+    return f"strftime({_SQLITE_TIME}, {seconds} || ' seconds')"
+
+
+@compiles(_After, "postgresql")
+def _after_postgresql(element: _After, compiler: Any, **kw: Any) -> str:
+    seconds = compiler.process(element.clauses, **kw)
+    # clock_timestamp, not now(): the latter stands still during a transaction.
+    return f"(clock_timestamp() + make_interval(secs => {seconds}))"
+
+
+def prepare(engine: Engine) -> None:
+    """Install what a fresh connection and a beginning transaction need on this engine's dialect."""
+    if engine.dialect.name == "sqlite":
+        event.listen(engine, "connect", _on_sqlite_connect)
+        event.listen(engine, "begin", _on_sqlite_begin)
+
+
+def _on_sqlite_connect(connection: sqlite3.Connection, _record: Any) -> None:
+    connection.isolation_level = None  # the driver must not begin transactions of its own
+    cursor = connection.cursor()
+    cursor.execute(f"PRAGMA busy_timeout = {int(BUSY_TIMEOUT_S * 1000)}")
+    cursor.execute("PRAGMA foreign_keys = ON")
+    # FULL: an answered submission survives a power cut.
+    cursor.execute("PRAGMA synchronous = FULL")
+    deadline = time.monotonic() + BUSY_TIMEOUT_S
+    while cursor.execute("PRAGMA journal_mode").fetchone()[0] != "wal":
+        try:
+            cursor.execute("PRAGMA journal_mode = WAL").fetchone()
+        except sqlite3.OperationalError as error:
+            # The switch does not wait by itself for another process that makes it at the same moment.
+            if "locked" not in str(error) or time.monotonic() > deadline:
+                raise
+            time.sleep(0.02)
+    cursor.close()
+
+
+def _on_sqlite_begin(connection: Connection) -> None:
+    # Two transactions that read first and write later can deadlock; IMMEDIATE makes them queue instead.
+    write = connection.get_execution_options().get("safestart_write", False)
+    connection.exec_driver_sql("BEGIN IMMEDIATE" if write else "BEGIN DEFERRED")
+
+
+def lock_schema(connection: Connection) -> None:
+    """Wait until no other process migrates, for this transaction (on SQLite BEGIN IMMEDIATE did that)."""
+    if connection.dialect.name == "postgresql":
+        connection.execute(text("SELECT pg_advisory_xact_lock(:key)"), {"key": _SCHEMA_LOCK})

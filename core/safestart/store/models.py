@@ -1,0 +1,149 @@
+"""The tables. Rows stay inside the store; what leaves it are the frozen records."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import JSON, ForeignKey, Index, LargeBinary, MetaData, String, Text
+from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
+
+from safestart.store.dialect import UtcTime
+from safestart.store.records import Event, Job, JobStatus
+
+
+class Base(DeclarativeBase):
+    """Root of the tables; constraints get names, so that migrations can speak of them."""
+
+    metadata = MetaData(
+        naming_convention={
+            "ix": "ix_%(table_name)s_%(column_0_N_name)s",
+            "uq": "uq_%(table_name)s_%(column_0_N_name)s",
+            "fk": "fk_%(table_name)s_%(column_0_N_name)s",
+            "pk": "pk_%(table_name)s",
+        }
+    )
+    type_annotation_map = {  # noqa: RUF012 (SQLAlchemy reads it as declared)
+        datetime: UtcTime(),
+        # none_as_null: an absent document is SQL NULL, not the JSON word null.
+        dict[str, Any]: JSON(none_as_null=True),
+    }
+
+
+class JobRow(Base):
+    """One job. ``seq`` is the order of submission; ``token`` grows with every change of hands (fencing)."""
+
+    __tablename__ = "jobs"
+
+    seq: Mapped[int] = mapped_column(primary_key=True, autoincrement=True)
+    id: Mapped[str] = mapped_column(String(36), unique=True)
+    process_id: Mapped[str] = mapped_column(String(100))
+    status: Mapped[str] = mapped_column(String(16))
+    priority: Mapped[int] = mapped_column(default=0)
+    inputs: Mapped[dict[str, Any]]
+    instant: Mapped[dict[str, Any] | None]
+    idempotency_key: Mapped[str | None] = mapped_column(String(255), unique=True)
+    request_sha256: Mapped[str] = mapped_column(String(64))
+    progress: Mapped[float] = mapped_column(default=0.0)
+    message: Mapped[str] = mapped_column(Text, default="")
+    eta_s: Mapped[float | None]
+    attempts: Mapped[int] = mapped_column(default=0)
+    cancel_requested: Mapped[bool] = mapped_column(default=False)
+    timeout_s: Mapped[float]
+    owner: Mapped[str | None] = mapped_column(String(255))
+    token: Mapped[int] = mapped_column(default=0)
+    lease_expires_at: Mapped[datetime | None]
+    created_at: Mapped[datetime]
+    started_at: Mapped[datetime | None]
+    finished_at: Mapped[datetime | None]
+    updated_at: Mapped[datetime]
+    problem: Mapped[dict[str, Any] | None]
+    versions: Mapped[dict[str, Any] | None]
+
+    __table_args__ = (
+        # The queue in the order it is served, and the few running rows.
+        Index("ix_jobs_queue", "status", "priority", "seq"),
+        {"sqlite_autoincrement": True},
+    )
+
+    def record(self) -> Job:
+        """The frozen record of this row."""
+        return Job(
+            id=self.id,
+            process_id=self.process_id,
+            status=JobStatus(self.status),
+            inputs=self.inputs,
+            instant=self.instant,
+            progress=self.progress,
+            message=self.message,
+            eta_s=self.eta_s,
+            attempts=self.attempts,
+            cancel_requested=self.cancel_requested,
+            timeout_s=self.timeout_s,
+            owner=self.owner,
+            lease_expires_at=self.lease_expires_at,
+            created_at=self.created_at,
+            started_at=self.started_at,
+            finished_at=self.finished_at,
+            updated_at=self.updated_at,
+            problem=self.problem,
+            versions=self.versions,
+        )
+
+
+class ResultRow(Base):
+    """The result document of a successful job."""
+
+    __tablename__ = "results"
+
+    job_id: Mapped[str] = mapped_column(ForeignKey("jobs.id"), primary_key=True)
+    schema_version: Mapped[int]
+    document: Mapped[dict[str, Any]]
+    sha256: Mapped[str] = mapped_column(String(64))
+    created_at: Mapped[datetime]
+
+
+class ArtifactRow(Base):
+    """A file of a result, bytes included: one database is the whole record."""
+
+    __tablename__ = "artifacts"
+
+    job_id: Mapped[str] = mapped_column(ForeignKey("jobs.id"), primary_key=True)
+    name: Mapped[str] = mapped_column(String(255), primary_key=True)
+    media_type: Mapped[str] = mapped_column(String(255))
+    size: Mapped[int]
+    sha256: Mapped[str] = mapped_column(String(64))
+    data: Mapped[bytes] = mapped_column(LargeBinary)
+
+
+class EventRow(Base):
+    """One thing that happened to a job.
+
+    Events of a job are added in the transaction that updates its row, and that row's lock orders them: a
+    reader who asks for ids after the last one seen misses none.
+    """
+
+    __tablename__ = "events"
+
+    id: Mapped[int] = mapped_column(primary_key=True, autoincrement=True)
+    job_id: Mapped[str] = mapped_column(ForeignKey("jobs.id"))
+    at: Mapped[datetime]
+    kind: Mapped[str] = mapped_column(String(16))
+    data: Mapped[dict[str, Any]]
+
+    __table_args__ = (Index("ix_events_job_id_id", "job_id", "id"), {"sqlite_autoincrement": True})
+
+    def record(self) -> Event:
+        """The frozen record of this row."""
+        return Event(id=self.id, job_id=self.job_id, at=self.at, kind=self.kind, data=self.data)
+
+
+class WorkerRow(Base):
+    """A worker and its last sign of life: lets the service say why a job waits."""
+
+    __tablename__ = "workers"
+
+    owner: Mapped[str] = mapped_column(String(255), primary_key=True)
+    capacity: Mapped[int]
+    busy: Mapped[int]
+    heartbeat_at: Mapped[datetime]

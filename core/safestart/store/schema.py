@@ -1,0 +1,52 @@
+"""Bring the tables to this version's schema, in-process, with Alembic."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from sqlalchemy import Connection, Engine, inspect, text
+
+from safestart.errors import Unavailable
+from safestart.store.dialect import lock_schema
+
+HEAD = "0001"
+_MIGRATIONS = Path(__file__).parent / "migrations"
+
+
+def migrate(writer: Engine) -> None:
+    """Upgrade to :data:`HEAD` inside one transaction that holds the schema lock.
+
+    The usual case, a schema that is up to date, costs one read and does not import Alembic.
+    """
+    with writer.begin() as connection:
+        lock_schema(connection)
+        if version(connection) != HEAD:
+            _upgrade(connection)
+
+
+def version(connection: Connection) -> str | None:
+    """The revision the database is at; None for an empty one."""
+    if not inspect(connection).has_table("alembic_version"):
+        return None
+    found: str | None = connection.execute(
+        text("SELECT version_num FROM alembic_version")
+    ).scalar_one_or_none()
+    return found
+
+
+def _upgrade(connection: Connection) -> None:
+    from alembic import command
+    from alembic.config import Config
+    from alembic.util import CommandError
+
+    config = Config()
+    config.set_main_option("script_location", str(_MIGRATIONS).replace("%", "%%"))
+    config.attributes["connection"] = connection
+    try:
+        command.upgrade(config, "head")
+    except CommandError as error:
+        raise Unavailable(
+            f"the database is at a schema this version does not know ({error}); required: a safestart at "
+            "least as new as the one that wrote it",
+            field="database_url",
+        ) from None
