@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from safestart.scenario import CorridorShape, Floats
+from safestart.scenario import Bools, CorridorShape, Floats
 
 FACES = ("hold_plane", "right", "left", "top", "bottom")
 """Names of the rows of A_c: y >= r_h, then the +x, -x, +z and -z sides of the cone."""
@@ -32,10 +32,9 @@ class Corridor:
         """s_i = b_i - A_i p_B for points (..., d), shape (..., k); negative outside face i."""
         return self.offsets - points @ self.normals.T
 
-    def contains(self, points: Floats) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
+    def contains(self, points: Floats) -> Bools:
         """True where every slack is >= 0, shape (...)."""
-        inside: np.ndarray[tuple[int, ...], np.dtype[np.bool_]] = (self.slack(points) >= 0.0).all(axis=-1)
-        return inside
+        return np.asarray((self.slack(points) >= 0.0).all(axis=-1))
 
 
 @lru_cache(maxsize=64)

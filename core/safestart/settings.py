@@ -28,7 +28,10 @@ class Settings(BaseSettings):
     port: int = Field(8000, ge=0, le=65535, description="Port the service binds to.")
     scheduler: str = Field("", description="Address of a Dask scheduler; empty: an embedded LocalCluster.")
     processes: int = Field(
-        default_factory=lambda: os.cpu_count() or 1, ge=1, le=1024, description="Task processes of the embedded cluster."
+        default_factory=lambda: os.cpu_count() or 1,
+        ge=1,
+        le=1024,
+        description="Task processes of the embedded cluster.",
     )
     lease_s: float = Field(20.0, ge=1, le=600, description="How long a claim holds without renewal, s.")
     poll_s: float = Field(0.2, ge=0.02, le=60, description="How often the worker looks for work, s.")

@@ -11,7 +11,14 @@ from typing import Annotated, Any
 
 import typer
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import (
+    BarColumn,
+    Progress,
+    TaskProgressColumn,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 
 from safestart.progress import Context
 
@@ -80,7 +87,9 @@ def _lines(title: str) -> Iterator[Context]:
         shown = percent
         elapsed = time.monotonic() - start
         left = f", {elapsed * (100.0 - percent) / percent:.0f} s left" if percent > 0 else ""
-        err.print(f"{title}: {percent:3.0f} % {message} ({elapsed:.0f} s{left})", highlight=False, soft_wrap=True)
+        err.print(
+            f"{title}: {percent:3.0f} % {message} ({elapsed:.0f} s{left})", highlight=False, soft_wrap=True
+        )
 
     yield Context(report)
     err.print(f"{title}: done in {time.monotonic() - start:.1f} s", highlight=False)

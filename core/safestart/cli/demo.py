@@ -45,7 +45,9 @@ def register(app: typer.Typer) -> None:
             print_json({"rows": rows, "differences": list(DIFFERENCES), "jobs": urls})
             return
         show_table2(rows)
-        out.print("\nStored; [bold]safestart up[/] serves them again (the database keeps them):", highlight=False)
+        out.print(
+            "\nStored; [bold]safestart up[/] serves them again (the database keeps them):", highlight=False
+        )
         for url in urls:
             out.print(f"  {url}", highlight=False, soft_wrap=True)
 
@@ -86,7 +88,9 @@ def _await_ready(client: httpx.Client, child: subprocess.Popen[bytes]) -> None:
     start = time.monotonic()
     while time.monotonic() - start < _START_LIMIT_S:
         if child.poll() is not None:
-            raise Unavailable(f"demo: 'safestart up' ended with exit code {child.returncode}; its lines are above")
+            raise Unavailable(
+                f"demo: 'safestart up' ended with exit code {child.returncode}; its lines are above"
+            )
         try:
             if client.get("/readyz").status_code == httpx.codes.OK:
                 err.print(f"service ready after {time.monotonic() - start:.1f} s", highlight=False)
@@ -100,7 +104,9 @@ def _await_ready(client: httpx.Client, child: subprocess.Popen[bytes]) -> None:
 def _json(response: httpx.Response) -> dict[str, Any]:
     document: dict[str, Any] = response.json()
     if response.is_error:
-        raise Unavailable(f"demo: {response.request.url} answered {response.status_code}: {document.get('detail')}")
+        raise Unavailable(
+            f"demo: {response.request.url} answered {response.status_code}: {document.get('detail')}"
+        )
     return document
 
 

@@ -40,7 +40,10 @@ def register(app: typer.Typer) -> None:
             print_json(single(answer))
             return
         go = answer["verdict"][0] == "GO"
-        out.print(f"[bold {'green' if go else 'red'}]{answer['verdict'][0]}[/]: {answer['reason'][0]}", highlight=False)
+        out.print(
+            f"[bold {'green' if go else 'red'}]{answer['verdict'][0]}[/]: {answer['reason'][0]}",
+            highlight=False,
+        )
         r_sync = answer["r_sync_m"]
         shown = f"{r_sync:.2f} m" if r_sync is not None else f"none ({answer['r_sync_reason']})"
         out.print(f"  synchronization range limit: {shown}", highlight=False)

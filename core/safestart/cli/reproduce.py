@@ -27,7 +27,9 @@ DIFFERENCES = (
 
 def register(app: typer.Typer) -> None:
     """Add the command group."""
-    group = typer.Typer(help="Reproduce the paper's tables, ours beside the published figures.", no_args_is_help=True)
+    group = typer.Typer(
+        help="Reproduce the paper's tables, ours beside the published figures.", no_args_is_help=True
+    )
     app.add_typer(group, name="reproduce")
 
     @group.command("table1")

@@ -20,9 +20,12 @@ def register(app: typer.Typer) -> None:
 
     @app.command("run")
     def run(
-        process_id: Annotated[str, typer.Argument(metavar="PROCESS", help=f"One of: {', '.join(PROCESS_IDS)}.")],
+        process_id: Annotated[
+            str, typer.Argument(metavar="PROCESS", help=f"One of: {', '.join(PROCESS_IDS)}.")
+        ],
         input_file: Annotated[
-            str, typer.Option("--input", help="JSON file with the inputs; '-' reads stdin; absent: the defaults.")
+            str,
+            typer.Option("--input", help="JSON file with the inputs; '-' reads stdin; absent: the defaults."),
         ] = "",
         output_file: Annotated[
             Path | None,

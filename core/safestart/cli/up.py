@@ -30,5 +30,8 @@ def register(app: typer.Typer) -> None:
             Child("service", [*command, "serve", "--host", host, "--port", str(port)]),
             Child("worker", [*command, "worker"]),
         ]
-        err.print(f"safestart: dashboard at http://{host}:{port}/dashboard (Ctrl-C stops everything)", highlight=False)
+        err.print(
+            f"safestart: dashboard at http://{host}:{port}/dashboard (Ctrl-C stops everything)",
+            highlight=False,
+        )
         raise typer.Exit(Supervisor(children).run())

@@ -1,1 +1,4 @@
-"""The offered processes: one folder each with spec.py (light: inputs, outputs), run.py (imports its engines) and plots.py."""
+"""The offered processes, one folder each.
+
+``spec.py`` is light (inputs, outputs, description), ``run.py`` imports its engines, ``plots.py`` draws.
+"""

@@ -26,7 +26,10 @@ TumbleRate = Annotated[
 Thrust = Annotated[
     float,
     Field(
-        gt=0.0, le=MAX_ACCELERATION, description="Maximum thrust acceleration of the chaser, m/s^2.", examples=[0.1]
+        gt=0.0,
+        le=MAX_ACCELERATION,
+        description="Maximum thrust acceleration of the chaser, m/s^2.",
+        examples=[0.1],
     ),
 ]
 Seed = Annotated[int, Field(ge=0, le=2**63 - 1, description="Seed of every random draw.")]

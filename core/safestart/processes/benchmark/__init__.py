@@ -1,0 +1,1 @@
+"""The benchmark process: certificate against engines."""

@@ -41,7 +41,5 @@ def notes(inputs: BenchmarkInputs, rows: Sequence[dict[str, Any]], contained: fl
             f"The level set's own error on this grid: IoU {hj['iou_vs_exact']:.3f} against the exact set "
             "(no grid); compare areas against exact where it is there."
         )
-    out.extend(
-        f"{row['engine']}: {row['code']}, {row['message']}" for row in rows if row["code"] != "ok"
-    )
+    out.extend(f"{row['engine']}: {row['code']}, {row['message']}" for row in rows if row["code"] != "ok")
     return out

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from typing import Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,7 +17,14 @@ from safestart.processes.base import Artifact
 from safestart.processes.plotting import LABELS, PALETTE, draw_corridor, figure, png
 from safestart.scenario import Floats
 
-_STYLES = {"exact": "-", "hamilton_jacobi": "-", "backward": "--", "forward": ":", "monte_carlo": "-."}
+_LineStyle = Literal["-", "--", ":", "-."]
+_STYLES: dict[str, _LineStyle] = {
+    "exact": "-",
+    "hamilton_jacobi": "-",
+    "backward": "--",
+    "forward": ":",
+    "monte_carlo": "-.",
+}
 _BOTH, _ONLY_ENGINE, _ONLY_REFERENCE = "#009E73", "#D55E00", "#0072B2"
 
 
@@ -43,16 +51,24 @@ def overlay_map(problem: Problem, results: Mapping[str, EngineResult]) -> Artifa
         if not result.mask.any():
             handles.append(Line2D([], [], color="none", label=label))
         elif name == "analytical":
-            axes.contourf(x, y, result.mask.astype(float), levels=[0.5, 1.5], colors=[PALETTE[name]], alpha=0.75)
+            axes.contourf(
+                x, y, result.mask.astype(float), levels=[0.5, 1.5], colors=[PALETTE[name]], alpha=0.75
+            )
             handles.append(Patch(color=PALETTE[name], alpha=0.75, label=label))
         else:
             style = _STYLES[name]
-            axes.contour(x, y, _level(result), levels=[0.0], colors=[PALETTE[name]], linestyles=[style], linewidths=1.8)
+            axes.contour(
+                x, y, _level(result), levels=[0.0], colors=[PALETTE[name]], linestyles=[style], linewidths=1.8
+            )
             handles.append(Line2D([], [], color=PALETTE[name], linestyle=style, linewidth=1.8, label=label))
     limit = problem.scenario.sync_radius
     if math.isfinite(limit):
-        axes.add_patch(Circle((0, 0), limit, fill=False, color="#333333", linestyle=(0, (1, 2)), linewidth=1.0))
-        handles.append(Line2D([], [], color="#333333", linestyle=(0, (1, 2)), label=f"r_sync = {limit:.1f} m"))
+        axes.add_patch(
+            Circle((0, 0), limit, fill=False, color="#333333", linestyle=(0, (1, 2)), linewidth=1.0)
+        )
+        handles.append(
+            Line2D([], [], color="#333333", linestyle=(0, (1, 2)), label=f"r_sync = {limit:.1f} m")
+        )
     axes.set_title(_title(problem), fontsize=11)
     drawing.legend(handles=handles, loc="outside lower center", ncols=2, frameon=False, fontsize=9)
     return png("overlay.png", drawing)
@@ -66,7 +82,9 @@ def _level(result: EngineResult) -> Floats:
 
 def agreement_panels(problem: Problem, results: Mapping[str, EngineResult]) -> Artifact:
     """One panel per engine: cells in both sets, in the engine's only, in the reference's only."""
-    reference = next((n for n in ("exact", "hamilton_jacobi") if n in results and results[n].mask is not None), None)
+    reference = next(
+        (n for n in ("exact", "hamilton_jacobi") if n in results and results[n].mask is not None), None
+    )
     names = [n for n, r in results.items() if r.mask is not None and n != reference]
     columns = max(1, min(3, len(names)))
     lines = max(1, -(-len(names) // columns))

@@ -98,14 +98,17 @@ def _row(
     if mask is not None and certified is not None:
         row["confusion"] = ConfusionMatrix.of(certified, mask, inside).document()
     for short, name in (("hj", "hamilton_jacobi"), ("exact", "exact")):
-        other = masks.get(name)
-        measured = mask is not None and other is not None
-        row[f"area_ratio_vs_{short}"] = (
-            ratio(np.count_nonzero(mask), np.count_nonzero(other)) if measured else None
-        )
-        row[f"iou_vs_{short}"] = iou(mask, other) if measured else None
-        row[f"violation_vs_{short}"] = violation(mask, other) if measured else None
+        row |= _against(short, mask, masks.get(name))
     return row
+
+
+def _against(short: str, mask: Bools | None, other: Bools | None) -> dict[str, float | None]:
+    """Area ratio, IoU and violation fraction against one reference; None where either has no mask."""
+    keys = (f"area_ratio_vs_{short}", f"iou_vs_{short}", f"violation_vs_{short}")
+    if mask is None or other is None:
+        return dict.fromkeys(keys)
+    area = ratio(int(np.count_nonzero(mask)), int(np.count_nonzero(other)))
+    return dict(zip(keys, (area, iou(mask, other), violation(mask, other)), strict=True))
 
 
 def _artifacts(problem: Problem, results: Mapping[str, EngineResult]) -> tuple[Artifact, ...]:

@@ -25,7 +25,9 @@ DT_S = 2.0
 class HamiltonJacobiInput(WireModel):
     """Discretisation of the level-set engine."""
 
-    accuracy: Literal["low", "medium", "high", "very_high"] = Field("low", description="Scheme of hj-reachability.")
+    accuracy: Literal["low", "medium", "high", "very_high"] = Field(
+        "low", description="Scheme of hj-reachability."
+    )
     nodes_xy: int = Field(41, ge=11, le=81, description="Nodes per position axis.")
     nodes_v: int = Field(15, ge=7, le=41, description="Nodes per velocity axis.")
 
@@ -34,8 +36,12 @@ class BenchmarkInputs(ScenarioInput):
     """One operating point and what to compare."""
 
     grid: GridInput = Field(default_factory=GridInput)
-    engines: list[EngineName] = Field(list(ALL_ENGINES), min_length=1, max_length=6, description="Engines to run.")
-    horizon_s: float = Field(40.0, gt=0, le=600, description="Horizon of the reachable sets, s; a multiple of 2 s.")
+    engines: list[EngineName] = Field(
+        list(ALL_ENGINES), min_length=1, max_length=6, description="Engines to run."
+    )
+    horizon_s: float = Field(
+        40.0, gt=0, le=600, description="Horizon of the reachable sets, s; a multiple of 2 s."
+    )
     rest: Rest = Field(Rest.LVLH, description="Frame in which the starts are at rest.")
     set: SetKind = Field(
         SetKind.FIXED,
@@ -126,5 +132,10 @@ SPEC = ProcessSpec(
     run="safestart.processes.benchmark.run:run",
     instant="safestart.processes.certificate.run:answer",
     keywords=("reachability", "Hamilton-Jacobi", "Monte Carlo", "IoU"),
-    example={"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "grid": {"nx": 31, "ny": 31, "y_max_m": 150}, "horizon_s": 40},
+    example={
+        "omega_t_deg_s": 3,
+        "a_max_m_s2": 0.1,
+        "grid": {"nx": 31, "ny": 31, "y_max_m": 150},
+        "horizon_s": 40,
+    },
 )

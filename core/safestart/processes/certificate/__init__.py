@@ -1,0 +1,1 @@
+"""The certificate process: closed form on a grid."""

@@ -1,0 +1,1 @@
+"""The coverage process: safe percentage per operating point."""

@@ -47,5 +47,9 @@ SPEC = ProcessSpec(
     outputs=CoverageOutputs,
     run="safestart.processes.coverage.run:run",
     keywords=("certificate", "trade study"),
-    example={"omega_t_deg_s": [1, 3, 5], "a_max_m_s2": [0.1, 0.05], "grid": {"nx": 401, "ny": 401, "y_max_m": 150}},
+    example={
+        "omega_t_deg_s": [1, 3, 5],
+        "a_max_m_s2": [0.1, 0.05],
+        "grid": {"nx": 401, "ny": 401, "y_max_m": 150},
+    },
 )

@@ -17,7 +17,9 @@ class StateInput(WireModel):
     """A start at rest: body-frame position in metres."""
 
     x_m: float = Field(ge=-MAX_RANGE, le=MAX_RANGE, description="Body-frame x, m.", examples=[5.0])
-    y_m: float = Field(ge=-MAX_RANGE, le=MAX_RANGE, description="Body-frame y, along the corridor, m.", examples=[40.0])
+    y_m: float = Field(
+        ge=-MAX_RANGE, le=MAX_RANGE, description="Body-frame y, along the corridor, m.", examples=[40.0]
+    )
     z_m: float | None = Field(
         None, ge=-MAX_RANGE, le=MAX_RANGE, description="Body-frame z, m; absent: the planar question."
     )
@@ -44,7 +46,9 @@ class GoNoGoOutputs(WireModel):
     face_margins_m: list[list[float]] = Field(description="Margin after erosion per state and face, m.")
     range_margin_m: list[float | None] = Field(description="r_sync minus range, m; null without a limit.")
     binding: list[str] = Field(description="What gives the smallest margin: a face or 'range'.")
-    violated_faces: list[list[str]] = Field(description="Faces of the corridor that the start itself is outside of.")
+    violated_faces: list[list[str]] = Field(
+        description="Faces of the corridor that the start itself is outside of."
+    )
     reason: list[str] = Field(description="The verdict in a sentence.")
 
 
