@@ -1,0 +1,1 @@
+"""The HTTP face of safestart: instant certificates, job submission, results, events, a dashboard."""

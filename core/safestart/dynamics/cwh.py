@@ -90,12 +90,14 @@ _PLANE = np.array([0, 1, 3, 4])
 
 def planar_transition(mean_motion: float, tau: float) -> Floats:
     """Phi(tau) of the planar state (x, y, vx, vy), shape (4, 4)."""
-    return transition_matrix(mean_motion, tau)[_PLANE][:, _PLANE]
+    planar: Floats = transition_matrix(mean_motion, tau)[np.ix_(_PLANE, _PLANE)]
+    return planar
 
 
 def planar_input(mean_motion: float, tau: float) -> Floats:
     """B_d(tau) of the planar state, shape (4, 2)."""
-    return input_matrix(mean_motion, tau)[_PLANE][:, :2]
+    planar: Floats = input_matrix(mean_motion, tau)[_PLANE, :2]
+    return planar
 
 
 def feedforward(mean_motion: float, position: Floats, velocity: Floats) -> Floats:
