@@ -1,0 +1,37 @@
+# One command each. `just` is optional: every recipe is one line that can be typed.
+
+# install everything into .venv, exact versions
+setup:
+    python3 -m uv sync --all-packages
+
+# the tests, as in the README
+test *ARGS:
+    python3 -m uv run --all-packages pytest {{ARGS}}
+
+# style, types, import contracts, drift
+lint:
+    python3 -m uv run --all-packages ruff check .
+    python3 -m uv run --all-packages ruff format --check .
+    python3 -m uv run --all-packages mypy
+    python3 -m uv run --all-packages lint-imports
+    python3 -m uv run --all-packages python tools/pins.py check
+    python3 -m uv run --all-packages python tools/openapi.py check
+    python3 -m uv run --all-packages python tools/settings_page.py check
+
+# every engine beside its peer
+bench:
+    python3 -m uv run --all-packages safestart bench
+
+# database, service and worker on this machine
+serve:
+    python3 -m uv run --all-packages safestart up
+
+# resolve anew and pin the versions
+lock:
+    python3 -m uv run --all-packages python tools/pins.py write
+
+# rewrite what is generated: OpenAPI document, settings page, README picture
+generate:
+    python3 -m uv run --all-packages python tools/openapi.py write
+    python3 -m uv run --all-packages python tools/settings_page.py write
+    python3 -m uv run --all-packages python tools/picture.py
