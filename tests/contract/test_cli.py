@@ -1,0 +1,109 @@
+"""The command line as a user runs it: real processes, JSON alone on stdout."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+POINT = ["--omega-t-deg-s", "3", "--a-max-m-s2", "0.1"]
+
+
+def safestart(*arguments: str, stdin: str = "") -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "safestart", *arguments]
+    return subprocess.run(command, input=stdin, capture_output=True, text=True, timeout=240, check=False)
+
+
+def document(*arguments: str, stdin: str = "") -> Any:
+    done = safestart(*arguments, stdin=stdin)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def test_go_no_go_json() -> None:
+    answer = document("go-no-go", *POINT, "--x-m", "5", "--y-m", "40", "--json")
+    assert answer["verdict"] == "GO"
+    assert answer["r_sync_m"] == pytest.approx(72.951, abs=1e-3)
+    assert set(answer["face_margins_m"]) == {"hold_plane", "right", "left"}
+
+
+def test_go_no_go_for_people() -> None:
+    done = safestart("go-no-go", *POINT, "--x-m", "500", "--y-m", "40")
+    assert done.returncode == 0
+    assert "NO_GO" in done.stdout
+    assert "right" in done.stdout
+
+
+def test_no_tumble_is_null_with_a_reason() -> None:
+    answer = document(
+        "go-no-go", "--omega-t-deg-s", "0", "--a-max-m-s2", "0.1", "--x-m", "0", "--y-m", "100", "--json"
+    )
+    assert answer["verdict"] == "GO"
+    assert answer["r_sync_m"] is None
+    assert "does not tumble" in answer["r_sync_reason"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "named"),
+    [
+        (["go-no-go", "--omega-t-deg-s", "-3", "--a-max-m-s2", "0.1", "--x-m", "5", "--y-m", "40"], "omega_t_deg_s"),
+        (["go-no-go", "--omega-t-deg-s", "3", "--a-max-m-s2", "nan", "--x-m", "5", "--y-m", "40"], "a_max_m_s2"),
+        (["run", "no-such-process"], "benchmark"),
+        (["run", "benchmark", "--input", "/no/such/file.json"], "--input"),
+        (["run", "benchmark"], "omega_t_deg_s"),
+    ],
+)
+def test_bad_input_is_one_line_and_exit_code_two(arguments: list[str], named: str) -> None:
+    done = safestart(*arguments)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert named in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize("text", ["not json", "[1, 2", '{"omega_t_deg_s": NaN, "a_max_m_s2": 0.1}', "[]"])
+def test_bad_input_documents(text: str) -> None:
+    done = safestart("run", "certificate", "--input", "-", stdin=text)
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr
+
+
+def test_run_writes_document_picture_and_arrays(tmp_path: Path) -> None:
+    inputs = tmp_path / "in.json"
+    inputs.write_text(json.dumps({"omega_t_deg_s": [1, 3], "a_max_m_s2": [0.1], "grid": {"nx": 41, "ny": 41}}))
+    output = tmp_path / "out" / "coverage.json"
+    done = safestart("run", "coverage", "--input", str(inputs), "--output", str(output))
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == ""
+    written = json.loads(output.read_text())
+    assert set(written) >= {"inputs", "outputs", "provenance"}
+    assert written["inputs"]["corridor"]["c_x"] == 1.5
+    assert len(written["outputs"]["cells"]) == 2
+    assert output.with_name("coverage.coverage.png").read_bytes().startswith(b"\x89PNG")
+    with np.load(output.with_name("coverage.masks.npz")) as arrays:
+        assert arrays["mask"].shape == (2, 1, 41, 41)
+
+
+def test_run_reads_stdin_and_prints_json() -> None:
+    answer = document("run", "certificate", "--input", "-", "--json", stdin='{"omega_t_deg_s": 3, "a_max_m_s2": 0.1}')
+    assert np.array(answer["outputs"]["mask"]).shape == (31, 31)
+    assert answer["provenance"]["packages"]["safestart"]
+
+
+def test_reproduce_table1() -> None:
+    cells = document("reproduce", "table1", "--json")["cells"]
+    assert len(cells) == 20
+    assert all(abs(cell["ours"] - cell["paper"]) <= 0.3 for cell in cells)
+
+
+def test_go_no_go_starts_without_the_engines() -> None:
+    code = (
+        "import sys; from safestart.cli import build; build(); from safestart.processes.execute import execute;"
+        "execute('go-no-go', {'omega_t_deg_s': 3, 'a_max_m_s2': .1, 'states': [{'x_m': 0, 'y_m': 9}]});"
+        "print(sorted({'jax', 'numba', 'scipy', 'matplotlib', 'distributed', 'fastapi'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
