@@ -1,0 +1,1 @@
+"""Benchmarks: each of ours beside its peer, in one run."""

@@ -1,0 +1,1 @@
+"""The peers: what a user would reach for without safestart, at its best."""
