@@ -1,0 +1,56 @@
+"""Small response helpers: JSON by orjson, entity tags, links."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import orjson
+from fastapi import Request
+from fastapi.responses import Response
+
+_HOST = re.compile(r"[A-Za-z0-9._-]+(:\d{1,5})?|\[[0-9A-Fa-f:.]+\](:\d{1,5})?")
+
+
+class Json(Response):
+    """A JSON answer; NaN and infinity become null."""
+
+    media_type = "application/json"
+
+    def render(self, content: Any) -> bytes:
+        """Encode a document."""
+        return orjson.dumps(content)
+
+
+def base_url(request: Request) -> str:
+    """Scheme, host and mount path of this request, without a trailing slash.
+
+    A Host header that is no host is not repeated; the address of the socket stands in for it.
+    """
+    scope = request.scope
+    host = request.headers.get("host", "")
+    if not _HOST.fullmatch(host):
+        name, port = scope.get("server") or ("127.0.0.1", None)
+        host = f"{name}:{port}" if port else name
+    return f"{scope.get('scheme', 'http')}://{host}{scope.get('root_path', '')}"
+
+
+def link(href: str, rel: str, title: str, media_type: str = "application/json") -> dict[str, str]:
+    """A link object as OGC API documents carry them."""
+    return {"href": href, "rel": rel, "type": media_type, "title": title}
+
+
+def entity_tag(sha256: str) -> str:
+    """Strong entity tag of content with this digest."""
+    return f'"{sha256}"'
+
+
+def not_modified(request: Request, tag: str) -> Response | None:
+    """304 when the caller has this content already (If-None-Match, weak comparison)."""
+    known = request.headers.get("if-none-match")
+    if known is None:
+        return None
+    tags = {part.strip().removeprefix("W/") for part in known.split(",")}
+    if tag in tags or "*" in tags:
+        return Response(status_code=304, headers={"ETag": tag, "Cache-Control": "private, no-cache"})
+    return None

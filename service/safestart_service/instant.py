@@ -1,0 +1,90 @@
+"""The instant answer for one start: query parameters in, one flat document out."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from pydantic import Field
+
+from safestart.processes.base import WireModel
+from safestart.processes.go_no_go.run import run
+from safestart.processes.go_no_go.spec import GoNoGoInputs, StateInput
+from safestart.processes.wire import CorridorInput, Thrust, TumbleRate
+from safestart.progress import Context
+from safestart.scenario import MAX_MEAN_MOTION, MAX_RANGE, Rest
+
+_SILENT = Context()
+
+
+class GoNoGoQuery(WireModel):
+    """One operating point and one start, flat."""
+
+    omega_t_deg_s: TumbleRate
+    a_max_m_s2: Thrust
+    x_m: float = Field(ge=-MAX_RANGE, le=MAX_RANGE, description="Body-frame x, m.", examples=[5.0])
+    y_m: float = Field(
+        ge=-MAX_RANGE, le=MAX_RANGE, description="Body-frame y, along the corridor, m.", examples=[40.0]
+    )
+    z_m: float | None = Field(
+        None, ge=-MAX_RANGE, le=MAX_RANGE, description="Body-frame z, m; absent: the planar question."
+    )
+    rest: Rest = Field(Rest.LVLH, description="Frame in which the start is at rest.")
+    mean_motion_rad_s: float = Field(
+        1.1e-3, ge=0, le=MAX_MEAN_MOTION, description="Mean motion of the target's orbit, rad/s."
+    )
+    c_x: float = Field(1.5, gt=0, le=100, description="Corridor: slope of the +-x sides.")
+    c_z: float = Field(1.5, gt=0, le=100, description="Corridor: slope of the +-z sides.")
+    x0_m: float = Field(2.5, ge=0, le=1000, description="Corridor: half-width of the port in x, m.")
+    z0_m: float = Field(2.5, ge=0, le=1000, description="Corridor: half-width of the port in z, m.")
+    r_h_m: float = Field(0.5, ge=0, le=1000, description="Corridor: hold stand-off radius, m.")
+
+    def inputs(self) -> GoNoGoInputs:
+        """The same question as inputs of the go-no-go process; validated already, so not again."""
+        corridor = CorridorInput.model_construct(
+            c_x=self.c_x, c_z=self.c_z, x0_m=self.x0_m, z0_m=self.z0_m, r_h_m=self.r_h_m
+        )
+        return GoNoGoInputs.model_construct(
+            omega_t_deg_s=self.omega_t_deg_s,
+            a_max_m_s2=self.a_max_m_s2,
+            mean_motion_rad_s=self.mean_motion_rad_s,
+            corridor=corridor,
+            states=[StateInput.model_construct(x_m=self.x_m, y_m=self.y_m, z_m=self.z_m)],
+            rest=self.rest,
+            method="closed_form",
+        )
+
+
+class GoNoGoAnswer(WireModel):
+    """The verdict on one start, with every margin it rests on."""
+
+    verdict: Literal["GO", "NO_GO"]
+    margin_m: float = Field(description="Smallest margin, m; GO needs it positive.")
+    face_margins_m: dict[str, float] = Field(description="Margin after erosion by face, m.")
+    range_margin_m: float | None = Field(description="r_sync minus range, m; null without a limit.")
+    r_sync_m: float | None = Field(description="Synchronization range limit, m; null when there is none.")
+    r_sync_reason: str | None = Field(description="Why r_sync_m is null.")
+    binding: str = Field(description="What gives the smallest margin: a face or 'range'.")
+    violated_faces: list[str] = Field(
+        description="Faces of the corridor that the start itself is outside of."
+    )
+    reason: str = Field(description="The verdict in a sentence.")
+    method: Literal["closed_form"]
+    rest: Rest
+
+
+def flat_answer(query: GoNoGoQuery) -> dict[str, Any]:
+    """The go-no-go document of a single state, without its arrays of length one."""
+    arrays = run(query.inputs(), _SILENT).document
+    return {
+        "verdict": arrays["verdict"][0],
+        "margin_m": arrays["margin_m"][0],
+        "face_margins_m": dict(zip(arrays["faces"], arrays["face_margins_m"][0], strict=True)),
+        "range_margin_m": arrays["range_margin_m"][0],
+        "r_sync_m": arrays["r_sync_m"],
+        "r_sync_reason": arrays["r_sync_reason"],
+        "binding": arrays["binding"][0],
+        "violated_faces": arrays["violated_faces"][0],
+        "reason": arrays["reason"][0],
+        "method": arrays["method"],
+        "rest": arrays["rest"],
+    }

@@ -1,0 +1,108 @@
+"""Prometheus metrics: requests and latency by route, jobs by status, workers alive."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from time import perf_counter
+
+from prometheus_client import CollectorRegistry, Counter, Histogram, generate_latest
+from prometheus_client.core import GaugeMetricFamily, Metric
+from prometheus_client.registry import Collector
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from safestart.errors import SafestartError
+
+BUCKETS = (0.0005, 0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 10.0)
+UNROUTED = "(none)"
+
+StoreCounts = Callable[[], tuple[dict[str, int], int]]
+
+
+class _StoreCollector(Collector):
+    """Asks the store at each scrape; a store that is away shows as ``safestart_store_up 0``."""
+
+    def __init__(self, counts: StoreCounts) -> None:
+        self._counts = counts
+
+    def collect(self) -> Iterator[Metric]:
+        """Yield the gauges of this scrape."""
+        up = GaugeMetricFamily("safestart_store_up", "1 when the database answers.")
+        try:
+            counts, workers = self._counts()
+        except SafestartError:
+            up.add_metric([], 0)
+            yield up
+            return
+        up.add_metric([], 1)
+        yield up
+        jobs = GaugeMetricFamily("safestart_jobs", "Jobs by status.", labels=["status"])
+        for status, count in counts.items():
+            jobs.add_metric([str(status)], count)
+        yield jobs
+        yield GaugeMetricFamily("safestart_workers_alive", "Workers whose heartbeat is fresh.", value=workers)
+
+
+class Metrics:
+    """One registry per application, so that several live side by side in the tests."""
+
+    def __init__(self, counts: StoreCounts) -> None:
+        self.registry = CollectorRegistry(auto_describe=False)
+        self._requests = Counter(
+            "safestart_http_requests",
+            "Requests answered.",
+            ["method", "route", "status"],
+            registry=self.registry,
+        )
+        self._latency = Histogram(
+            "safestart_http_request_seconds",
+            "Time to the start of the answer.",
+            ["route"],
+            buckets=BUCKETS,
+            registry=self.registry,
+        )
+        self.registry.register(_StoreCollector(counts))
+        # Looking a labelled child up takes longer than updating it, so the children are kept.
+        self._children: dict[tuple[str, str, int], tuple[Callable[[], None], Callable[[float], None]]] = {}
+
+    def observe(self, method: str, route: str, status: int, seconds: float) -> None:
+        """Count one answer."""
+        key = (method, route, status)
+        child = self._children.get(key)
+        if child is None:
+            child = (
+                self._requests.labels(method, route, str(status)).inc,
+                self._latency.labels(route).observe,
+            )
+            self._children[key] = child
+        child[0]()
+        child[1](seconds)
+
+    def render(self) -> bytes:
+        """The exposition text; asks the database, so call it off the event loop."""
+        return generate_latest(self.registry)
+
+
+class MetricsMiddleware:
+    """ASGI middleware that times each request up to the start of its answer."""
+
+    def __init__(self, app: ASGIApp, metrics: Metrics) -> None:
+        self.app = app
+        self.metrics = metrics
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Serve one request."""
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+        start = perf_counter()
+
+        async def send_timed(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                route = scope.get("route")
+                # Only templates become labels: a label per path would grow without bound.
+                path = UNROUTED if route is None else getattr(route, "path", UNROUTED)
+                method = scope["method"] if route is not None else "*"
+                self.metrics.observe(method, path, message["status"], perf_counter() - start)
+            await send(message)
+
+        await self.app(scope, receive, send_timed)

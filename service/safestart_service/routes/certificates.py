@@ -1,0 +1,28 @@
+"""The closed-form certificate of an operating point on a grid."""
+
+from __future__ import annotations
+
+import asyncio
+
+from fastapi import APIRouter, Request
+from fastapi.responses import Response
+
+from safestart.processes.certificate.spec import SPEC, CertificateInputs, CertificateOutputs
+from safestart_service.answers import Json
+from safestart_service.body import parse_body, read_body
+from safestart_service.execute import run_now
+from safestart_service.openapi import answer, json_body, refusals
+
+router = APIRouter(tags=["instant answers"])
+
+
+@router.post(
+    "/certificates",
+    summary="Closed-form certificate on a grid",
+    openapi_extra=json_body({SPEC.id: CertificateInputs}, {SPEC.id: SPEC.example}),
+    responses={200: answer(CertificateOutputs, "Mask and margins."), **refusals(400, 413, 415, 422)},
+)
+async def certificates(request: Request) -> Response:
+    """Synchronization radius, safe fraction of the corridor, mask and margin of every grid point."""
+    body = await read_body(request)
+    return await asyncio.to_thread(lambda: Json(run_now(SPEC, parse_body(CertificateInputs, body))))

@@ -1,0 +1,41 @@
+"""Following a job."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Annotated
+
+from fastapi import APIRouter, Header, Request
+from fastapi.responses import Response, StreamingResponse
+
+from safestart_service.jobs_view import known_job
+from safestart_service.openapi import content, refusals
+from safestart_service.routes.jobs import JobId
+from safestart_service.sse import resume_point, stream
+from safestart_service.state import services
+
+router = APIRouter(tags=["jobs"])
+
+
+@router.get(
+    "/jobs/{jobID}/events",
+    summary="Events of a job",
+    responses={
+        200: content("text/event-stream", {"type": "string"}, "status, progress and log events, with ids."),
+        204: {"description": "The job has ended and nothing came after Last-Event-ID: do not reconnect."},
+        **refusals(404, 422, 503),
+    },
+)
+async def events(
+    request: Request,
+    jobID: JobId,
+    last_event_id: Annotated[str | None, Header(description="Go on after this event.")] = None,
+) -> Response:
+    """Server-sent events until the job has ended; ``Last-Event-ID`` resumes where a stream broke off."""
+    found = services(request)
+    after = resume_point(last_event_id)
+    job = await asyncio.to_thread(known_job, found, jobID)
+    if after and job.status.ended and not await asyncio.to_thread(found.jobs.events, jobID, after, 1):
+        return Response(status_code=204)
+    headers = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
+    return StreamingResponse(stream(found, jobID, after), media_type="text/event-stream", headers=headers)

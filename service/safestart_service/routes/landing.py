@@ -1,0 +1,76 @@
+"""Landing page, conformance, and the description of the API itself."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter, Request
+from fastapi.responses import RedirectResponse, Response
+
+from safestart_service import pages
+from safestart_service.answers import Json, base_url, link
+from safestart_service.openapi import answer, content, refusals
+from safestart_service.schemas import Conformance, Landing
+
+router = APIRouter(tags=["service"])
+
+OPENAPI_TYPE = "application/vnd.oai.openapi+json;version=3.1"
+CONFORMANCE_REL = "http://www.opengis.net/def/rel/ogc/1.0/conformance"
+PROCESSES_REL = "http://www.opengis.net/def/rel/ogc/1.0/processes"
+JOBS_REL = "http://www.opengis.net/def/rel/ogc/1.0/job-list"
+CLASSES = tuple(
+    f"http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/{name}"
+    for name in ("core", "ogc-process-description", "json", "oas30", "job-list", "dismiss")
+)
+
+
+@router.get(
+    "/",
+    summary="Landing page",
+    responses={
+        200: answer(Landing, "Links to everything."),
+        303: {"description": "A browser is sent to the dashboard."},
+        **refusals(),
+    },
+)
+async def landing(request: Request) -> Response:
+    """Links to everything; a browser is sent to the dashboard."""
+    base = base_url(request)
+    if "text/html" in request.headers.get("accept", ""):
+        return RedirectResponse(f"{base}/dashboard", 303, headers={"Vary": "Accept"})
+    links = [
+        link(f"{base}/", "self", "this page"),
+        link(f"{base}/openapi.json", "service-desc", "OpenAPI description", OPENAPI_TYPE),
+        link(f"{base}/docs", "service-doc", "the calls as a page", "text/html"),
+        link(f"{base}/conformance", CONFORMANCE_REL, "conformance classes"),
+        link(f"{base}/processes", PROCESSES_REL, "processes"),
+        link(f"{base}/jobs", JOBS_REL, "jobs"),
+        link(f"{base}/go-no-go", "related", "go/no-go for one start"),
+        link(f"{base}/dashboard", "alternate", "dashboard", "text/html"),
+    ]
+    document = {"title": request.app.title, "description": request.app.description, "links": links}
+    return Json(document, headers={"Vary": "Accept"})
+
+
+@router.get(
+    "/conformance",
+    summary="Conformance classes",
+    responses={200: answer(Conformance, "Classes."), **refusals()},
+)
+async def conformance() -> Response:
+    """Conformance classes of OGC API - Processes 1.0 that this service implements."""
+    return Json({"conformsTo": list(CLASSES)})
+
+
+@router.get("/openapi.json", include_in_schema=False)
+def openapi(request: Request) -> Response:
+    """The OpenAPI description."""
+    return Json(request.app.openapi())
+
+
+@router.get(
+    "/docs",
+    summary="The calls as a page",
+    responses={200: content("text/html", {"type": "string"}, "A page."), **refusals()},
+)
+def docs(request: Request) -> Response:
+    """The OpenAPI description as a page that needs neither script nor network."""
+    return pages.docs(request.app.openapi(), request.scope.get("root_path", ""))

@@ -1,0 +1,39 @@
+"""For whoever operates the service: alive, ready, metrics."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter, Request
+from fastapi.responses import Response
+from prometheus_client.exposition import CONTENT_TYPE_LATEST
+
+from safestart_service.answers import Json
+from safestart_service.openapi import answer, content, refusals
+from safestart_service.schemas import Health, Readiness
+from safestart_service.state import services
+
+router = APIRouter(tags=["operations"])
+
+
+@router.get("/healthz", summary="Alive", responses={200: answer(Health, "The process lives."), **refusals()})
+async def healthz(request: Request) -> Response:
+    """The process lives and its event loop turns."""
+    return Json({"status": "ok", "version": request.app.version})
+
+
+@router.get(
+    "/readyz", summary="Ready", responses={200: answer(Readiness, "The database answers."), **refusals(503)}
+)
+def readyz(request: Request) -> Response:
+    """The database answers; says how many workers are connected and how many jobs there are."""
+    found = services(request)
+    return Json({"status": "ready", "workers_alive": found.jobs.workers_alive(), "jobs": found.jobs.counts()})
+
+
+@router.get(
+    "/metrics",
+    summary="Prometheus metrics",
+    responses={200: content("text/plain", {"type": "string"}, "Exposition format."), **refusals()},
+)
+def metrics(request: Request) -> Response:
+    """Requests and latency by route, jobs by status, workers alive."""
+    return Response(services(request).metrics.render(), media_type=CONTENT_TYPE_LATEST)

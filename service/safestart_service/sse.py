@@ -1,0 +1,61 @@
+"""Events of a job as a stream of server-sent events that can be resumed."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator
+from time import monotonic
+from typing import Any
+
+import orjson
+
+from safestart.errors import invalid
+from safestart.store.records import Event, JobStatus
+from safestart_service.state import Services
+
+POLL_S = 0.25
+KEEP_ALIVE_S = 15.0
+PAGE = 500
+
+
+def resume_point(header: str | None) -> int:
+    """The event id in a ``Last-Event-ID`` header; 0 without one."""
+    if header is None or header == "":
+        return 0
+    if not (header.isascii() and header.isdigit() and len(header) <= 18):
+        raise invalid("Last-Event-ID", "the id of an event", header)
+    return int(header)
+
+
+def encode(event: Event) -> bytes:
+    """One event in the format of the HTML standard; JSON has no line breaks, so one data line is enough."""
+    data: dict[str, Any] = {"at": event.at, **event.data}
+    return b"id: %d\nevent: %s\ndata: %s\n\n" % (event.id, event.kind.encode(), orjson.dumps(data))
+
+
+async def stream(services: Services, job_id: str, after: int) -> AsyncIterator[bytes]:
+    """Events after ``after`` until the job has ended and all were sent; comments keep idle connections open.
+
+    The status is read before the events: once it is final, no event comes any more that was not read then.
+    """
+    spoke = monotonic()
+    yield b"retry: 1000\n\n"
+    while True:
+        ended, events = await asyncio.to_thread(_look, services, job_id, after)
+        if events:
+            after = events[-1].id
+            spoke = monotonic()
+            yield b"".join(encode(event) for event in events)
+        if len(events) == PAGE:
+            continue
+        if ended:
+            return
+        if monotonic() - spoke > KEEP_ALIVE_S:
+            spoke = monotonic()
+            yield b": still here\n\n"
+        await asyncio.sleep(POLL_S)
+
+
+def _look(services: Services, job_id: str, after: int) -> tuple[bool, tuple[Event, ...]]:
+    status: JobStatus = services.jobs.get(job_id).status
+    return status.ended, services.jobs.events(job_id, after, PAGE)
