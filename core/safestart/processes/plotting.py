@@ -10,6 +10,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
 from safestart.processes.base import Artifact
@@ -42,18 +43,19 @@ def figure(width: float, height: float) -> Figure:
     return Figure(figsize=(width, height), layout="constrained")
 
 
-def draw_corridor(axes: Axes, shape: CorridorShape, y_max: float) -> None:
-    """Outline of the corridor, target at the origin, equal axes and units on the labels."""
+def draw_corridor(axes: Axes, shape: CorridorShape, y_max: float) -> Polygon:
+    """Outline of the corridor, target at the origin, equal axes, units on the labels; returns the outline."""
     half = shape.x0 + shape.c_x * (y_max - shape.hold_radius)
     x = [-half, -shape.x0, shape.x0, half, -half]
     y = [y_max, shape.hold_radius, shape.hold_radius, y_max, y_max]
-    axes.fill(x, y, facecolor="#F2F2F2", edgecolor="#666666", linewidth=1.0, zorder=0)
+    (outline,) = axes.fill(x, y, facecolor="#F2F2F2", edgecolor="#666666", linewidth=1.0, zorder=0)
     axes.plot(0.0, 0.0, marker="s", color="#333333", markersize=5, zorder=5)
     axes.set_aspect("equal")
     axes.set_xlim(-1.03 * half, 1.03 * half)
     axes.set_ylim(-0.05 * y_max, 1.03 * y_max)
     axes.set_xlabel("x body [m]")
-    axes.set_ylabel("y body, along the corridor [m]")
+    axes.set_ylabel("y body [m]")
+    return outline
 
 
 def png(name: str, drawing: Figure, dpi: int = 130) -> Artifact:

@@ -39,9 +39,9 @@ def _title(problem: Problem) -> str:
 def overlay_map(problem: Problem, results: Mapping[str, EngineResult]) -> Artifact:
     """Certificate filled, the other engines as outlines, the range limit as a circle."""
     shape = problem.scenario.corridor
-    drawing = figure(8.6, 5.0)
+    drawing = figure(8.6, 4.5)
     axes = drawing.subplots()
-    draw_corridor(axes, shape, problem.grid.y_max)
+    outline = draw_corridor(axes, shape, problem.grid.y_max)
     x, y = problem.grid.axes(shape)
     handles: list[Line2D | Patch] = []
     for name, result in results.items():
@@ -51,16 +51,16 @@ def overlay_map(problem: Problem, results: Mapping[str, EngineResult]) -> Artifa
         if not result.mask.any():
             handles.append(Line2D([], [], color="none", label=label))
         elif name == "analytical":
-            axes.contourf(
-                x, y, result.mask.astype(float), levels=[0.5, 1.5], colors=[PALETTE[name]], alpha=0.75
-            )
+            drawn = axes.contourf(x, y, _level(result), levels=[0.0, np.inf], colors=[PALETTE[name]], alpha=0.75)
+            drawn.set_clip_path(outline)
             handles.append(Patch(color=PALETTE[name], alpha=0.75, label=label))
         else:
-            style = _STYLES[name]
-            axes.contour(
-                x, y, _level(result), levels=[0.0], colors=[PALETTE[name]], linestyles=[style], linewidths=1.8
+            style, colour = _STYLES[name], PALETTE[name]
+            line = axes.contour(
+                x, y, _level(result), levels=[0.0], colors=[colour], linestyles=[style], linewidths=1.8
             )
-            handles.append(Line2D([], [], color=PALETTE[name], linestyle=style, linewidth=1.8, label=label))
+            line.set_clip_path(outline)
+            handles.append(Line2D([], [], color=colour, linestyle=style, linewidth=1.8, label=label))
     limit = problem.scenario.sync_radius
     if math.isfinite(limit):
         axes.add_patch(
@@ -75,9 +75,9 @@ def overlay_map(problem: Problem, results: Mapping[str, EngineResult]) -> Artifa
 
 
 def _level(result: EngineResult) -> Floats:
-    """Field whose zero level outlines the mask: +-0.5 on cells, so that the outline runs between them."""
+    """Field whose zero level outlines the region: the margin, or +-0.5 per cell where there is none."""
     assert result.mask is not None
-    return np.where(result.mask, 0.5, -0.5)
+    return np.where(result.mask, 0.5, -0.5) if result.margin is None else result.margin
 
 
 def agreement_panels(problem: Problem, results: Mapping[str, EngineResult]) -> Artifact:
@@ -88,7 +88,7 @@ def agreement_panels(problem: Problem, results: Mapping[str, EngineResult]) -> A
     names = [n for n, r in results.items() if r.mask is not None and n != reference]
     columns = max(1, min(3, len(names)))
     lines = max(1, -(-len(names) // columns))
-    drawing = figure(4.3 * columns, 2.5 * lines + 0.9)
+    drawing = figure(4.3 * columns, 1.9 * lines + 0.9)
     panels = drawing.subplots(lines, columns, squeeze=False)
     for panel, name in zip(panels.flat, names, strict=False):
         _panel(panel, problem, results[name], results[reference] if reference else None)

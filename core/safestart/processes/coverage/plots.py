@@ -25,7 +25,7 @@ def coverage_map(
     colours = mpl.colormaps["viridis"](np.linspace(0.92, 0.12, len(levels)))
     columns = min(3, len(panels))
     lines = -(-len(panels) // columns)
-    drawing = figure(4.3 * columns, 2.6 * lines + 0.8)
+    drawing = figure(4.3 * columns, 1.9 * lines + 0.9)
     axes = drawing.subplots(lines, columns, squeeze=False)
     x, y = grid.axes(shape)
     for panel, i in zip(axes.flat, panels, strict=False):
