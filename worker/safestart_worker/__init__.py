@@ -1,0 +1,1 @@
+"""Claims safestart jobs with a lease and runs them on Dask."""

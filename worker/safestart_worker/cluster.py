@@ -1,0 +1,174 @@
+"""The Dask cluster jobs run on: an embedded one of local processes, or an existing one by its address."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import AsyncIterator, Callable
+from contextlib import AsyncExitStack, asynccontextmanager, suppress
+from typing import Any
+
+import dask
+from distributed import Client, Future, LocalCluster, Nanny
+from distributed.system import MEMORY_LIMIT
+
+from safestart.errors import InvalidInput, Unavailable
+from safestart.store.records import Claim
+from safestart_worker.task import Outcome, get_ready, request_stop, run_job
+
+log = logging.getLogger("safestart.worker")
+
+CONNECT_TIMEOUT_S = 10.0
+# How long a task that polls gets to stop by itself, and how long a replaced process may take to come back.
+STOP_GRACE_S = 1.0
+RESTART_TIMEOUT_S = 30.0
+# How long a local process that must go gets before it is killed.
+KILL_TIMEOUT_S = 0.5
+_MEMORY_SHARE = 0.9
+_ONE_THREAD = {
+    name: "1" for name in ("NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS")
+}
+
+
+class Cluster:
+    """A Dask client and what this worker does with it."""
+
+    def __init__(self, client: Client, owner: str, local: LocalCluster | None) -> None:
+        self._client = client
+        self._topic = f"safestart-{owner}"
+        self._local = local
+
+    @property
+    def embedded(self) -> bool:
+        """True when the task processes are this worker's own."""
+        return self._local is not None
+
+    def listen(self, handler: Callable[[dict[str, Any]], None]) -> None:
+        """Hand every report of our tasks to ``handler``."""
+        self._client.subscribe_topic(self._topic, lambda event: handler(event[1]))
+
+    def connected(self) -> bool:
+        """False once the scheduler is gone for good."""
+        return bool(self._client.status == "running")
+
+    async def threads(self) -> int:
+        """Number of tasks that can run at once now."""
+        return sum((await self._client.nthreads()).values())
+
+    def submit(self, claim: Claim, key: str) -> Future:
+        """Start the job; Dask runs it again if its process dies, and gives up after allowed-failures deaths."""
+        return self._client.submit(
+            run_job,
+            claim.process_id,
+            claim.inputs,
+            key,
+            self._topic,
+            key=key,
+            pure=False,
+            retries=0,
+        )
+
+    async def stop(self, future: Future, outcome: asyncio.Task[Outcome]) -> None:
+        """End a task: ask it first, then replace its process. Returns when it no longer computes."""
+        addresses = await self._running_at(future.key)
+        for address in addresses:
+            asking = self._client.run(request_stop, future.key, workers=[address], on_error="ignore")
+            with suppress(
+                TimeoutError, OSError
+            ):  # a task that holds the GIL keeps its process from answering
+                await asyncio.wait_for(asking, STOP_GRACE_S)
+        await asyncio.wait({outcome}, timeout=STOP_GRACE_S if addresses else 0)
+        if outcome.done():
+            return
+        addresses = await self._running_at(future.key)
+        await future.cancel()
+        if self._local is None and addresses:
+            await self._client.restart_workers(addresses, timeout=RESTART_TIMEOUT_S, raise_for_error=False)
+        for nanny in self._nannies():
+            # Sooner than restart_workers, which waits several seconds for a busy process to end by itself; the
+            # nanny starts the next process in the background.
+            if nanny.worker_address in addresses:
+                await nanny.kill(timeout=KILL_TIMEOUT_S)
+
+    async def ask_to_stop(self, future: Future) -> None:
+        """Give up a task without waiting for its end."""
+        for address in await self._running_at(future.key):
+            await self._client.run(request_stop, future.key, workers=[address], wait=False)
+        await future.cancel()
+
+    async def warm_up(self) -> None:
+        """Compile the kernels in one task process, whose cache on disk then serves the others."""
+        addresses = list(await self._client.nthreads())
+        for group in (addresses[:1], addresses[1:]):
+            tasks = [self._client.submit(get_ready, workers=[a], pure=False) for a in group]
+            await asyncio.gather(*(task.result() for task in tasks))
+
+    async def close(self) -> None:
+        """End the embedded task processes at once, busy ones too: their jobs are back in the queue."""
+        await asyncio.gather(*(nanny.close(timeout=KILL_TIMEOUT_S) for nanny in self._nannies()))
+
+    def _nannies(self) -> list[Nanny]:
+        return [] if self._local is None else list(self._local.workers.values())
+
+    async def _running_at(self, key: str) -> list[str]:
+        processing = await self._client.processing()
+        return [address for address, keys in processing.items() if key in keys]
+
+
+@asynccontextmanager
+async def open_cluster(
+    scheduler: str, processes: int, max_attempts: int, owner: str
+) -> AsyncIterator[Cluster]:
+    """Connect to ``scheduler``, or start an embedded cluster when it is empty; closed at the end."""
+    async with AsyncExitStack() as stack:
+        with dask.config.set(_config(max_attempts)):
+            local = None if scheduler else await stack.enter_async_context(_embedded(processes))
+            try:
+                client = await stack.enter_async_context(
+                    Client(
+                        local or scheduler, asynchronous=True, timeout=CONNECT_TIMEOUT_S, set_as_default=False
+                    )
+                )
+            except (OSError, TimeoutError) as error:
+                raise Unavailable(
+                    f"scheduler: required the address of a running Dask scheduler, found none at {scheduler}",
+                    field="scheduler",
+                    required="the address of a running Dask scheduler",
+                    received=scheduler,
+                ) from error
+            except ValueError as error:
+                raise InvalidInput(
+                    f"scheduler: required an address such as tcp://host:8786, received {scheduler!r}",
+                    field="scheduler",
+                    required="an address such as tcp://host:8786",
+                    received=scheduler,
+                ) from error
+            cluster = Cluster(client, owner, local)
+            stack.push_async_callback(cluster.close)
+            yield cluster
+
+
+def _embedded(processes: int) -> LocalCluster:
+    """Processes of one thread each on the loopback interface, without dashboard."""
+    return LocalCluster(
+        n_workers=processes,
+        threads_per_worker=1,
+        processes=True,
+        host="127.0.0.1",
+        dashboard_address=None,
+        memory_limit=int(_MEMORY_SHARE * MEMORY_LIMIT / max(processes, 1)),
+        silence_logs=logging.WARNING,
+        asynchronous=True,
+    )
+
+
+def _config(max_attempts: int) -> dict[str, Any]:
+    return {
+        # Dask counts deaths beyond the first allowed ones; we count attempts.
+        "distributed.scheduler.allowed-failures": max_attempts - 1,
+        # Events are for progress only: the database keeps what is worth keeping.
+        "distributed.admin.low-level-log-length": 1000,
+        # Read before the process imports NumPy or Numba.
+        "distributed.nanny.pre-spawn-environ": {**_ONE_THREAD, "MALLOC_TRIM_THRESHOLD_": "65536"},
+        "distributed.comm.timeouts.connect": f"{CONNECT_TIMEOUT_S:g}s",
+    }

@@ -1,0 +1,42 @@
+"""``safestart worker``: added to the command line by an entry point."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from typing import Annotated
+
+import typer
+
+from safestart.settings import settings
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+
+    @app.command("worker")
+    def worker(
+        scheduler: Annotated[
+            str, typer.Option(help="Address of a Dask scheduler; empty: the setting, or an embedded cluster.")
+        ] = "",
+        database_url: Annotated[str, typer.Option(help="SQLAlchemy URL; empty: the setting.")] = "",
+        processes: Annotated[int, typer.Option(min=0, max=1024, help="Jobs at once; 0: the setting.")] = 0,
+    ) -> None:
+        """Claim jobs and run them on Dask until SIGTERM or Ctrl-C; running jobs then go back to the queue."""
+        # Here and not above: every other command starts without Dask.
+        from safestart_worker.loop import Options, work
+
+        configured = settings()
+        address = scheduler or configured.scheduler
+        logging.basicConfig(level=logging.WARNING, format="%(asctime)s %(levelname)s %(name)s %(message)s")
+        logging.getLogger("safestart").setLevel(logging.INFO)
+        options = Options(
+            database_url=database_url or configured.url(),
+            scheduler=address,
+            # On an existing cluster, its size is the limit unless this one is given.
+            processes=processes or (0 if address else configured.processes),
+            lease_s=configured.lease_s,
+            poll_s=configured.poll_s,
+            max_attempts=configured.max_attempts,
+        )
+        raise typer.Exit(asyncio.run(work(options)))

@@ -1,0 +1,164 @@
+"""The worker: heartbeats, claims as many jobs as can run, one shepherd each, until it is told to stop."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import os
+import secrets
+import signal
+import socket
+import time
+from dataclasses import dataclass
+
+from safestart.errors import Unavailable
+from safestart.store.database import Database
+from safestart.store.jobs import JobRepository
+from safestart_worker.cluster import Cluster, open_cluster
+from safestart_worker.shepherd import Rules, Shepherd
+
+log = logging.getLogger("safestart.worker")
+
+HEARTBEAT_S = 3.0
+# While the database is away there is nothing to do but ask again.
+AWAY_S = 2.0
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """What a worker is started with. ``processes`` 0: as many as the cluster has threads."""
+
+    database_url: str
+    scheduler: str
+    processes: int
+    lease_s: float
+    poll_s: float
+    max_attempts: int
+
+    @property
+    def rules(self) -> Rules:
+        """What the shepherds need to know."""
+        return Rules(self.lease_s, self.max_attempts)
+
+
+class Worker:
+    """Claims jobs and sees them through."""
+
+    def __init__(self, options: Options, jobs: JobRepository, cluster: Cluster, owner: str) -> None:
+        self._options = options
+        self._jobs = jobs
+        self._cluster = cluster
+        self._owner = owner
+        self._capacity = 0
+        self._last_beat = 0.0
+        self._herd: dict[asyncio.Task[None], Shepherd] = {}
+        cluster.listen(self._on_report)
+
+    async def run(self, stopping: asyncio.Event) -> None:
+        """Work until ``stopping`` is set; running jobs then go back to the queue."""
+        stop = asyncio.ensure_future(stopping.wait())
+        while not stopping.is_set():
+            pause = self._options.poll_s
+            try:
+                await self._beat()
+                await self._claim(stopping)
+            except Unavailable as error:
+                log.warning("%s", error.detail)
+                pause = AWAY_S
+            if not self._cluster.connected():
+                log.error("the connection to the scheduler is lost")
+                break
+            await asyncio.wait({stop, *self._herd}, timeout=pause, return_when=asyncio.FIRST_COMPLETED)
+            self._collect()
+        stopping.set()
+        stop.cancel()
+        if self._herd:
+            await asyncio.wait(self._herd)
+            self._collect()
+
+    async def _claim(self, stopping: asyncio.Event) -> None:
+        while len(self._herd) < self._capacity and not stopping.is_set():
+            options = self._options
+            claim = await asyncio.to_thread(
+                self._jobs.claim, self._owner, options.lease_s, options.max_attempts
+            )
+            if claim is None:
+                return
+            shepherd = Shepherd(claim, self._jobs, self._cluster, options.rules)
+            self._herd[asyncio.create_task(shepherd.run(stopping))] = shepherd
+
+    async def _beat(self) -> None:
+        """Say that this worker is alive, and see how many jobs the cluster can run."""
+        now = time.monotonic()
+        if now - self._last_beat < HEARTBEAT_S:
+            return
+        threads = await self._cluster.threads()
+        # A process that is being replaced is back before the queue notices: the embedded size is fixed.
+        wanted = self._options.processes
+        self._capacity = wanted if self._cluster.embedded else min(threads, wanted or threads)
+        await asyncio.to_thread(self._jobs.heartbeat, self._owner, self._capacity, len(self._herd))
+        self._last_beat = now
+
+    def _collect(self) -> None:
+        for task in [task for task in self._herd if task.done()]:
+            shepherd = self._herd.pop(task)
+            error = task.exception()
+            if error is not None:
+                # Its lease runs out by itself, and the job is taken up again.
+                log.error("job=%s left to its lease", shepherd.claim.job_id, exc_info=error)
+
+    def _on_report(self, data: dict[str, object]) -> None:
+        for shepherd in self._herd.values():
+            if shepherd.key == data["key"]:
+                shepherd.on_report(data)
+
+
+async def work(options: Options) -> int:
+    """Run a worker until SIGTERM or SIGINT; returns the exit code."""
+    stopping = asyncio.Event()
+    for number in (signal.SIGTERM, signal.SIGINT):
+        asyncio.get_running_loop().add_signal_handler(number, stopping.set)
+    owner = f"{socket.gethostname()}-{os.getpid()}-{secrets.token_hex(3)}"
+    database = Database(options.database_url)
+    database.migrate()
+    jobs = JobRepository(database)
+    start = time.monotonic()
+    lost = False
+    async with open_cluster(options.scheduler, options.processes, options.max_attempts, owner) as cluster:
+        where = options.scheduler or f"{options.processes} task processes"
+        log.info("%s on %s, cluster ready in %.1f s", owner, where, time.monotonic() - start)
+        await _warm(cluster, stopping)
+        if not stopping.is_set():
+            log.info("takes jobs from %s", database.shown)
+            await Worker(options, jobs, cluster, owner).run(stopping)
+            lost = not cluster.connected()
+        await _say_goodbye(jobs, owner)
+        log.info("stopping")
+    database.close()
+    return 1 if lost else 0
+
+
+async def _warm(cluster: Cluster, stopping: asyncio.Event) -> None:
+    print("warming up kernels ... ", end="", flush=True)
+    start = time.monotonic()
+    warming = asyncio.create_task(cluster.warm_up())
+    stop = asyncio.create_task(stopping.wait())
+    await asyncio.wait({warming, stop}, return_when=asyncio.FIRST_COMPLETED)
+    stop.cancel()
+    if not warming.done():
+        warming.cancel()
+        print("interrupted", flush=True)
+        return
+    try:
+        warming.result()
+    except Exception:
+        # The jobs that need what is broken here will fail with their own reasons; others need not wait for it.
+        log.exception("warming up failed")
+    print(f"done in {time.monotonic() - start:.1f} s", flush=True)
+
+
+async def _say_goodbye(jobs: JobRepository, owner: str) -> None:
+    try:
+        await asyncio.to_thread(jobs.farewell, owner)
+    except Unavailable as error:
+        log.warning("%s", error.detail)

@@ -1,0 +1,50 @@
+"""Progress of one job as its worker sees it: percent, message, estimated seconds left."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+# Weight of a new estimate of the time left against the previous one counted down.
+_SMOOTHING = 0.3
+# A running job never shows 100: that is what successful says.
+_MOST = 99.9
+
+
+@dataclass(slots=True)
+class Track:
+    """From units done to percent and time left; percent never falls while the same task process runs."""
+
+    percent: float = 0.0
+    message: str = ""
+    eta_s: float | None = None
+    _elapsed: float = 0.0
+    _fresh: bool = field(default=False)
+
+    def restart(self) -> None:
+        """The task begins again from nothing, in another process."""
+        self.percent, self.message, self.eta_s, self._elapsed, self._fresh = 0.0, "", None, 0.0, False
+
+    def update(self, done: float, total: float, elapsed_s: float, message: str) -> None:
+        """Take in one report.
+
+        The time left is the time so far scaled by the work left, smoothed against the last estimate minus the
+        time since.
+        """
+        share = min(max(done / total, 0.0), 1.0) if total > 0 else 0.0
+        percent = max(self.percent, min(100.0 * share, _MOST))
+        if share > 0.0:
+            estimate = elapsed_s * (1.0 - share) / share
+            if self.eta_s is not None:
+                expected = max(self.eta_s - (elapsed_s - self._elapsed), 0.0)
+                estimate = expected + _SMOOTHING * (estimate - expected)
+            self.eta_s = estimate
+        self._fresh = self._fresh or percent > self.percent or message != self.message
+        self.percent, self.message, self._elapsed = percent, message, elapsed_s
+
+    def take(self) -> tuple[float, str, float | None] | None:
+        """Percent, message and time left if they changed since the last call, else None."""
+        if not self._fresh:
+            return None
+        self._fresh = False
+        eta = None if self.eta_s is None else round(self.eta_s, 2)
+        return round(self.percent, 2), self.message, eta
