@@ -10,4 +10,7 @@ from safestart.scenario import Grid, Scenario
 def measure() -> dict[str, dict[str, float]]:
     """Median time of the 31 x 31 map."""
     scenario, grid = Scenario.of(3.0, 0.1), Grid()
-    return {"ratios": {}, "times": {"certificate_map_s": median_seconds(lambda: certify_grid(scenario, grid), 2000)}}
+    return {
+        "ratios": {},
+        "times": {"certificate_map_s": median_seconds(lambda: certify_grid(scenario, grid), 2000)},
+    }

@@ -49,8 +49,14 @@ def test_no_tumble_is_null_with_a_reason() -> None:
 @pytest.mark.parametrize(
     ("arguments", "named"),
     [
-        (["go-no-go", "--omega-t-deg-s", "-3", "--a-max-m-s2", "0.1", "--x-m", "5", "--y-m", "40"], "omega_t_deg_s"),
-        (["go-no-go", "--omega-t-deg-s", "3", "--a-max-m-s2", "nan", "--x-m", "5", "--y-m", "40"], "a_max_m_s2"),
+        (
+            ["go-no-go", "--omega-t-deg-s", "-3", "--a-max-m-s2", "0.1", "--x-m", "5", "--y-m", "40"],
+            "omega_t_deg_s",
+        ),
+        (
+            ["go-no-go", "--omega-t-deg-s", "3", "--a-max-m-s2", "nan", "--x-m", "5", "--y-m", "40"],
+            "a_max_m_s2",
+        ),
         (["run", "no-such-process"], "benchmark"),
         (["run", "benchmark", "--input", "/no/such/file.json"], "--input"),
         (["run", "benchmark"], "omega_t_deg_s"),
@@ -73,7 +79,9 @@ def test_bad_input_documents(text: str) -> None:
 
 def test_run_writes_document_picture_and_arrays(tmp_path: Path) -> None:
     inputs = tmp_path / "in.json"
-    inputs.write_text(json.dumps({"omega_t_deg_s": [1, 3], "a_max_m_s2": [0.1], "grid": {"nx": 41, "ny": 41}}))
+    inputs.write_text(
+        json.dumps({"omega_t_deg_s": [1, 3], "a_max_m_s2": [0.1], "grid": {"nx": 41, "ny": 41}})
+    )
     output = tmp_path / "out" / "coverage.json"
     done = safestart("run", "coverage", "--input", str(inputs), "--output", str(output))
     assert done.returncode == 0, done.stderr
@@ -88,7 +96,9 @@ def test_run_writes_document_picture_and_arrays(tmp_path: Path) -> None:
 
 
 def test_run_reads_stdin_and_prints_json() -> None:
-    answer = document("run", "certificate", "--input", "-", "--json", stdin='{"omega_t_deg_s": 3, "a_max_m_s2": 0.1}')
+    answer = document(
+        "run", "certificate", "--input", "-", "--json", stdin='{"omega_t_deg_s": 3, "a_max_m_s2": 0.1}'
+    )
     assert np.array(answer["outputs"]["mask"]).shape == (31, 31)
     assert answer["provenance"]["packages"]["safestart"]
 

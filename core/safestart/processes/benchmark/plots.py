@@ -51,7 +51,9 @@ def overlay_map(problem: Problem, results: Mapping[str, EngineResult]) -> Artifa
         if not result.mask.any():
             handles.append(Line2D([], [], color="none", label=label))
         elif name == "analytical":
-            drawn = axes.contourf(x, y, _level(result), levels=[0.0, np.inf], colors=[PALETTE[name]], alpha=0.75)
+            drawn = axes.contourf(
+                x, y, _level(result), levels=[0.0, np.inf], colors=[PALETTE[name]], alpha=0.75
+            )
             drawn.set_clip_path(outline)
             handles.append(Patch(color=PALETTE[name], alpha=0.75, label=label))
         else:

@@ -50,7 +50,8 @@ def run(inputs: BenchmarkInputs, context: Context) -> ProcessOutput:
     certified = masks.get("analytical")
     contained = None
     if certified is not None and certified.any():
-        contained = containment_horizon(problem.scenario, problem.points()[certified], problem.rest)
+        starts = problem.points()[certified]
+        contained = containment_horizon(problem.scenario, starts, problem.rest, DT_S, start=problem.horizon)
     rows = [_row(result, masks, inside, cell_area, results) for result in results.values()]
     document = {
         "corridor_cells": int(np.count_nonzero(inside)),

@@ -114,7 +114,8 @@ class BenchmarkOutputs(WireModel):
     corridor_cells: int
     cell_area_m2: float
     containment_horizon_s: float | None = Field(
-        description="Smallest horizon at which every certified start is in the exact fixed-time set; null: none found."
+        description="Smallest horizon, from horizon_s on, at which the exact fixed-time set holds every certified start; "
+        "null: none up to 600 s."
     )
     rows: list[EngineRow]
     notes: list[str]
