@@ -9,6 +9,7 @@ import numpy as np
 from numba import njit
 
 from safestart.errors import invalid
+from safestart.guidance import plan as _plan
 from safestart.guidance import regimes as _regimes
 from safestart.guidance import safety_filter as _safety_filter
 from safestart.guidance.plan import SUBSTEPS, Plan
@@ -52,7 +53,7 @@ def _build(stamp: int):  # type: ignore[no-untyped-def]
         phi, gamma = plan.transition, plan.input
         count = len(plan.offsets)
         logging = len(log_state) > 0
-        bounds = np.empty(m)
+        bounds, work, index = np.empty(m), np.empty((10, 4)), np.empty(4, np.int64)
         nominal = np.zeros(3)
         command = np.zeros(3)
         previous = np.zeros(3)
@@ -74,7 +75,7 @@ def _build(stamp: int):  # type: ignore[no-untyped-def]
                     x[0], x[1], x[2], x[3], x[4], x[5],
                     k * plan.dt, plan.rotation[k, 0], plan.rotation[k, 1], r0, v_max, law,
                 )  # fmt: skip
-                feasible = _filter(plan, k, x, nominal, previous, bounds, command)
+                feasible = _filter(plan, k, x, nominal, previous, command, bounds, work, index)
                 if not feasible:
                     infeasible += 1
                 ux, uy, uz = command[0], command[1], command[2]
@@ -122,7 +123,7 @@ def _distance(normals, offsets, x, d, count):  # type: ignore[no-untyped-def]
     return least
 
 
-roll_out = _build(source_stamp(_regimes, _safety_filter, *_safety_filter.SOURCES))
+roll_out = _build(source_stamp(_plan, _regimes, _safety_filter, *_safety_filter.SOURCES))
 """The compiled loop; see :func:`fly` and :func:`safestart.guidance.trajectory.fly_start` for its arguments."""
 
 _NO_LOG = (np.empty((0, 6)), np.empty((0, 3)), np.empty((0, 2), np.int64))

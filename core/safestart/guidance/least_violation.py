@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 from numba import njit
 
 MAX_PIVOTS = 200
@@ -13,12 +12,12 @@ TOLERANCE = 1e-11
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def least_violation(normals, bounds, weights, point):  # type: ignore[no-untyped-def]
+def least_violation(normals, bounds, weights, point, work, basis):  # type: ignore[no-untyped-def]
     """Set ``point`` (d,) to a minimiser over the box |w_i| <= 1 of max_r weights_r (normals_r w - bounds_r).
 
     ``normals`` (d, m), ``bounds`` (m,), ``weights`` (m,) turn a row's violation into metres; rows of weight 0 are left
-    out. Returns the minimum in metres (negative when every row can be met strictly), or infinity when the pivots
-    run out. At least one weight must be positive.
+    out, at least one weight must be positive. ``work`` (9, 4) and ``basis`` (4,) integers are scratch. Returns the
+    minimum in metres (negative when every row can be met strictly), or infinity when the pivots run out.
 
     Method: with y = (w, tau) the problem is min tau subject to weights_r normals_r w - tau <= weights_r bounds_r and
     the box. Any row with the box corner that opposes it is a dual feasible vertex; from there each pivot adds the
@@ -26,11 +25,9 @@ def least_violation(normals, bounds, weights, point):  # type: ignore[no-untyped
     inverse of the basis is carried as a (d + 1) x (d + 1) array.
     """
     d, m = normals.shape
-    inverse = np.zeros((4, 4))
-    basis = np.empty(4, np.int64)
-    row = np.empty(4)
-    coordinate = np.empty(4)
-    y = np.empty(4)
+    inverse = work[:4]
+    inverse[:] = 0.0
+    row, coordinate, y = work[4], work[5], work[6]
     first = -1
     worst = -math.inf
     for r in range(m):

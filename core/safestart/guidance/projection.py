@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 from numba import njit
 
 FEASIBLE, INFEASIBLE, STALLED = 0, 1, 2
@@ -20,23 +19,20 @@ MAX_STEPS = 200
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def project(normals, bounds, point):  # type: ignore[no-untyped-def]
+def project(normals, bounds, point, work, active):  # type: ignore[no-untyped-def]
     """Move ``point`` (d,) to the nearest point with ``point @ normals <= bounds``; return a status code.
 
-    ``normals`` (d, m) has columns of length 1, ``bounds`` (m,), d is 2 or 3. ``FEASIBLE``: done, to 1e-9.
-    ``INFEASIBLE``: the polyhedron is empty. ``STALLED``: not finished; then ``point`` means nothing.
+    ``normals`` (d, m) has columns of length 1, ``bounds`` (m,), d is 2 or 3; ``work`` (9, 4) and ``active`` (4,)
+    integers are scratch. ``FEASIBLE``: done, to 1e-9. ``INFEASIBLE``: the polyhedron is empty. ``STALLED``: not
+    finished; then ``point`` means nothing.
 
     Method: Goldfarb and Idnani's dual active set (Mathematical Programming 27, 1983) with the identity as Hessian.
     It starts from the point itself, adds the most violated row, and drops rows whose multiplier would turn
     negative. At most d rows are active, so their orthonormal basis is rebuilt (Gram-Schmidt, twice) each time.
     """
     d, m = normals.shape
-    active = np.empty(3, np.int64)
-    multiplier = np.zeros(3)
-    basis = np.empty((3, 3))
-    upper = np.empty((3, 3))
-    step = np.empty(3)
-    ratio = np.empty(3)
+    multiplier, step, ratio = work[0], work[1], work[2]
+    basis, upper = work[3:6], work[6:9]
     count = 0
     entering = -1
     entering_multiplier = 0.0

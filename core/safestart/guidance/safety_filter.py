@@ -4,11 +4,14 @@ Its cost (1 + w_u + w_du) |u - c|^2 + const has the minimiser c = (u_nom + w_du 
 the Euclidean projection of c onto the rows of :class:`safestart.guidance.plan.Plan`. When those rows
 contradict each other:
 
-1. the speed-limit rows are dropped and the projection is tried again (a speed limit never outranks the corridor);
-2. if the corridor and keep-out rows themselves contradict the thrust box, the command is the one in the box that
-   minimises the largest violation over those rows, in metres of distance from the tightened face.
+1. the speed-limit rows are dropped (a speed limit never outranks the corridor);
+2. t* is the least possible value, over the thrust box, of the largest violation of the remaining corridor and keep-out
+   rows, in metres of distance from the tightened face (0 when they can all be met);
+3. the command is the one nearest to c among those in the box whose largest violation is t*. Without this last part the
+   minimiser is often not unique (one face binds, the other axes are free) and a corner of the box would waste
+   thrust that the disk then takes from the axis that matters.
 
-Either case is reported. Last comes the projection onto the thrust disk (ball in 3-D).
+The case is reported. Last comes the projection onto the thrust disk (ball in 3-D).
 """
 
 from __future__ import annotations
@@ -29,13 +32,16 @@ from safestart.scenario import Floats
 SOURCES: tuple[ModuleType, ...] = (_projection, _least_violation)
 """Modules whose kernels the filter calls: their text is part of its cache key."""
 
+TIE = 1e-8
+"""Widening of the fallback's rows (scaled command) so that the set of minimisers keeps an interior."""
+
 _project = _projection.project
 _least = _least_violation.least_violation
 
 
 def _build(stamp: int):  # type: ignore[no-untyped-def]
     @njit(cache=True, nogil=True, error_model="numpy")
-    def filter_step(plan, k, x, nominal, previous, bounds, command):  # type: ignore[no-untyped-def]
+    def filter_step(plan, k, x, nominal, previous, command, bounds, work, index):  # type: ignore[no-untyped-def]
         stamp  # noqa: B018  (the cell is part of numba's cache key)
         normals, weights = plan.normals[k], plan.weights[k]
         rows = plan.state[k]
@@ -62,19 +68,22 @@ def _build(stamp: int):  # type: ignore[no-untyped-def]
             worst = max(worst, value)
         feasible = True
         if worst > _projection.VIOLATION:
-            feasible = _project(normals, bounds, command) == FEASIBLE
+            feasible = _project(normals, bounds, command, work, index) == FEASIBLE
         if not feasible:
             for i in range(d):
                 command[i] = scale * (nominal[i] + plan.move_weight * previous[i])
-            centre = command.copy()
-            least = _least(normals, bounds, weights, command)
-            if least <= 0.0:
-                relaxed = bounds.copy()
-                for r in range(m - 2 * d):
-                    if weights[r] == 0.0:
-                        relaxed[r] = math.inf
-                if _project(normals, relaxed, centre) == FEASIBLE:
-                    command[:] = centre
+            centre = work[9]
+            centre[:d] = command[:d]
+            least = _least(normals, bounds, weights, command, work, index)
+            # Rows of the fallback, let out by the least violation; the rest of the box stays as it is.
+            for r in range(m - 2 * d):
+                if weights[r] > 0.0:
+                    bounds[r] += max(0.0, least) / weights[r] + TIE
+                else:
+                    bounds[r] = math.inf
+            # Where rounding makes the shrunken set empty, the minimax solver's own vertex stays.
+            if _project(normals, bounds, centre, work, index) == FEASIBLE:
+                command[:d] = centre[:d]
         length = 0.0
         for i in range(d):
             length += command[i] * command[i]
@@ -117,11 +126,11 @@ def _keep_out(plan, x, normals, bounds, weights):  # type: ignore[no-untyped-def
 
 
 filter_step = _build(source_stamp(*SOURCES))
-"""``filter_step(plan, k, x, nominal, previous, bounds, command) -> feasible``, compiled.
+"""``filter_step(plan, k, x, nominal, previous, command, bounds, work, index) -> feasible``, compiled.
 
 ``k`` is the control step, ``x`` (6,) the LVLH state (m, m/s), ``nominal`` and ``previous`` (d,) commands in m/s^2;
-``bounds`` (rows,) is scratch; the result is written to ``command`` (d,), m/s^2, of length at most a_max. False when
-(7) is infeasible and the command is the fallback's.
+the result is written to ``command`` (d,), m/s^2, of length at most a_max. ``bounds`` (rows,), ``work`` (10, 4) and
+``index`` (4,) integers are scratch. False when (7) is infeasible and the command is the fallback's.
 """
 
 
@@ -130,5 +139,6 @@ def filter_command(
 ) -> tuple[Floats, bool]:
     """Solve (7) once: the command (d,) in m/s^2 and whether (7) was feasible; arguments as for ``filter_step``."""
     command = np.empty(plan.normals.shape[1])
-    feasible = filter_step(plan, step, state, nominal, previous, np.empty(plan.bounds.shape[1]), command)
+    scratch = np.empty(plan.bounds.shape[1]), np.empty((10, 4)), np.empty(4, np.int64)
+    feasible = filter_step(plan, step, state, nominal, previous, command, *scratch)
     return command, bool(feasible)
