@@ -1,0 +1,165 @@
+"""Hamilton-Jacobi reachability on a grid (paper 000, eq. 11), with hj-reachability.
+
+V(x, -T) is the least signed distance to the corridor that thrust can bring about from x: at time T (fixed), or
+at some time up to T (tube). The set of starts is {V <= 0} on the slice of states at rest.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import Any
+
+import numpy as np
+from scipy.interpolate import RegularGridInterpolator
+
+from safestart.corridor import corridor_of
+from safestart.engines.base import EngineResult, Problem, ResultCode
+from safestart.engines.hj_domain import Domain, count_steps, size_domain, start_states, warnings
+from safestart.engines.hj_model import DROPPED_TERM
+from safestart.engines.hj_settings import ENGINE, Settings
+from safestart.engines.hj_solver import Solver
+from safestart.engines.region import restrict
+from safestart.progress import Context
+from safestart.scenario import CorridorShape, Floats, SetKind
+
+# Between two looks at the context: a twentieth of the steps, and no more than a few seconds of work.
+MIN_STRETCHES, NODE_STEPS = 20, 20_000_000
+# Share of the target function's range by which the value may leave it: rounding for the monotone first-order
+# scheme, over- and undershoot (measured: 1 %) for the others. A poisoned boundary leaves it several times over.
+MONOTONE_TOLERANCE, TOLERANCE = 1e-3, 0.05
+
+
+def signed_distance(shape: CorridorShape, points: Floats) -> Floats:
+    """l = max over faces of (A_i p - b_i) / |A_i| in metres, shape (...): negative inside the corridor.
+
+    Exact inside and beside a face; past an edge of the corridor less than the distance, with the same sign.
+    """
+    corridor = corridor_of(shape)
+    distance: Floats = -(corridor.slack(points) / corridor.lengths).min(axis=-1)
+    return distance
+
+
+class HamiltonJacobi:
+    """Level sets on a four-dimensional grid: neither an inner nor an outer bound, its error has no sign."""
+
+    name = ENGINE
+    summary = "Hamilton-Jacobi level sets on a grid (hj-reachability)"
+
+    def solve(self, problem: Problem, context: Context) -> EngineResult:
+        """Step the value function back over the horizon and read its slice at the starts.
+
+        ``arrays`` holds ``margin_unrestricted`` (ny, nx), minus the value at the starts, before the set is cut
+        down to the corridor.
+
+        Raises ``InvalidInput`` for settings it does not know, for a box that does not hold every start and for
+        a grid that needs more time steps than anyone waits for; ``Cancelled`` between stretches of time. A
+        value that is not finite, or that leaves the range it must keep, is ``NUMERICAL_FAILURE``.
+        """
+        settings = Settings.of(problem)
+        domain = size_domain(problem, settings)
+        steps = count_steps(problem, domain, settings.shape)
+        context.step(0.0, problem.horizon, "compiling")
+        target = _target(problem, domain, settings)
+        solver = Solver(problem.scenario, domain, settings, problem.kind, target)
+        detail = _detail(problem, domain, settings, steps, target)
+
+        begin = time.perf_counter()
+        failure = _march(problem, settings, solver, target, steps, context)
+        value = solver.value()
+        if not failure and problem.kind is SetKind.TUBE:
+            excess = float((value - target).max())
+            if excess > _slack(settings, target):
+                failure = f"the tube's value exceeds the target function by {excess:.4g} m"
+        if failure:
+            run = time.perf_counter() - begin
+            code = ResultCode.NUMERICAL_FAILURE
+            return EngineResult(self.name, code, None, None, run, solver.compile_s, failure, detail)
+        field = -_slice(problem, domain, settings, value)
+        mask, margin = restrict(problem, field)
+        run = time.perf_counter() - begin
+        message = "; ".join(detail["warnings"])
+        arrays = {"margin_unrestricted": field}
+        detail["value_min_m"], detail["value_max_m"] = float(value.min()), float(value.max())
+        return EngineResult(
+            self.name, ResultCode.OK, mask, margin, run, solver.compile_s, message, detail, arrays
+        )
+
+
+def _axes(domain: Domain, settings: Settings) -> list[Floats]:
+    return [np.linspace(-half, half, count) for half, count in zip(domain.half, settings.shape, strict=True)]
+
+
+def _target(problem: Problem, domain: Domain, settings: Settings) -> Floats:
+    """l at every node, shape (nx, ny, nvx, nvy): the terminal value."""
+    x, y, _, _ = _axes(domain, settings)
+    points = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1)
+    distance = signed_distance(problem.scenario.corridor, points)
+    return np.broadcast_to(distance[:, :, None, None], settings.shape)
+
+
+def _slack(settings: Settings, target: Floats) -> float:
+    share = MONOTONE_TOLERANCE if settings.accuracy == "low" else TOLERANCE
+    return share * float(target.max() - target.min())
+
+
+def _march(
+    problem: Problem, settings: Settings, solver: Solver, target: Floats, steps: int, context: Context
+) -> str:
+    """Run the horizon in equal stretches; the reason of a numerical failure, or nothing.
+
+    The value is a least value of l over states that the grid holds, so it must stay inside l's range.
+    """
+    batch = min(math.ceil(steps / MIN_STRETCHES), max(1, NODE_STEPS // target.size))
+    stretches = math.ceil(steps / batch)
+    low, high, slack = float(target.min()), float(target.max()), _slack(settings, target)
+    for k in range(stretches):
+        finite, least, largest = solver.advance(problem.horizon / stretches)
+        done = problem.horizon * (k + 1) / stretches
+        if not finite:
+            return f"the value is not finite after {done:g} s"
+        if least < low - slack or largest > high + slack:
+            return (
+                f"after {done:g} s the value lies in [{least:.4g}, {largest:.4g}] m, outside the range "
+                f"[{low:.4g}, {high:.4g}] m of the target function on the grid: the boundary has poisoned it"
+            )
+        context.step(done, problem.horizon)
+    return ""
+
+
+def _slice(problem: Problem, domain: Domain, settings: Settings, value: Floats) -> Floats:
+    """V at the starts (ny, nx), multilinear between nodes; outside the box it would raise, never be NaN.
+
+    A tube's value is at most l at the start itself, which is known exactly; near the apex of the corridor,
+    which is finer than the grid, the interpolated value is not.
+    """
+    states = start_states(problem)
+    found: Floats = RegularGridInterpolator(_axes(domain, settings), value, bounds_error=True)(states)
+    if problem.kind is SetKind.TUBE:
+        found = np.minimum(found, signed_distance(problem.scenario.corridor, states[..., :2]))
+    return found
+
+
+def _detail(
+    problem: Problem, domain: Domain, settings: Settings, steps: int, target: Floats
+) -> dict[str, Any]:
+    """What the answer depends on, JSON-able."""
+    return {
+        "set": problem.kind.value,
+        "rest": problem.rest.value,
+        "accuracy": settings.accuracy,
+        "boundary": settings.boundary,
+        "shape": list(settings.shape),
+        "half_widths": {
+            "x_m": float(domain.half[0]),
+            "y_m": float(domain.half[1]),
+            "v_m_s": float(domain.half[2]),
+        },
+        "spacing": [float(h) for h in domain.spacing(settings.shape)],
+        "time_steps": steps,
+        "target_min_m": float(target.min()),
+        "target_max_m": float(target.max()),
+        "precision": "float32",
+        "model": f"time-invariant body frame; dropped: {DROPPED_TERM}",
+        "warnings": warnings(problem, domain, settings),
+    }

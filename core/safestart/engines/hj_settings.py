@@ -1,0 +1,84 @@
+"""Settings of the Hamilton-Jacobi engine: what a request may say, checked before anything is computed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from safestart.engines.base import Problem
+from safestart.errors import invalid
+from safestart.scenario import number
+
+ENGINE = "hamilton_jacobi"
+
+Shape = tuple[int, int, int, int]
+
+ACCURACIES = ("low", "medium", "high", "very_high")
+BOUNDARIES = ("edge", "extrapolate_away_from_zero")
+DEFAULT_SHAPE: Shape = (41, 41, 15, 15)
+MIN_NODES, MAX_NODES, MAX_TOTAL_NODES = 5, 101, 5_000_000
+
+_PREFIX = f"options.{ENGINE}"
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """Checked settings.
+
+    ``accuracy`` names the scheme of hj-reachability: low (first order, Euler), medium (ENO2, RK2), high
+    (WENO3, RK3), very_high (WENO5, RK3). ``shape`` counts the nodes of (x, y, vx, vy). ``domain`` holds
+    explicit half widths (x m, y m, v m/s), None to size it from the problem. ``boundary`` pads the grid:
+    ``edge`` repeats the last value, ``extrapolate_away_from_zero`` is the library's own default, kept for
+    comparison.
+    """
+
+    accuracy: str = "low"
+    shape: Shape = DEFAULT_SHAPE
+    domain: tuple[float, float, float] | None = None
+    boundary: str = "edge"
+
+    @classmethod
+    def of(cls, problem: Problem) -> Settings:
+        """Settings from ``problem.options["hamilton_jacobi"]``; ``InvalidInput`` on anything unknown."""
+        problem.check_options(ENGINE, ("accuracy", "shape", "domain", "boundary"))
+        return cls(
+            _one_of("accuracy", problem.option(ENGINE, "accuracy", "low"), ACCURACIES),
+            _shape(problem.option(ENGINE, "shape", DEFAULT_SHAPE)),
+            _domain(problem.option(ENGINE, "domain", None)),
+            _one_of("boundary", problem.option(ENGINE, "boundary", "edge"), BOUNDARIES),
+        )
+
+
+def _one_of(name: str, value: Any, known: tuple[str, ...]) -> str:
+    if not isinstance(value, str) or value not in known:
+        raise invalid(f"{_PREFIX}.{name}", f"one of {', '.join(known)}", value)
+    return value
+
+
+def _shape(value: Any) -> Shape:
+    required = (
+        f"four integers in [{MIN_NODES}, {MAX_NODES}] (x, y, vx, vy), at most {MAX_TOTAL_NODES} nodes in all"
+    )
+    field = f"{_PREFIX}.shape"
+    if not isinstance(value, list | tuple) or len(value) != 4:
+        raise invalid(field, required, value)
+    total = 1
+    for count in value:
+        if isinstance(count, bool) or not isinstance(count, int) or not MIN_NODES <= count <= MAX_NODES:
+            raise invalid(field, required, value)
+        total *= count
+    if total > MAX_TOTAL_NODES:
+        raise invalid(field, required, f"{list(value)} with {total} nodes")
+    nx, ny, nvx, nvy = value
+    return nx, ny, nvx, nvy
+
+
+def _domain(value: Any) -> tuple[float, float, float] | None:
+    if value is None:
+        return None
+    keys = ("x_m", "y_m", "v_m_s")
+    if not isinstance(value, Mapping) or set(value) != set(keys):
+        raise invalid(f"{_PREFIX}.domain", f"half widths {', '.join(keys)}", value)
+    x, y, v = (number(f"{_PREFIX}.domain.{key}", value[key], 1e-3, 1e6) for key in keys)
+    return x, y, v
