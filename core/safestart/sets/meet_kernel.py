@@ -36,7 +36,8 @@ def meet_margins(positions: Floats, unit: Floats, vertices: Floats, margin: Floa
                 x, y = px + vertices[j, 0], py + vertices[j, 1]
                 after = unit[j, 0] * y >= unit[j, 1] * x
                 before = unit[j + 1, 0] * y <= unit[j + 1, 1] * x
-                away = unit[j, 0] * x + unit[j, 1] * y < 0.0
+                middle_x, middle_y = unit[j, 0] + unit[j + 1, 0], unit[j, 1] + unit[j + 1, 1]
+                away = middle_x * x + middle_y * y < 0.0
                 if after and before and away:
                     least = min(least, -math.sqrt(x * x + y * y))
         margin[i] = least

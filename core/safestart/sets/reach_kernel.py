@@ -21,7 +21,7 @@ from safestart.scenario import Floats
 
 FINE = 1e-8
 """Accuracy (m) sought for margins near zero, so that the sign is right."""
-COARSE = 1e-4
+COARSE = 2e-5
 """Accuracy (m) sought for margins farther from zero than ``NEAR``."""
 NEAR = 1e-2
 BLOCK = 64
@@ -154,14 +154,15 @@ def _margin_at(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _climb(
-    k: int, best: float, at: float, times: Floats, px: float, py: float,
+    k: int, best: float, at: float, bend: float, times: Floats, px: float, py: float,
     horizon: float, omega: float, half: float, hold: float,
     value: Floats, slope: Floats, nodes: Floats, trig: Floats, raw: Floats, waves: Floats, scan: Floats,
 ) -> tuple[float, float]:  # fmt: skip
     """Polish the local maximum near ``times[k]``; the better of it and (``best``, ``at``).
 
-    Where the two tangents of the bracket cross is the next trial and bounds what is left to gain: exact for a
-    kink, halving the bracket for a parabola.
+    The next trial is where the two tangents of the bracket cross: right for a kink, halving the bracket for a
+    parabola. It ends when the tangents promise no gain and, with second derivatives of the size of ``bend``
+    (m/s^2), the bracket is too narrow for them to be wrong (the sides of a kink may be convex).
     """
     a = b = times[k]
     va, ga = _margin_at(a, px, py, horizon, omega, half, hold, value, slope, nodes, trig, raw, waves, scan)
@@ -178,21 +179,23 @@ def _climb(
         va, ga = _margin_at(
             a, px, py, horizon, omega, half, hold, value, slope, nodes, trig, raw, waves, scan
         )
-    for trial in range(80):
+    for trial in range(100):
         if va > best:
             best, at = va, a
         if vb > best:
             best, at = vb, b
-        if b - a <= 1e-12 * horizon:
+        width = b - a
+        if width <= 1e-12 * horizon:
             break
         t = 0.5 * (a + b)
         if ga > 0.0 and gb < 0.0:
             cross = (vb - va + ga * a - gb * b) / (ga - gb)
-            gain = va + ga * (cross - a) - best
-            if gain <= FINE or (gain <= COARSE and abs(best) > NEAR):
+            goal = COARSE if abs(best) > NEAR else FINE
+            if va + ga * (cross - a) - best <= goal and bend * width * width <= 8.0 * goal:
                 break
-            if trial % 3 < 2 and a < cross < b:
-                t = cross
+            if trial % 4 < 3:
+                # Kept off the ends, so that the bracket closes from both sides.
+                t = min(max(cross, a + 0.05 * width), b - 0.05 * width)
         v, g = _margin_at(t, px, py, horizon, omega, half, hold, value, slope, nodes, trig, raw, waves, scan)
         if g > 0.0 and v >= va:
             a, va, ga = t, v, g
@@ -203,14 +206,15 @@ def _climb(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def reach_margins(
-    points: Floats, times: Floats, horizon: float, omega: float, half: float, hold: float,
+    points: Floats, times: Floats, horizon: float, omega: float, half: float, hold: float, bend: Floats,
     value: Floats, slope: Floats, nodes: Floats, trig: Floats, margin: Floats, when: Floats,
 ) -> None:  # fmt: skip
     """Margin (m) of every start over a window of time, and the time at which it is attained.
 
     ``points`` (P, 2) body-frame starts; ``times`` (T,) ascending, T = 1 asks for that one time;
     ``value``, ``slope`` of a :class:`~safestart.sets.series.ReachSeries` over [0, horizon]; ``nodes`` (J,), J odd,
-    and ``trig`` (J, 2 + 2 K) with sin a, cos a, cos 2ka, sin 2ka. Writes ``margin`` and ``when`` (P,).
+    and ``trig`` (J, 2 + 2 K) with sin a, cos a, cos 2ka, sin 2ka; ``bend`` (2,) the size of d2m/dt2: a constant
+    (m/s^2) and a part per metre of range (1/s^2). Writes ``margin`` and ``when`` (P,).
 
     Coarse pass: min over the nodes at every time, which bounds the margin from above. Every local maximum that
     could still beat the best one is then polished.
@@ -263,8 +267,9 @@ def reach_margins(
             for m in range(1, moments):
                 if coarse[m, i] > coarse[top, i]:
                     top = m
+            curvature = bend[0] + bend[1] * math.hypot(x[i], y[i])
             best, at = _climb(
-                top, -math.inf, times[top], times, x[i], y[i], horizon, omega, half, hold,
+                top, -math.inf, times[top], curvature, times, x[i], y[i], horizon, omega, half, hold,
                 value, slope, nodes, trig, raw, waves, scan,
             )  # fmt: skip
             for m in range(moments):
@@ -273,11 +278,12 @@ def reach_margins(
                 after = coarse[m + 1, i] if m < moments - 1 else -math.inf
                 if m == top or before >= now or after > now:
                     continue
-                # Between nodes a peak rises at most as far as the steeper of its two sides goes on.
-                rise = max(now - before if m > 0 else 0.0, now - after if m < moments - 1 else 0.0)
+                # Between nodes a peak rises about as far as the steeper of its two sides goes on; twice that
+                # leaves room for sides that steepen.
+                rise = 2.0 * max(now - before if m > 0 else 0.0, now - after if m < moments - 1 else 0.0)
                 if now + rise > best:
                     best, at = _climb(
-                        m, best, at, times, x[i], y[i], horizon, omega, half, hold,
+                        m, best, at, curvature, times, x[i], y[i], horizon, omega, half, hold,
                         value, slope, nodes, trig, raw, waves, scan,
                     )  # fmt: skip
             margin[first + i], when[first + i] = best, at

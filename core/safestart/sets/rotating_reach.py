@@ -29,6 +29,7 @@ class RotatingReach:
     arc: DualArc
     tumble_rate: float
     fastest: float
+    bend: Floats
     nodes: Floats
     trig: Floats
 
@@ -47,7 +48,10 @@ class RotatingReach:
         series = reach_series(motion, start_velocity, horizon, a_max)
         nodes = arc.nodes(DIRECTIONS)
         trig = trig_table(nodes, (series.value.shape[1] - DRIFT - 1) // 2)
-        return cls(series, arc, tumble_rate, max(tumble_rate, mean_motion), nodes, trig)
+        # Size of d2m/dt2: thrust, and the centripetal, Coriolis and gravity terms of a drifting start.
+        turning = 3.0 * tumble_rate**2 + 12.0 * tumble_rate * mean_motion + 10.0 * mean_motion**2
+        bend = np.array([4.0 * a_max, turning])
+        return cls(series, arc, tumble_rate, max(tumble_rate, mean_motion), bend, nodes, trig)
 
     def at(self, points: Floats, moment: float) -> Floats:
         """Margin (P,) in metres of starts (P, 2) at one time (s); NaN when the series did not converge."""
@@ -66,7 +70,7 @@ class RotatingReach:
         if not series.converged:
             return np.full(len(points), np.nan), np.full(len(points), np.nan)
         reach_margins(
-            points, times, series.horizon, self.tumble_rate, arc.half_width, arc.hold,
+            points, times, series.horizon, self.tumble_rate, arc.half_width, arc.hold, self.bend,
             series.value, series.slope, self.nodes, self.trig, margin, when,
         )  # fmt: skip
         return margin, when
