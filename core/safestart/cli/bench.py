@@ -26,7 +26,7 @@ def register(app: typer.Typer) -> None:
         ratios: dict[str, float] = {}
         times: dict[str, float] = {}
         for name in suite.BENCHMARKS:
-            err.print(f"{name} ...", highlight=False)
+            err.print(f"{name} ...")
             measured = importlib.import_module(f"benchmarks.{name}").measure()
             ratios |= measured["ratios"]
             times |= measured["times"]

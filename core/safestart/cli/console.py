@@ -24,8 +24,19 @@ from safestart.progress import Context
 
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout and nothing else.")]
 
-out = Console()
-err = Console(stderr=True)
+# A pipe or a log has no width of its own: tables keep theirs there, a terminal folds them.
+_WIDE = 124
+
+
+def _console(*, stderr: bool) -> Console:
+    console = Console(stderr=stderr, highlight=False)
+    if not console.is_terminal:
+        console.width = _WIDE
+    return console
+
+
+out = _console(stderr=False)
+err = _console(stderr=True)
 
 
 def print_json(document: Any) -> None:
@@ -77,19 +88,20 @@ def _bar(title: str) -> Iterator[Context]:
 
 @contextmanager
 def _lines(title: str) -> Iterator[Context]:
-    start, shown = time.monotonic(), -10.0
+    start, shown, first = time.monotonic(), -10.0, 0.0
 
     def report(done: float, total: float, message: str) -> None:
-        nonlocal shown
+        nonlocal shown, first
         percent = 100.0 * done / total if total else 100.0
+        if shown < 0.0:
+            # Work that was under way already says nothing about the speed from here on.
+            first = percent
         if percent < shown + 10.0:
             return
         shown = percent
         elapsed = time.monotonic() - start
-        left = f", {elapsed * (100.0 - percent) / percent:.0f} s left" if percent > 0 else ""
-        err.print(
-            f"{title}: {percent:3.0f} % {message} ({elapsed:.0f} s{left})", highlight=False, soft_wrap=True
-        )
+        left = f", {elapsed * (100.0 - percent) / (percent - first):.0f} s left" if percent > first else ""
+        err.print(f"{title}: {percent:3.0f} % {message} ({elapsed:.0f} s{left})", soft_wrap=True)
 
     yield Context(report)
-    err.print(f"{title}: done in {time.monotonic() - start:.1f} s", highlight=False)
+    err.print(f"{title}: done in {time.monotonic() - start:.1f} s")

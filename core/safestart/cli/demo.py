@@ -45,11 +45,9 @@ def register(app: typer.Typer) -> None:
             print_json({"rows": rows, "differences": list(DIFFERENCES), "jobs": urls})
             return
         show_table2(rows)
-        out.print(
-            "\nStored; [bold]safestart up[/] serves them again (the database keeps them):", highlight=False
-        )
+        out.print("\nStored; [bold]safestart up[/] serves them again (the database keeps them):")
         for url in urls:
-            out.print(f"  {url}", highlight=False, soft_wrap=True)
+            out.print(f"  {url}", soft_wrap=True)
 
 
 @contextmanager
@@ -93,7 +91,7 @@ def _await_ready(client: httpx.Client, child: subprocess.Popen[bytes]) -> None:
             )
         try:
             if client.get("/readyz").status_code == httpx.codes.OK:
-                err.print(f"service ready after {time.monotonic() - start:.1f} s", highlight=False)
+                err.print(f"service ready after {time.monotonic() - start:.1f} s")
                 return
         except httpx.TransportError:
             pass
@@ -118,7 +116,6 @@ def _submit(client: httpx.Client, rate: float) -> str:
         f"{rate:g} deg/s: certificate in {1e3 * (time.monotonic() - start):.0f} ms "
         f"(r_sync {certificate['r_sync_m']:.1f} m, {100 * certificate['safe_fraction']:.1f} % of the corridor), "
         f"job {answer['jobID']} queued",
-        highlight=False,
         soft_wrap=True,
     )
     job: str = answer["jobID"]

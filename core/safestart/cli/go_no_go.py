@@ -42,13 +42,12 @@ def register(app: typer.Typer) -> None:
         go = answer["verdict"][0] == "GO"
         out.print(
             f"[bold {'green' if go else 'red'}]{answer['verdict'][0]}[/]: {answer['reason'][0]}",
-            highlight=False,
         )
         r_sync = answer["r_sync_m"]
         shown = f"{r_sync:.2f} m" if r_sync is not None else f"none ({answer['r_sync_reason']})"
-        out.print(f"  synchronization range limit: {shown}", highlight=False)
+        out.print(f"  synchronization range limit: {shown}")
         for face, margin in zip(answer["faces"], answer["face_margins_m"][0], strict=True):
-            out.print(f"  margin {face:<11} {margin:9.2f} m", highlight=False)
+            out.print(f"  margin {face:<11} {margin:9.2f} m")
 
 
 def single(answer: dict[str, object]) -> dict[str, object]:

@@ -71,4 +71,4 @@ def _write(path: Path, result: Execution) -> None:
     except OSError as error:
         raise invalid("--output", "a writable path", f"{path} ({error.strerror})") from None
     for item in written:
-        err.print(f"wrote {item}", highlight=False, soft_wrap=True)
+        err.print(f"wrote {item}", soft_wrap=True)

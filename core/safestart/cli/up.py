@@ -32,6 +32,5 @@ def register(app: typer.Typer) -> None:
         ]
         err.print(
             f"safestart: dashboard at http://{host}:{port}/dashboard (Ctrl-C stops everything)",
-            highlight=False,
         )
         raise typer.Exit(Supervisor(children).run())
