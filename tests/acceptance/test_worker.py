@@ -1,0 +1,211 @@
+"""A real worker on a real database: ends, progress, dismissal, time limits, deaths of every kind."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import Any
+
+import psutil
+import pytest
+
+from safestart.comparable import comparable
+from safestart.errors import JobFailed
+from safestart.processes.registry import process
+from safestart.store.records import JobStatus
+from tests.acceptance.worker_process import LEASE_S, Farm, over, until
+
+CERTIFICATE: dict[str, Any] = {"omega_t_deg_s": 3, "a_max_m_s2": 0.1}
+# About a hundred steps of some 50 ms, each of them reported: long enough to be disturbed, polls for a stop.
+STEADY: dict[str, Any] = {
+    "omega_t_deg_s": [0.5 * i for i in range(1, 51)],
+    "a_max_m_s2": [0.05, 0.1],
+    "grid": {"nx": 1000, "ny": 1000, "y_max_m": 150},
+}
+# Minutes of work in steps of seconds, the first of which is a compilation: does not poll in time.
+STUBBORN: dict[str, Any] = {
+    **CERTIFICATE,
+    "engines": ["hamilton_jacobi"],
+    "hamilton_jacobi": {"nodes_xy": 81, "nodes_v": 21, "accuracy": "very_high"},
+}
+
+
+@pytest.fixture(scope="module")
+def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Farm]:
+    farm = Farm(tmp_path_factory.mktemp("farm"))
+    yield farm
+    farm.close()
+
+
+@pytest.fixture
+def farm(shared: Farm) -> Farm:
+    """The module's farm with its worker running, whatever the test before did to it."""
+    shared.start()
+    return shared
+
+
+@pytest.fixture(scope="module")
+def undisturbed(shared: Farm) -> str:
+    """Id of a steady job that nothing happened to."""
+    shared.start()
+    job = shared.submit("coverage", STEADY)
+    assert shared.ended(job).status is JobStatus.SUCCESSFUL
+    return job
+
+
+def result_of(farm: Farm, job: str) -> Any:
+    return comparable(farm.results.result(job).document)
+
+
+def statuses(farm: Farm, job: str) -> list[str]:
+    return [event.data["status"] for event in farm.jobs.events(job) if event.kind == "status"]
+
+
+def test_a_job_is_picked_up_and_ends_with_its_result(farm: Farm) -> None:
+    farm.ended(farm.submit("certificate", CERTIFICATE))
+    start = time.monotonic()
+    job = farm.submit("certificate", CERTIFICATE)
+    ended = farm.ended(job)
+    assert time.monotonic() - start < 3.0
+    assert ended.status is JobStatus.SUCCESSFUL, ended
+    assert (ended.progress, ended.attempts, ended.owner) == (100.0, 1, None)
+    document = farm.results.result(job).document
+    process("certificate").outputs.model_validate(document["outputs"])
+    assert ended.versions is not None
+    assert "numpy" in ended.versions["packages"]
+    assert "warming up kernels ... done in" in farm.said()
+    assert farm.jobs.workers_alive() == 1
+
+
+def test_progress_is_real_and_never_falls(farm: Farm, undisturbed: str) -> None:
+    events = [event for event in farm.jobs.events(undisturbed) if event.kind == "progress"]
+    percents = [event.data["progress"] for event in events]
+    assert len(set(percents)) >= 4, percents
+    assert percents == sorted(percents)
+    assert 0.0 <= percents[0] < 50.0
+    assert percents[-1] < 100.0
+    assert all(event.data["eta_s"] >= 0.0 for event in events if event.data["eta_s"] is not None)
+    assert len({event.data["message"] for event in events}) >= 4
+    gaps = [(b.at - a.at).total_seconds() for a, b in pairwise(events)]
+    assert min(gaps[:-1]) > 0.3, "at most about two a second"
+    assert statuses(farm, undisturbed) == ["accepted", "running", "successful"]
+
+
+def test_bad_inputs_fail_with_the_field_and_what_it_requires(farm: Farm) -> None:
+    job = farm.submit("certificate", {**CERTIFICATE, "a_max_m_s2": -1})
+    ended = farm.ended(job)
+    assert ended.status is JobStatus.FAILED
+    assert ended.problem is not None
+    assert (ended.problem["type"], ended.problem["status"]) == ("urn:safestart:problem:invalid-input", 422)
+    assert ended.problem["field"] == "a_max_m_s2"
+    assert "greater than 0" in ended.problem["required"]
+    with pytest.raises(JobFailed, match="a_max_m_s2"):
+        farm.results.result(job)
+
+
+def test_a_process_nobody_knows_fails_with_the_known_ones(farm: Farm) -> None:
+    ended = farm.ended(farm.submit("alchemy", {}))
+    assert ended.problem is not None
+    assert ended.problem["type"] == "urn:safestart:problem:not-found"
+    assert "certificate" in ended.problem["detail"]
+
+
+def test_dismissing_leaves_the_neighbour_untouched(farm: Farm, undisturbed: str) -> None:
+    stubborn, polite = farm.submit("benchmark", STUBBORN), farm.submit("coverage", STEADY)
+    neighbour_process = farm.computing(polite)
+    killed = farm.computing(stubborn)
+    queued = farm.submit("coverage", STEADY)
+    assert farm.jobs.position(queued) == 1
+    assert farm.jobs.dismiss(queued).status is JobStatus.DISMISSED
+    start = time.monotonic()
+    farm.jobs.dismiss(stubborn)
+    assert farm.ended(stubborn, 15).status is JobStatus.DISMISSED
+    print(f"a task that does not poll was ended in {time.monotonic() - start:.1f} s")
+    assert over([killed])
+    assert farm.ended(polite).status is JobStatus.SUCCESSFUL
+    assert neighbour_process.is_running()
+    assert result_of(farm, polite) == result_of(farm, undisturbed)
+    assert not [event for event in farm.jobs.events(polite) if event.kind == "log"]
+    assert statuses(farm, queued) == ["accepted", "dismissed"]
+
+
+def test_a_task_that_polls_keeps_its_process_when_dismissed(farm: Farm) -> None:
+    job = farm.submit("coverage", STEADY)
+    running_in = farm.computing(job)
+    farm.jobs.dismiss(job)
+    assert farm.ended(job, 10).status is JobStatus.DISMISSED
+    assert running_in.is_running()
+    assert running_in.status() != psutil.STATUS_ZOMBIE
+
+
+def test_a_job_that_runs_too_long_fails_with_the_reason(farm: Farm) -> None:
+    ended = farm.ended(farm.submit("benchmark", STUBBORN, timeout_s=1.5), 30)
+    assert ended.status is JobStatus.FAILED
+    assert ended.problem is not None
+    assert ended.problem["type"] == "urn:safestart:problem:timeout"
+    assert "after 1.5 s" in ended.problem["detail"]
+
+
+def test_a_killed_task_process_costs_time_but_not_the_result(farm: Farm, undisturbed: str) -> None:
+    job = farm.submit("coverage", STEADY)
+    farm.computing(job, 10.0).kill()
+    start = time.monotonic()
+    until(lambda: farm.said().count(f"job={job} runs in process") == 2, 30, "the second start")
+    print(f"the task ran again {time.monotonic() - start:.1f} s after its process was killed")
+    ended = farm.ended(job)
+    assert (ended.status, ended.attempts) == (JobStatus.SUCCESSFUL, 1)
+    assert result_of(farm, job) == result_of(farm, undisturbed)
+    assert farm.results.result(job).sha256 == farm.results.result(undisturbed).sha256
+    notes = [event.data["message"] for event in farm.jobs.events(job) if event.kind == "log"]
+    assert notes == ["its task process was lost; running again (start 2)"]
+
+
+def test_a_job_that_takes_down_every_task_process_fails_as_poison(farm: Farm) -> None:
+    job = farm.submit("coverage", STEADY)
+    for start in (1, 2):
+        until(lambda n=start: farm.said().count(f"job={job} runs in process") == n, 60, f"start {start}")
+        farm.computing(job).kill()
+    ended = farm.ended(job)
+    assert ended.status is JobStatus.FAILED
+    assert ended.problem is not None
+    assert "2 task processes in a row died" in ended.problem["detail"]
+
+
+def test_a_killed_worker_leaves_no_process_and_the_next_one_finishes_its_job(
+    farm: Farm, undisturbed: str
+) -> None:
+    job = farm.submit("coverage", STEADY)
+    farm.computing(job, 10.0)
+    children = farm.processes()
+    assert len(children) >= 2
+    assert farm.worker is not None
+    farm.worker.kill()
+    farm.worker.wait()
+    killed = time.monotonic()
+    until(lambda: over(children), 10, "the end of the task processes")
+    print(f"task processes gone {time.monotonic() - killed:.1f} s after their worker was killed")
+    assert farm.jobs.get(job).status is JobStatus.RUNNING
+    time.sleep(max(0.0, killed + LEASE_S + 0.5 - time.monotonic()))
+    farm.start()
+    ended = farm.ended(job)
+    assert (ended.status, ended.attempts) == (JobStatus.SUCCESSFUL, 2)
+    assert result_of(farm, job) == result_of(farm, undisturbed)
+    assert statuses(farm, job) == ["accepted", "running", "running", "successful"]
+
+
+def test_a_stopped_worker_gives_its_job_back(farm: Farm) -> None:
+    job = farm.submit("benchmark", STUBBORN)
+    farm.computing(job)
+    children = farm.processes()
+    assert farm.worker is not None
+    start = time.monotonic()
+    farm.worker.terminate()
+    assert farm.worker.wait(15) == 0
+    print(f"stopped in {time.monotonic() - start:.1f} s")
+    waiting = farm.jobs.get(job)
+    assert (waiting.status, waiting.attempts, waiting.owner) == (JobStatus.ACCEPTED, 0, None)
+    assert "its worker stopped" in waiting.message
+    until(lambda: over(children), 5, "the end of the task processes")
+    assert farm.jobs.workers_alive() == 0
+    assert farm.jobs.dismiss(job).status is JobStatus.DISMISSED
