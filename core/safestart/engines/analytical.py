@@ -11,7 +11,7 @@ from safestart.progress import Context
 
 
 class Analytical:
-    """Sound, partial: a certified start stays in the corridor under the best control; horizon plays no part."""
+    """The certificate's region, whatever the horizon; nearly sound (see docs/theory/closed-form.md), partial."""
 
     name = "analytical"
     summary = "closed-form certificate: directional erosion and synchronization range"

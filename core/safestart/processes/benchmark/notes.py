@@ -32,8 +32,8 @@ def notes(inputs: BenchmarkInputs, rows: Sequence[dict[str, Any]], contained: fl
             else "no horizon up to 600 s holds all of them at once"
         )
         out.append(
-            f"{100 * outside:.1f} % of the certified cells are outside the exact set at {inputs.horizon_s:g} s: the "
-            f"horizon is too short to fly there, not the certificate wrong; {when}."
+            f"{100 * outside:.1f} % of the certified cells are outside the exact set: no thrust brings them to the "
+            f"corridor at {inputs.horizon_s:g} s, so the certificate is wrong there (known next to the range limit); {when}."
         )
     hj = by_engine.get("hamilton_jacobi", {})
     if hj.get("iou_vs_exact") is not None and hj["iou_vs_exact"] < 1.0:

@@ -33,7 +33,7 @@ SPEC = ProcessSpec(
     title="Closed-form safe-start certificate",
     description=(
         "Certifies every point of a body-frame grid at once: synchronization radius, safe fraction of the corridor, "
-        "mask and margin in metres. Sufficient, not necessary."
+        "mask and margin in metres. The paper's conditions; not a proof next to the range limit."
     ),
     inputs=CertificateInputs,
     outputs=CertificateOutputs,

@@ -56,8 +56,9 @@ SPEC = ProcessSpec(
     id="go-no-go",
     title="Go/no-go for starts at rest",
     description=(
-        "Answers at once, by the closed-form certificate (directional erosion and synchronization range), whether "
-        "a chaser at rest may start its approach. GO is sufficient; NO_GO means that the start is not certified."
+        "Answers at once, by the paper's closed form (directional erosion and synchronization range), whether a "
+        "chaser at rest may start its approach. NO_GO means not certified. GO is no proof: a sliver of certified "
+        "starts, about 3 m wide next to the range limit, cannot stay in the corridor; keep metres of margin there."
     ),
     inputs=GoNoGoInputs,
     outputs=GoNoGoOutputs,
