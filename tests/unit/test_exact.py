@@ -12,8 +12,11 @@ from scipy import sparse
 from safestart.corridor import corridor_of
 from safestart.dynamics.cwh import planar_input, planar_transition
 from safestart.engines import exact
-from safestart.engines.base import Problem, ResultCode
+from safestart.engines.backward import Backward
+from safestart.engines.base import Engine, Problem, ResultCode
 from safestart.engines.exact import Exact, containment_horizon, reach_margin
+from safestart.engines.forward import Forward
+from safestart.engines.region import restrict
 from safestart.errors import InvalidInput
 from safestart.progress import Context
 from safestart.scenario import Chaser, CorridorShape, Floats, Grid, Rest, Scenario, SetKind, Target
@@ -189,6 +192,23 @@ class TestEngine:
         assert (free[~self.problem.inside()] >= 0.0).sum() > 200
         assert (free[self.problem.inside()] >= -1e-9).all()
         assert ((result.arrays["reach_time"] >= 0.0) & (result.arrays["reach_time"] <= 40.0)).all()
+
+    @pytest.mark.parametrize("engine", [Exact, Backward, Forward])
+    @pytest.mark.parametrize("ny", [31, 40, 101])
+    def test_starts_on_the_corridors_edge_belong_to_the_tube(self, engine: type[Engine], ny: int) -> None:
+        """At rest in the body frame and thrown outwards: t = 0 is their only moment in the corridor."""
+        shape = CorridorShape(c_x=0.7, x0=0.3, hold_radius=0.1)
+        scenario = Scenario(Target(math.radians(20.0)), Chaser(0.01), shape)
+        problem = Problem(scenario, Grid(31, ny, 60.0), 0.6, 0.2, Rest.BODY, SetKind.TUBE)
+        np.testing.assert_array_equal(engine().solve(problem, Context()).mask, problem.inside())
+
+    def test_restriction_forgives_round_off_only(self) -> None:
+        problem = Problem(Scenario.of(3.0, 0.1), Grid(5, 5))
+        inside = problem.inside()
+        for reach, belongs in [(1.0, True), (0.0, True), (-1e-12, True), (-1e-6, False)]:
+            mask, margin = restrict(problem, np.full(inside.shape, reach))
+            np.testing.assert_array_equal(mask, inside & belongs)
+            np.testing.assert_array_equal(margin >= 0.0, mask)
 
     @pytest.mark.parametrize("rest", Rest)
     @pytest.mark.parametrize("rate", [0.0, 1.0, 5.0])
