@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, Literal
 
 from pydantic import Field
 
 from safestart.processes.base import WireModel
-from safestart.processes.go_no_go.run import run
+from safestart.processes.go_no_go.run import OUTSIDE, run
 from safestart.processes.go_no_go.spec import GoNoGoInputs, StateInput
-from safestart.processes.wire import CorridorInput, Thrust, TumbleRate
+from safestart.processes.wire import NO_SYNC_LIMIT, CorridorInput, Thrust, TumbleRate
 from safestart.progress import Context
 from safestart.scenario import MAX_MEAN_MOTION, MAX_RANGE, Rest
+from safestart_service.scalar import PointCertificate, certify_point, prepare
 
 _SILENT = Context()
 
@@ -73,8 +75,58 @@ class GoNoGoAnswer(WireModel):
 
 
 def flat_answer(query: GoNoGoQuery) -> dict[str, Any]:
-    """The go-no-go document of a single state, without its arrays of length one."""
-    arrays = run(query.inputs(), _SILENT).document
+    """The go-no-go document of a single state, without arrays of length one."""
+    shape = (query.c_x, query.c_z, query.x0_m, query.z0_m, query.r_h_m)
+    z = query.z_m
+    prepared = prepare(
+        query.omega_t_deg_s, query.a_max_m_s2, query.mean_motion_rad_s, shape, query.rest, z is not None
+    )
+    point = certify_point(prepared, query.x_m, query.y_m, 0.0 if z is None else z)
+    if point is None:
+        return _from_arrays(run(query.inputs(), _SILENT).document)
+    binding, violated, reason = _explain(prepared.faces, point)
+    unlimited = prepared.limit == math.inf
+    return {
+        "verdict": "GO" if point.margin > 0.0 else "NO_GO",
+        "margin_m": point.margin,
+        "face_margins_m": dict(zip(prepared.faces, point.face_margin, strict=True)),
+        "range_margin_m": None if unlimited else point.range_margin,
+        "r_sync_m": None if unlimited else prepared.limit,
+        "r_sync_reason": NO_SYNC_LIMIT if unlimited else None,
+        "binding": binding,
+        "violated_faces": violated,
+        "reason": reason,
+        "method": "closed_form",
+        "rest": query.rest.value,
+    }
+
+
+def _explain(faces: tuple[str, ...], point: PointCertificate) -> tuple[str, list[str], str]:
+    """Binding constraint, violated faces and the sentence, in the words of the go-no-go process.
+
+    The tests hold every word of it against the process's own answer.
+    """
+    tight = point.face_margin.index(min(point.face_margin))
+    name = "range" if point.range_margin <= point.face_margin[tight] else faces[tight]
+    violated = [face for face, slack in zip(faces, point.slack, strict=True) if slack < 0.0]
+    if violated:
+        if name not in violated:
+            name = violated[0]
+        return name, violated, f"{OUTSIDE}: violates {', '.join(violated)}"
+    if point.margin > 0.0:
+        return name, violated, f"certified with {point.margin:.2f} m to spare at {name}"
+    if name == "range":
+        beyond = f"{-point.range_margin:.2f} m beyond the range within which the rotation can be matched"
+        return name, violated, beyond
+    return (
+        name,
+        violated,
+        f"the rotation consumes the slack of {name} before full thrust arrests it ({-point.margin:.2f} m short)",
+    )
+
+
+def _from_arrays(arrays: dict[str, Any]) -> dict[str, Any]:
+    """The process's document of one state, flattened."""
     return {
         "verdict": arrays["verdict"][0],
         "margin_m": arrays["margin_m"][0],

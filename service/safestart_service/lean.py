@@ -21,7 +21,13 @@ from safestart.processes.base import validation_error
 
 def query_values(raw: bytes) -> dict[str, str]:
     """Parameters of a query string; raises ``InvalidInput`` when one comes twice, as it is unclear which counts."""
-    pairs = parse_qsl(raw.decode("latin-1"), keep_blank_values=True)
+    text = raw.decode("latin-1")
+    if "%" in text or "+" in text:
+        pairs = parse_qsl(text, keep_blank_values=True)
+    else:  # nothing to unescape, which is the usual case
+        pairs = [
+            (name, value) for name, _, value in (part.partition("=") for part in text.split("&") if part)
+        ]
     values = dict(pairs)
     if len(values) != len(pairs):
         seen: set[str] = set()

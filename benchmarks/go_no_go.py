@@ -1,0 +1,133 @@
+"""GET /go-no-go against a bare FastAPI endpoint that returns a constant document of the same size.
+
+Both run as ``uvicorn`` with uvloop and httptools, one process each, and are loaded in turns (A B A B) from this
+process, so that a change of the machine's load meets both.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import urllib.request
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+from benchmarks.load import requests_per_second
+
+QUESTION = "/go-no-go?omega_t_deg_s=3&a_max_m_s2=0.1&x_m=5&y_m=40"
+# A start moves from call to call, the operating point seldom: 8 operating points, 50 starts each.
+QUESTIONS = tuple(
+    f"/go-no-go?omega_t_deg_s={omega}&a_max_m_s2={thrust}&x_m={x}&y_m=40"
+    for omega in (1, 2, 3, 4)
+    for thrust in (0.1, 0.2)
+    for x in range(-25, 25)
+)
+# Never the same operating point twice within what the service remembers.
+FRESH = tuple(
+    f"/go-no-go?omega_t_deg_s={1 + k * 1e-4:.4f}&a_max_m_s2=0.1&x_m=5&y_m=40" for k in range(20_000)
+)
+ROOT = Path(__file__).resolve().parents[1]
+START_LIMIT_S = 30.0
+
+
+def measure(seconds: float = 2.0, repeats: int = 5) -> dict[str, Any]:
+    """Requests per second of both, and the median of the pairwise ratios.
+
+    ``ratio`` is against FastAPI's ordinary endpoint, ``ratio_encoded`` against one that sends prepared bytes;
+    ``ratio_fresh`` is against the ordinary one when every question has another operating point.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        url = f"sqlite:///{Path(folder) / 'bench.sqlite3'}"
+        with _server(
+            "safestart_service.app:create_app", "/healthz", factory=True, SAFESTART_DATABASE_URL=url
+        ) as ours:
+            with urllib.request.urlopen(f"http://127.0.0.1:{ours}{QUESTION}") as answer:
+                document = json.loads(answer.read())
+            peer = _server(
+                "benchmarks.peers.constant_service:app", "/encoded", CONSTANT_DOCUMENT=json.dumps(document)
+            )
+            with peer as bare:
+                return _compare(ours, bare, seconds, repeats)
+
+
+def _compare(ours: int, bare: int, seconds: float, repeats: int) -> dict[str, Any]:
+    calls = {
+        "service": (ours, QUESTIONS),
+        "bare": (bare, ("/constant",)),
+        "encoded": (bare, ("/encoded",)),
+        "fresh": (ours, FRESH),
+    }
+    rates: dict[str, list[float]] = {name: [] for name in calls}
+    for port, paths in calls.values():
+        requests_per_second(port, paths, 0.5)  # warm up
+    for _ in range(repeats):
+        for name, (port, paths) in calls.items():
+            rates[name].append(requests_per_second(port, paths, seconds))
+
+    def ratio(peer: str, service: str = "service") -> float:
+        return median(a / b for a, b in zip(rates[service], rates[peer], strict=True))
+
+    return {
+        "ratio": ratio("bare"),
+        "ratio_encoded": ratio("encoded"),
+        "ratio_fresh": ratio("bare", "fresh"),
+        "rps_service": median(rates["service"]),
+        "rps_bare": median(rates["bare"]),
+        "rps_encoded": median(rates["encoded"]),
+        "repeats": repeats,
+        "seconds": seconds,
+        "ratios": {"go_no_go_rps": ratio("bare")},
+        "times": {},
+    }
+
+
+@contextmanager
+def _server(target: str, probe: str, *, factory: bool = False, **environment: str) -> Iterator[int]:
+    """A uvicorn process on a free loopback port that answers ``probe``; ended on leaving."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    options = ["--loop", "uvloop", "--http", "httptools", "--no-access-log", "--log-level", "warning"]
+    process = subprocess.Popen(
+        [
+            sys.executable,
+            "-m",
+            "uvicorn",
+            target,
+            "--port",
+            str(port),
+            *options,
+            *(["--factory"] if factory else []),
+        ],
+        cwd=ROOT,
+        env={**os.environ, **environment},
+    )
+    try:
+        _wait(port, probe, process)
+        yield port
+    finally:
+        process.terminate()
+        process.wait(timeout=30)
+
+
+def _wait(port: int, probe: str, process: subprocess.Popen[bytes]) -> None:
+    deadline = time.monotonic() + START_LIMIT_S
+    while time.monotonic() < deadline and process.poll() is None:
+        try:
+            with urllib.request.urlopen(f"http://127.0.0.1:{port}{probe}", timeout=2):
+                return
+        except OSError:
+            time.sleep(0.05)
+    raise RuntimeError(f"the server on port {port} did not answer {probe} within {START_LIMIT_S:g} s")
+
+
+if __name__ == "__main__":
+    print(json.dumps(measure(), indent=2))
