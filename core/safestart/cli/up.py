@@ -8,7 +8,6 @@ from typing import Annotated
 import typer
 
 from safestart.cli.console import err
-from safestart.settings import settings
 
 
 def register(app: typer.Typer) -> None:
@@ -20,6 +19,7 @@ def register(app: typer.Typer) -> None:
         port: Annotated[int, typer.Option(help="Port to bind to; -1: the setting's.")] = -1,
     ) -> None:
         """Start everything on this machine and keep it running; Ctrl-C stops every part."""
+        from safestart.settings import settings
         from safestart.supervise import Child, Supervisor
 
         configured = settings()
