@@ -14,7 +14,8 @@ from distributed.system import MEMORY_LIMIT
 
 from safestart.errors import InvalidInput, Unavailable
 from safestart.store.records import Claim
-from safestart_worker.task import Outcome, get_ready, request_stop, run_job
+from safestart.warmup import warm
+from safestart_worker.task import Outcome, load, request_stop, run_job
 
 log = logging.getLogger("safestart.worker")
 
@@ -22,6 +23,8 @@ CONNECT_TIMEOUT_S = 10.0
 # How long a task that polls gets to stop by itself, and how long a replaced process may take to come back.
 STOP_GRACE_S = 1.0
 RESTART_TIMEOUT_S = 30.0
+# What a stopping worker spends at most on its tasks on a cluster that stays.
+LEAVE_TIMEOUT_S = 4.0
 # How long a local process that must go gets before it is killed.
 KILL_TIMEOUT_S = 0.5
 _MEMORY_SHARE = 0.9
@@ -55,7 +58,7 @@ class Cluster:
         """Number of tasks that can run at once now."""
         return sum((await self._client.nthreads()).values())
 
-    def submit(self, claim: Claim, key: str) -> Future:
+    def submit(self, claim: Claim, key: str) -> Future[Outcome]:
         """Start the job; Dask runs it again if its process dies, and gives up after allowed-failures deaths."""
         return self._client.submit(
             run_job,
@@ -68,7 +71,7 @@ class Cluster:
             retries=0,
         )
 
-    async def stop(self, future: Future, outcome: asyncio.Task[Outcome]) -> None:
+    async def stop(self, future: Future[Outcome], outcome: asyncio.Task[Outcome]) -> None:
         """End a task: ask it first, then replace its process. Returns when it no longer computes."""
         addresses = await self._running_at(future.key)
         for address in addresses:
@@ -90,27 +93,28 @@ class Cluster:
             if nanny.worker_address in addresses:
                 await nanny.kill(timeout=KILL_TIMEOUT_S)
 
-    async def ask_to_stop(self, future: Future) -> None:
-        """Give up a task without waiting for its end."""
-        for address in await self._running_at(future.key):
-            await self._client.run(request_stop, future.key, workers=[address], wait=False)
-        await future.cancel()
+    async def leave(self, future: Future[Outcome], outcome: asyncio.Task[Outcome]) -> None:
+        """End a task whose job somebody else will run, as far as that goes in a short time."""
+        if self._local is None:  # the embedded cluster ends with us
+            with suppress(TimeoutError, OSError):
+                await asyncio.wait_for(self.stop(future, outcome), LEAVE_TIMEOUT_S)
 
     async def warm_up(self) -> None:
-        """Compile the kernels in one task process, whose cache on disk then serves the others."""
+        """Load the processes everywhere; compile in one task process, whose cache on disk serves the others."""
         addresses = list(await self._client.nthreads())
-        for group in (addresses[:1], addresses[1:]):
-            tasks = [self._client.submit(get_ready, workers=[a], pure=False) for a in group]
-            await asyncio.gather(*(task.result() for task in tasks))
+        for function, group in ((load, addresses), (warm, addresses[:1]), (warm, addresses[1:])):
+            tasks = [self._client.submit(function, workers=[a], pure=False) for a in group]
+            await self._client.gather(tasks)
 
     async def close(self) -> None:
         """End the embedded task processes at once, busy ones too: their jobs are back in the queue."""
+        logging.getLogger("distributed.nanny").setLevel(logging.ERROR)  # that it must kill is what we ask for
         await asyncio.gather(*(nanny.close(timeout=KILL_TIMEOUT_S) for nanny in self._nannies()))
 
     def _nannies(self) -> list[Nanny]:
         return [] if self._local is None else list(self._local.workers.values())
 
-    async def _running_at(self, key: str) -> list[str]:
+    async def _running_at(self, key: object) -> list[str]:
         processing = await self._client.processing()
         return [address for address, keys in processing.items() if key in keys]
 

@@ -22,6 +22,9 @@ log = logging.getLogger("safestart.worker")
 HEARTBEAT_S = 3.0
 # While the database is away there is nothing to do but ask again.
 AWAY_S = 2.0
+# How long jobs wait for the warm-up. On a shared cluster it may itself wait behind the jobs of others.
+WARM_S = 120.0
+WARM_SHARED_S = 10.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +68,8 @@ class Worker:
             except Unavailable as error:
                 log.warning("%s", error.detail)
                 pause = AWAY_S
+            except OSError as error:  # Dask's errors of communication are OSErrors
+                log.warning("%s", error)
             if not self._cluster.connected():
                 log.error("the connection to the scheduler is lost")
                 break
@@ -143,11 +148,12 @@ async def _warm(cluster: Cluster, stopping: asyncio.Event) -> None:
     start = time.monotonic()
     warming = asyncio.create_task(cluster.warm_up())
     stop = asyncio.create_task(stopping.wait())
-    await asyncio.wait({warming, stop}, return_when=asyncio.FIRST_COMPLETED)
+    patience = WARM_S if cluster.embedded else WARM_SHARED_S
+    await asyncio.wait({warming, stop}, timeout=patience, return_when=asyncio.FIRST_COMPLETED)
     stop.cancel()
     if not warming.done():
         warming.cancel()
-        print("interrupted", flush=True)
+        print("interrupted" if stopping.is_set() else f"not done in {patience:g} s, goes on", flush=True)
         return
     try:
         warming.result()

@@ -5,13 +5,14 @@ from __future__ import annotations
 import asyncio
 import logging
 import time
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 from uuid import uuid4
 
-from distributed import KilledWorker
+from distributed import Future, KilledWorker
+from distributed.client import FutureCancelledError
 
 from safestart.errors import LeaseLost, Unavailable
 from safestart.store.jobs import JobRepository
@@ -72,7 +73,8 @@ class Shepherd:
         """Run the job to its end; when ``stopping`` is set, give it back to the queue."""
         self._say(f"process {self.claim.process_id}, attempt {self.claim.attempt}")
         future = self._cluster.submit(self.claim, self.key)
-        outcome: asyncio.Task[Outcome] = asyncio.ensure_future(future.result())
+        # The client is asynchronous, and so is its result; Dask's annotations know only the other kind.
+        outcome = asyncio.ensure_future(cast(Awaitable[Outcome], future.result()))
         try:
             await self._watch(future, outcome, stopping)
         except LeaseLost as lost:
@@ -82,7 +84,9 @@ class Shepherd:
             outcome.cancel()
             future.release()
 
-    async def _watch(self, future: Any, outcome: asyncio.Task[Outcome], stopping: asyncio.Event) -> None:
+    async def _watch(
+        self, future: Future[Outcome], outcome: asyncio.Task[Outcome], stopping: asyncio.Event
+    ) -> None:
         start = time.monotonic()
         written = renewed = start
         stop = asyncio.ensure_future(stopping.wait())
@@ -93,7 +97,8 @@ class Shepherd:
                 if outcome.done():
                     break
                 if stopping.is_set():
-                    return await self._release(future)
+                    await self._try(self._give_back)
+                    return await self._cluster.leave(future, outcome)
                 if now - written >= WRITE_PERIOD_S:
                     written = now
                     await self._write_progress()
@@ -115,7 +120,7 @@ class Shepherd:
             end = outcome.result()
         except KilledWorker:
             return await self._fail(problems.of_poison(self._rules.max_attempts))
-        except asyncio.CancelledError:  # Dask's FutureCancelledError is one
+        except (FutureCancelledError, asyncio.CancelledError):
             reason = "the cluster lost the task"
             return await self._end(reason, lambda: self._jobs.release(self.claim, reason))
         except Exception as error:
@@ -134,11 +139,6 @@ class Shepherd:
 
     async def _fail(self, problem: dict[str, Any]) -> None:
         await self._end(f"failed: {problem.get('detail')}", lambda: self._jobs.fail(self.claim, problem))
-
-    async def _release(self, future: Any) -> None:
-        await self._try(self._give_back)
-        if not self._cluster.embedded:  # the embedded one ends with us
-            await self._cluster.ask_to_stop(future)
 
     def _give_back(self) -> None:
         self._jobs.release(self.claim, "its worker stopped; waits for the next one")

@@ -19,7 +19,6 @@ from safestart.processes.execute import execute
 from safestart.processes.registry import PROCESS_IDS, process
 from safestart.progress import Context
 from safestart.provenance import versions
-from safestart.warmup import warm
 from safestart_worker.problems import of_error, of_unexpected
 from safestart_worker.report import Reporter
 
@@ -45,12 +44,11 @@ def request_stop(key: str) -> None:
         _stopping.add(key)
 
 
-def get_ready() -> None:
-    """Load every process and compile the kernels, so that the first job does not pay for it."""
+def load() -> None:
+    """Import what every process needs, so that the first job does not wait for it."""
     for process_id in PROCESS_IDS:
         process(process_id).runner()
     versions()
-    warm()
 
 
 def run_job(process_id: str, inputs: dict[str, Any], key: str, topic: str) -> Outcome:
