@@ -6,13 +6,15 @@ import json
 from datetime import UTC, datetime
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fastapi.responses import HTMLResponse, Response
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from starlette.exceptions import HTTPException
 
 from safestart_service.tables import api_operations, split_outputs
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
 
 _HERE = Path(__file__).parent
 _STATIC = {"safestart.css": "text/css", "safestart.svg": "image/svg+xml"}
@@ -23,6 +25,9 @@ REFRESH_S = 3
 
 @cache
 def _environment() -> Environment:
+    # Imported with the first page: the API starts without.
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
     environment = Environment(
         loader=FileSystemLoader(_HERE / "templates"),
         autoescape=True,

@@ -1,7 +1,7 @@
 """The closed-form certificate of one start in plain floats.
 
 NumPy's fixed cost per call is several times that of the few dozen multiplications one start needs. What depends on the
-scenario alone is taken from the core's own arrays once and kept; a start is then :func:`certify`'s arithmetic, face by
+scenario alone is taken from the core once and kept; a start is then the arithmetic of ``certify``, face by
 face. The two may round differently, so a start within :data:`NEAR` (m) of any boundary, or with two constraints that
 close to binding, is left to ``certify``: verdict, violated faces and binding constraint are always the same.
 """
@@ -12,9 +12,7 @@ import math
 from dataclasses import dataclass
 from functools import lru_cache
 
-import numpy as np
-
-from safestart.certificates.closed_form import certify, range_limit
+from safestart.certificates.closed_form import range_limit
 from safestart.corridor import corridor_of
 from safestart.scenario import Chaser, CorridorShape, Rest, Scenario, Target
 
@@ -27,7 +25,7 @@ Shape = tuple[float, float, float, float, float]
 class Prepared:
     """Scenario, its faces' names, its range limit, and one row of floats per face.
 
-    A row is offset, normal (3), slack rate per metre (3), length of the normal; z entries are 0 in the plane.
+    A row is offset, normal (3, z = 0 in the plane), slack rate per metre of x and of y, length of the normal.
     """
 
     scenario: Scenario
@@ -55,19 +53,14 @@ def prepare(
     scenario = Scenario(
         Target(math.radians(omega_t_deg_s), mean_motion), Chaser(a_max), CorridorShape(*shape)
     )
-    dimensions = 3 if spatial else 2
-    corridor = corridor_of(scenario.corridor, dimensions)
-    # The slack rate is linear in the position: its coefficients are the rates at the unit vectors.
-    rates = certify(scenario, np.eye(dimensions), rest).slack_rate.T
-    flat = (0.0,) * (3 - dimensions)
+    corridor = corridor_of(scenario.corridor, 3 if spatial else 2)
+    flat = () if spatial else (0.0,)
+    # A start at rest in LVLH moves in the body frame with -omega x p: s_i' = omega (A_iy x - A_ix y).
+    omega = scenario.target.tumble_rate if rest is Rest.LVLH else 0.0
     rows = tuple(
-        (offset, *normal, *flat, *rate, *flat, length)
-        for offset, normal, rate, length in zip(
-            corridor.offsets.tolist(),
-            corridor.normals.tolist(),
-            rates.tolist(),
-            corridor.lengths.tolist(),
-            strict=True,
+        (offset, *normal, *flat, omega * normal[1], -omega * normal[0], length)
+        for offset, normal, length in zip(
+            corridor.offsets.tolist(), corridor.normals.tolist(), corridor.lengths.tolist(), strict=True
         )
     )
     return Prepared(scenario, corridor.faces, range_limit(scenario, rest), 2.0 * a_max, rows)
@@ -77,9 +70,9 @@ def certify_point(prepared: Prepared, x: float, y: float, z: float) -> PointCert
     """Certificate of one start; None where rounding could decide and ``certify`` has to."""
     slack = []
     face_margin = []
-    for offset, a, b, c, ra, rb, rc, length in prepared.rows:
+    for offset, a, b, c, ra, rb, length in prepared.rows:
         left = offset - (a * x + b * y + c * z)
-        rate = ra * x + rb * y + rc * z
+        rate = ra * x + rb * y
         margin = left / length if rate >= 0.0 else (left - rate * rate / prepared.twice_thrust) / length
         if -NEAR < left < NEAR:
             return None
