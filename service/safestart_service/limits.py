@@ -11,6 +11,7 @@ import logging
 import re
 import secrets
 
+from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from safestart.errors import SafestartError
@@ -68,6 +69,8 @@ class Limits:
             receive = self._counted(receive)
         try:
             await self.app(scope, receive, send_with_headers)
+        except ClientDisconnect:
+            log.info("request %s: the caller left", request_id.decode())
         except Exception:
             log.exception("request %s: %s %s", request_id.decode(), scope["method"], scope["path"])
             if started:  # too late for a problem document: let the server cut the connection

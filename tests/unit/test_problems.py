@@ -11,6 +11,7 @@ from safestart import errors
 from safestart_service import errors as service_errors
 from safestart_service import problems
 from safestart_service.limits import Limits
+from starlette.requests import ClientDisconnect
 
 MEMBERS = {"type", "title", "status", "detail", "instance", "field", "required", "received", "request_id"}
 
@@ -96,6 +97,16 @@ def test_an_answer_that_began_is_cut():
     with pytest.raises(ZeroDivisionError):
         asyncio.run(call)
     assert [message["type"] for message in sent] == ["http.response.start"]
+
+
+def test_a_caller_who_leaves_is_no_error(caplog):
+    async def waiting(scope, receive, send):
+        raise ClientDisconnect
+
+    sent, call = _call(waiting)
+    asyncio.run(call)
+    assert sent == []
+    assert not [record for record in caplog.records if record.levelname == "ERROR"]
 
 
 @pytest.mark.parametrize("length", [b"1001", b"-1", b"x", b"9" * 30])

@@ -35,7 +35,7 @@ async def go_no_go_one(query: Annotated[GoNoGoQuery, Query()]) -> Response:
     """May a chaser at rest at this point start its approach?
 
     By the paper's closed form. NO_GO means not certified; GO is no proof (next to the range limit keep metres of
-    margin, see the description of the process). A start outside the corridor is NO_GO, and ``violated_faces`` says where.
+    margin, see the description of the process). A start outside the corridor is NO_GO; ``violated_faces`` says where.
     """
     return _answer(query)
 
