@@ -6,12 +6,12 @@ import asyncio
 import json
 
 import pytest
+from starlette.requests import ClientDisconnect
 
 from safestart import errors
 from safestart_service import errors as service_errors
 from safestart_service import problems
 from safestart_service.limits import Limits
-from starlette.requests import ClientDisconnect
 
 MEMBERS = {"type", "title", "status", "detail", "instance", "field", "required", "received", "request_id"}
 
