@@ -55,7 +55,10 @@ def undisturbed(shared: Farm) -> str:
 
 
 def result_of(farm: Farm, job: str) -> Any:
-    return comparable(farm.results.result(job).document)
+    """Inputs, outputs and artifact hashes, times aside; not the git revision, which may move under the test."""
+    document = farm.results.result(job).document
+    artifacts = document["provenance"]["artifacts"]
+    return comparable({"inputs": document["inputs"], "outputs": document["outputs"], "artifacts": artifacts})
 
 
 def statuses(farm: Farm, job: str) -> list[str]:
@@ -74,8 +77,14 @@ def test_a_job_is_picked_up_and_ends_with_its_result(farm: Farm) -> None:
     process("certificate").outputs.model_validate(document["outputs"])
     assert ended.versions is not None
     assert "numpy" in ended.versions["packages"]
+    assert farm.worker is not None
     assert "warming up kernels ... done in" in farm.said()
     assert farm.jobs.workers_alive() == 1
+    heard = [
+        c.laddr for p in (psutil.Process(farm.worker.pid), *farm.processes()) for c in p.net_connections()
+    ]
+    assert {address.ip for address in heard if address} <= {"127.0.0.1"}
+    assert 8787 not in {address.port for address in heard if address}
 
 
 def test_progress_is_real_and_never_falls(farm: Farm, undisturbed: str) -> None:
@@ -112,9 +121,10 @@ def test_a_process_nobody_knows_fails_with_the_known_ones(farm: Farm) -> None:
 
 
 def test_dismissing_leaves_the_neighbour_untouched(farm: Farm, undisturbed: str) -> None:
-    stubborn, polite = farm.submit("benchmark", STUBBORN), farm.submit("coverage", STEADY)
-    neighbour_process = farm.computing(polite)
+    stubborn = farm.submit("benchmark", STUBBORN)
     killed = farm.computing(stubborn)
+    polite = farm.submit("coverage", STEADY)
+    neighbour_process = farm.computing(polite)
     queued = farm.submit("coverage", STEADY)
     assert farm.jobs.position(queued) == 1
     assert farm.jobs.dismiss(queued).status is JobStatus.DISMISSED

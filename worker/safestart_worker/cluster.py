@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import AsyncExitStack, asynccontextmanager, suppress
-from typing import Any
+from typing import Any, cast
 
 import dask
 from distributed import Client, Future, LocalCluster, Nanny
@@ -104,7 +104,8 @@ class Cluster:
         addresses = list(await self._client.nthreads())
         for function, group in ((load, addresses), (warm, addresses[:1]), (warm, addresses[1:])):
             tasks = [self._client.submit(function, workers=[a], pure=False) for a in group]
-            await self._client.gather(tasks)
+            for task in tasks:  # not gather: it logs stack traces when it is interrupted
+                await cast(Awaitable[None], task.result())
 
     async def close(self) -> None:
         """End the embedded task processes at once, busy ones too: their jobs are back in the queue."""
@@ -159,7 +160,9 @@ def _embedded(processes: int) -> LocalCluster:
         threads_per_worker=1,
         processes=True,
         host="127.0.0.1",
+        # Dask always opens a port for its pages: a free one, not the well-known one, and without pages (_config).
         dashboard_address=None,
+        scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
         memory_limit=int(_MEMORY_SHARE * MEMORY_LIMIT / max(processes, 1)),
         silence_logs=logging.WARNING,
         asynchronous=True,
@@ -174,5 +177,7 @@ def _config(max_attempts: int) -> dict[str, Any]:
         "distributed.admin.low-level-log-length": 1000,
         # Read before the process imports NumPy or Numba.
         "distributed.nanny.pre-spawn-environ": {**_ONE_THREAD, "MALLOC_TRIM_THRESHOLD_": "65536"},
+        "distributed.scheduler.http.routes": [],
+        "distributed.worker.http.routes": [],
         "distributed.comm.timeouts.connect": f"{CONNECT_TIMEOUT_S:g}s",
     }
