@@ -22,7 +22,8 @@ Bools = NDArray[np.bool_]
 
 # Bounds that no mission exceeds; beyond them the unit is wrong (degrees for radians, millimetres for metres).
 MAX_TUMBLE_RATE = math.radians(60.0)
-MAX_ACCELERATION = 10.0
+# An ion engine on a tonne gives about 1e-5; below 1e-6 m/s^2 nothing can be arrested.
+MIN_ACCELERATION, MAX_ACCELERATION = 1e-6, 10.0
 MAX_MEAN_MOTION = 1.3e-3
 MAX_RANGE = 10_000.0
 MAX_CELLS = 1_000_000
@@ -73,7 +74,7 @@ class Chaser:
     max_acceleration: float
 
     def __post_init__(self) -> None:
-        number("max_acceleration", self.max_acceleration, 0.0, MAX_ACCELERATION, open_low=True)
+        number("max_acceleration", self.max_acceleration, MIN_ACCELERATION, MAX_ACCELERATION)
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from pydantic_settings import (
     TomlConfigSettingsSource,
 )
 
-from safestart.processes.base import validation_error
+from safestart.validation import validation_error
 
 
 class Settings(BaseSettings):

@@ -7,7 +7,7 @@ from typing import TypeVar
 from fastapi import Request
 from pydantic import BaseModel, ValidationError
 
-from safestart.processes.base import validation_error
+from safestart.validation import validation_error
 from safestart_service.errors import MalformedBody, UnsupportedMediaType
 
 Model = TypeVar("Model", bound=BaseModel)

@@ -7,13 +7,14 @@ from typing import Any, Literal
 
 from pydantic import Field
 
+from safestart.certificates.explain import explain
+from safestart.certificates.point import certify_point, prepare
 from safestart.processes.base import WireModel
-from safestart.processes.go_no_go.run import OUTSIDE, run
+from safestart.processes.go_no_go.run import run, single
 from safestart.processes.go_no_go.spec import GoNoGoInputs, StateInput
 from safestart.processes.wire import NO_SYNC_LIMIT, CorridorInput, Thrust, TumbleRate
 from safestart.progress import Context
 from safestart.scenario import MAX_MEAN_MOTION, MAX_RANGE, Rest
-from safestart_service.scalar import PointCertificate, certify_point, prepare
 
 _SILENT = Context()
 
@@ -83,8 +84,10 @@ def flat_answer(query: GoNoGoQuery) -> dict[str, Any]:
     )
     point = certify_point(prepared, query.x_m, query.y_m, 0.0 if z is None else z)
     if point is None:
-        return _from_arrays(run(query.inputs(), _SILENT).document)
-    binding, violated, reason = _explain(prepared.faces, point)
+        return single(run(query.inputs(), _SILENT).document)
+    binding, violated, reason = explain(
+        prepared.faces, point.slack, point.face_margin, point.range_margin, point.margin
+    )
     unlimited = prepared.limit == math.inf
     return {
         "verdict": "GO" if point.margin > 0.0 else "NO_GO",
@@ -98,45 +101,4 @@ def flat_answer(query: GoNoGoQuery) -> dict[str, Any]:
         "reason": reason,
         "method": "closed_form",
         "rest": query.rest.value,
-    }
-
-
-def _explain(faces: tuple[str, ...], point: PointCertificate) -> tuple[str, list[str], str]:
-    """Binding constraint, violated faces and the sentence, in the words of the go-no-go process.
-
-    The tests hold every word of it against the process's own answer.
-    """
-    tight = point.face_margin.index(min(point.face_margin))
-    name = "range" if point.range_margin <= point.face_margin[tight] else faces[tight]
-    violated = [face for face, slack in zip(faces, point.slack, strict=True) if slack < 0.0]
-    if violated:
-        if name not in violated:
-            name = violated[0]
-        return name, violated, f"{OUTSIDE}: violates {', '.join(violated)}"
-    if point.margin > 0.0:
-        return name, violated, f"certified with {point.margin:.2f} m to spare at {name}"
-    if name == "range":
-        beyond = f"{-point.range_margin:.2f} m beyond the range within which the rotation can be matched"
-        return name, violated, beyond
-    return (
-        name,
-        violated,
-        f"the rotation consumes the slack of {name} before full thrust arrests it ({-point.margin:.2f} m short)",
-    )
-
-
-def _from_arrays(arrays: dict[str, Any]) -> dict[str, Any]:
-    """The process's document of one state, flattened."""
-    return {
-        "verdict": arrays["verdict"][0],
-        "margin_m": arrays["margin_m"][0],
-        "face_margins_m": dict(zip(arrays["faces"], arrays["face_margins_m"][0], strict=True)),
-        "range_margin_m": arrays["range_margin_m"][0],
-        "r_sync_m": arrays["r_sync_m"],
-        "r_sync_reason": arrays["r_sync_reason"],
-        "binding": arrays["binding"][0],
-        "violated_faces": arrays["violated_faces"][0],
-        "reason": arrays["reason"][0],
-        "method": arrays["method"],
-        "rest": arrays["rest"],
     }

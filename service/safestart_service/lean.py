@@ -16,7 +16,7 @@ from fastapi.routing import APIRoute
 from pydantic import BaseModel, ValidationError
 
 from safestart.errors import invalid
-from safestart.processes.base import validation_error
+from safestart.validation import validation_error
 
 
 def query_values(raw: bytes) -> dict[str, str]:

@@ -16,6 +16,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from starlette.exceptions import HTTPException
 
 from safestart.errors import SafestartError
+from safestart.validation import refusal
 
 MEDIA_TYPE = "application/problem+json"
 OGC_PREFIX = "http://www.opengis.net/def/exceptions/ogcapi-processes-1/1.0/"
@@ -174,25 +175,8 @@ async def _on_http(request: Request, error: Exception) -> Response:
 
 async def _on_validation(request: Request, error: Exception) -> Response:
     assert isinstance(error, RequestValidationError)
-    items = error.errors()
-    first = items[0]
-    field = ".".join(str(part) for part in first["loc"][1:]) or str(first["loc"][0])
-    shown = _shown(first.get("input"))
-    detail = f"{field}: {first['msg']}, received {shown!r}"
-    if len(items) > 1:
-        detail += f" (and {len(items) - 1} more)"
-    problem = document(
-        "invalid-input",
-        "Invalid input",
-        422,
-        detail,
-        request.scope["path"],
-        field=field,
-        required=first["msg"],
-        received=shown,
-        request_id=_request_id(request),
-    )
-    return _respond(problem)
+    reports = [{**item, "loc": item["loc"][1:] or item["loc"]} for item in error.errors()]
+    return await _on_own(request, refusal(reports))
 
 
 def install(app: FastAPI) -> None:

@@ -129,10 +129,12 @@ async def work(options: Options) -> int:
     jobs = JobRepository(database)
     start = time.monotonic()
     lost = False
+    announcing = asyncio.create_task(_announce(jobs, owner))
     async with open_cluster(options.scheduler, options.processes, options.max_attempts, owner) as cluster:
         where = options.scheduler or f"{options.processes} task processes"
         log.info("%s on %s, cluster ready in %.1f s", owner, where, time.monotonic() - start)
         await _warm(cluster, stopping)
+        announcing.cancel()
         if not stopping.is_set():
             log.info("takes jobs from %s", database.shown)
             await Worker(options, jobs, cluster, owner).run(stopping)
@@ -141,6 +143,16 @@ async def work(options: Options) -> int:
         log.info("stopping")
     database.close()
     return 1 if lost else 0
+
+
+async def _announce(jobs: JobRepository, owner: str) -> None:
+    """Be seen, with no room yet, while the cluster starts: jobs then wait for this worker, not for none."""
+    while True:
+        try:
+            await asyncio.to_thread(jobs.heartbeat, owner, 0, 0)
+        except Unavailable as error:
+            log.warning("%s", error.detail)
+        await asyncio.sleep(HEARTBEAT_S)
 
 
 async def _warm(cluster: Cluster, stopping: asyncio.Event) -> None:

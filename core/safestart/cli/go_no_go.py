@@ -8,6 +8,7 @@ import typer
 
 from safestart.cli.console import Json, out, print_json
 from safestart.processes.execute import execute
+from safestart.processes.go_no_go.run import single
 from safestart.scenario import Rest
 
 
@@ -48,12 +49,3 @@ def register(app: typer.Typer) -> None:
         out.print(f"  synchronization range limit: {shown}")
         for face, margin in zip(answer["faces"], answer["face_margins_m"][0], strict=True):
             out.print(f"  margin {face:<11} {margin:9.2f} m")
-
-
-def single(answer: dict[str, object]) -> dict[str, object]:
-    """The outputs of one state without the array around each value."""
-    per_state = ("verdict", "margin_m", "range_margin_m", "binding", "violated_faces", "reason")
-    flat: dict[str, object] = {key: answer[key][0] for key in per_state}  # type: ignore[index]
-    margins = dict(zip(answer["faces"], answer["face_margins_m"][0], strict=True))  # type: ignore[call-overload, index]
-    rest = {key: answer[key] for key in ("method", "rest", "r_sync_m", "r_sync_reason")}
-    return flat | {"face_margins_m": margins} | rest

@@ -25,7 +25,9 @@ def register(app: typer.Typer) -> None:
         ],
         input_file: Annotated[
             str,
-            typer.Option("--input", help="JSON file with the inputs; '-' reads stdin; absent: the defaults."),
+            typer.Option(
+                "--input", help="JSON file with the inputs; '-' reads stdin; absent: every default."
+            ),
         ] = "",
         output_file: Annotated[
             Path | None,

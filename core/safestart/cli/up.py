@@ -15,8 +15,12 @@ def register(app: typer.Typer) -> None:
 
     @app.command("up")
     def up(
-        host: Annotated[str, typer.Option(help="Address to bind to.")] = "",
-        port: Annotated[int, typer.Option(help="Port to bind to; -1: the setting's.")] = -1,
+        host: Annotated[
+            str | None, typer.Option(help="Loopback address to bind to; absent: the setting.")
+        ] = None,
+        port: Annotated[
+            int | None, typer.Option(min=0, max=65535, help="Port to bind to; absent: the setting.")
+        ] = None,
     ) -> None:
         """Start everything on this machine and keep it running; Ctrl-C stops every part."""
         from safestart.settings import settings
@@ -24,7 +28,7 @@ def register(app: typer.Typer) -> None:
 
         configured = settings()
         host = host or configured.host
-        port = configured.port if port < 0 else port
+        port = configured.port if port is None else port
         command = [sys.executable, "-m", "safestart"]
         children = [
             Child("service", [*command, "serve", "--host", host, "--port", str(port)]),

@@ -10,8 +10,8 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from safestart.artifact import Artifact as Artifact
-from safestart.errors import InvalidInput
 from safestart.progress import Context
+from safestart.validation import validation_error
 
 
 class WireModel(BaseModel):
@@ -72,19 +72,3 @@ def _load(target: str) -> Callable[..., Any]:
     module, name = target.split(":")
     function: Callable[..., Any] = getattr(import_module(module), name)
     return function
-
-
-def validation_error(error: ValidationError, prefix: str = "") -> InvalidInput:
-    """Turn pydantic's report into one of our exceptions; all problems are listed in the message."""
-    problems = []
-    for item in error.errors(include_url=False):
-        path = ".".join(str(part) for part in item["loc"]) or "body"
-        problems.append((prefix + path, item["msg"], item.get("input")))
-    path, message, received = problems[0]
-    shown = repr(received)
-    if len(shown) > 120:
-        shown = shown[:117] + "..."
-    detail = f"{path}: {message}, received {shown}"
-    if len(problems) > 1:
-        detail += f" (and {len(problems) - 1} more: {', '.join(p for p, _, _ in problems[1:6])})"
-    return InvalidInput(detail, field=path, required=message, received=shown)

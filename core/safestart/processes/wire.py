@@ -12,6 +12,7 @@ from safestart.scenario import (
     MAX_ACCELERATION,
     MAX_MEAN_MOTION,
     MAX_RANGE,
+    MIN_ACCELERATION,
     Chaser,
     CorridorShape,
     Grid,
@@ -26,7 +27,7 @@ TumbleRate = Annotated[
 Thrust = Annotated[
     float,
     Field(
-        gt=0.0,
+        ge=MIN_ACCELERATION,
         le=MAX_ACCELERATION,
         description="Maximum thrust acceleration of the chaser, m/s^2.",
         examples=[0.1],
@@ -52,8 +53,8 @@ class CorridorInput(WireModel):
 class GridInput(WireModel):
     """Body-frame grid: linspace over x in +-(x0 + c_x (y_max - r_h)) and y in [0, y_max], masks ``[iy][ix]``."""
 
-    nx: int = Field(31, ge=2, le=1001, description="Points across.")
-    ny: int = Field(31, ge=2, le=1001, description="Points along.")
+    nx: int = Field(31, ge=2, le=1000, description="Points across.")
+    ny: int = Field(31, ge=2, le=1000, description="Points along.")
     y_max_m: float = Field(150.0, gt=0, le=MAX_RANGE, description="Where the corridor is cut, m.")
 
     def grid(self) -> Grid:

@@ -33,7 +33,7 @@ def notes(inputs: BenchmarkInputs, rows: Sequence[dict[str, Any]], contained: fl
         )
         out.append(
             f"{100 * outside:.1f} % of the certified cells are outside the exact set: no thrust brings them to the "
-            f"corridor at {inputs.horizon_s:g} s, so the certificate is wrong there (known next to the range limit); {when}."
+            f"corridor at {inputs.horizon_s:g} s, so the certificate is wrong there; {when}."
         )
     hj = by_engine.get("hamilton_jacobi", {})
     if hj.get("iou_vs_exact") is not None and hj["iou_vs_exact"] < 1.0:

@@ -8,14 +8,13 @@ from typing import Any
 import numpy as np
 
 from safestart.certificates.closed_form import Certificate, certify
+from safestart.certificates.explain import explain
 from safestart.errors import invalid
 from safestart.processes.base import ProcessOutput
 from safestart.processes.go_no_go.spec import GoNoGoInputs
 from safestart.processes.wire import NO_SYNC_LIMIT, finite
 from safestart.progress import Context
 from safestart.scenario import Floats
-
-OUTSIDE = "outside the corridor"
 
 
 def run(inputs: GoNoGoInputs, context: Context) -> ProcessOutput:
@@ -49,30 +48,25 @@ def _points(inputs: GoNoGoInputs) -> Floats:
 
 def _explain(certificate: Certificate) -> dict[str, list[Any]]:
     """Binding constraint, faces violated by the start itself, and a sentence per state."""
-    binding: list[str] = []
-    outside: list[list[str]] = []
-    reason: list[str] = []
-    faces = certificate.faces
-    for slack, face_margin, range_margin, margin in zip(
-        certificate.slack.tolist(),
-        certificate.face_margin.tolist(),
-        certificate.range_margin.tolist(),
-        certificate.margin.tolist(),
-        strict=True,
-    ):
-        tight = min(range(len(faces)), key=face_margin.__getitem__)
-        name = "range" if range_margin <= face_margin[tight] else faces[tight]
-        violated = [face for face, value in zip(faces, slack, strict=True) if value < 0.0]
-        if violated:
-            name = name if name in violated else violated[0]
-            text = f"{OUTSIDE}: violates {', '.join(violated)}"
-        elif margin > 0.0:
-            text = f"certified with {margin:.2f} m to spare at {name}"
-        elif name == "range":
-            text = f"{-range_margin:.2f} m beyond the range within which the rotation can be matched"
-        else:
-            text = f"the rotation consumes the slack of {name} before full thrust arrests it ({-margin:.2f} m short)"
-        binding.append(name)
-        outside.append(violated)
-        reason.append(text)
-    return {"binding": binding, "violated_faces": outside, "reason": reason}
+    told = [
+        explain(certificate.faces, slack, face_margin, range_margin, margin)
+        for slack, face_margin, range_margin, margin in zip(
+            certificate.slack.tolist(),
+            certificate.face_margin.tolist(),
+            certificate.range_margin.tolist(),
+            certificate.margin.tolist(),
+            strict=True,
+        )
+    ]
+    binding, violated, reason = (list(column) for column in zip(*told, strict=True))
+    return {"binding": binding, "violated_faces": violated, "reason": reason}
+
+
+_PER_STATE = ("verdict", "margin_m", "range_margin_m", "binding", "violated_faces", "reason")
+
+
+def single(outputs: dict[str, Any]) -> dict[str, Any]:
+    """The outputs of one state, flat: no array around each value, face margins by name."""
+    margins = dict(zip(outputs["faces"], outputs["face_margins_m"][0], strict=True))
+    shared = {key: outputs[key] for key in ("r_sync_m", "r_sync_reason", "method", "rest")}
+    return {key: outputs[key][0] for key in _PER_STATE} | {"face_margins_m": margins} | shared

@@ -1,0 +1,77 @@
+"""Pydantic's reports in our words: the field, what was required, what came."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from pydantic import ValidationError
+
+from safestart.errors import InvalidInput
+
+_LONGEST = 120
+_LISTED = 5
+
+_REQUIRED = {
+    "missing": "a value",
+    "extra_forbidden": "no field of this name",
+    "greater_than": "a number > {gt}",
+    "greater_than_equal": "a number >= {ge}",
+    "less_than": "a number < {lt}",
+    "less_than_equal": "a number <= {le}",
+    "finite_number": "a finite number",
+    "float_type": "a number",
+    "float_parsing": "a number",
+    "int_type": "an integer",
+    "int_parsing": "an integer",
+    "int_parsing_size": "an integer of ordinary size",
+    "int_from_float": "an integer",
+    "bool_type": "true or false",
+    "bool_parsing": "true or false",
+    "string_type": "text",
+    "literal_error": "one of {expected}",
+    "enum": "one of {expected}",
+    "too_short": "at least {min_length} items",
+    "too_long": "at most {max_length} items",
+    "list_type": "an array",
+    "dict_type": "an object",
+    "model_type": "an object",
+    "model_attributes_type": "an object",
+    "value_error": "{error}",
+}
+"""Report type -> what was required; the names in braces come from the report's context."""
+
+
+def required(report: Any) -> str:
+    """What one of pydantic's reports asks for."""
+    template = _REQUIRED.get(report["type"])
+    if template is None:
+        return str(report["msg"])
+    try:
+        return template.format(**report.get("ctx", {}))
+    except KeyError:
+        return str(report["msg"])
+
+
+def received(report: Any) -> str:
+    """What came instead, shortened."""
+    if report["type"] == "missing":
+        return "nothing"
+    shown = repr(report.get("input"))
+    return shown if len(shown) <= _LONGEST else shown[: _LONGEST - 3] + "..."
+
+
+def refusal(reports: Sequence[Any], prefix: str = "") -> InvalidInput:
+    """One exception for a list of reports: the first in full, the other fields by name."""
+    fields = [prefix + (".".join(str(part) for part in report["loc"]) or "body") for report in reports]
+    wanted, came = required(reports[0]), received(reports[0])
+    detail = f"{fields[0]}: required {wanted}, received {came}"
+    others = fields[1 : 1 + _LISTED]
+    if others:
+        detail += f" (and {len(fields) - 1} more: {', '.join(others)})"
+    return InvalidInput(detail, field=fields[0], required=wanted, received=came)
+
+
+def validation_error(error: ValidationError, prefix: str = "") -> InvalidInput:
+    """Turn pydantic's error into one of our exceptions."""
+    return refusal(error.errors(include_url=False), prefix)
