@@ -27,7 +27,7 @@ STEADY: dict[str, Any] = {
 STUBBORN: dict[str, Any] = {
     **CERTIFICATE,
     "engines": ["hamilton_jacobi"],
-    "hamilton_jacobi": {"nodes_xy": 81, "nodes_v": 21, "accuracy": "very_high"},
+    "hamilton_jacobi": {"nodes_xy": 61, "nodes_v": 31, "accuracy": "very_high", "frame": "body"},
 }
 
 

@@ -13,31 +13,21 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
-from safestart.corridor import corridor_of
 from safestart.engines.base import EngineResult, Problem, ResultCode
-from safestart.engines.hj_domain import Domain, count_steps, size_domain, start_states, warnings
-from safestart.engines.hj_model import DROPPED_TERM
-from safestart.engines.hj_settings import ENGINE, Settings
-from safestart.engines.hj_solver import Solver
+from safestart.engines.hj.domain import Domain, count_steps, size_domain, start_states, warnings
+from safestart.engines.hj.frame import MODEL
+from safestart.engines.hj.settings import ENGINE, Settings
+from safestart.engines.hj.solver import Solver
+from safestart.engines.hj.target import TargetValues, signed_distance
 from safestart.engines.region import restrict
 from safestart.progress import Context
-from safestart.scenario import CorridorShape, Floats, SetKind
+from safestart.scenario import Floats, SetKind
 
 # Between two looks at the context: a twentieth of the steps, and no more than a few seconds of work.
 MIN_STRETCHES, NODE_STEPS = 20, 20_000_000
 # Share of the target function's range by which the value may leave it: rounding for the monotone first-order
 # scheme, over- and undershoot (measured: 1 %) for the others. A poisoned boundary leaves it several times over.
 MONOTONE_TOLERANCE, TOLERANCE = 1e-3, 0.05
-
-
-def signed_distance(shape: CorridorShape, points: Floats) -> Floats:
-    """l = max over faces of (A_i p - b_i) / |A_i| in metres, shape (...): negative inside the corridor.
-
-    Exact inside and beside a face; past an edge of the corridor less than the distance, with the same sign.
-    """
-    corridor = corridor_of(shape)
-    distance: Floats = -(corridor.slack(points) / corridor.lengths).min(axis=-1)
-    return distance
 
 
 class HamiltonJacobi:
@@ -58,17 +48,17 @@ class HamiltonJacobi:
         """
         settings = Settings.of(problem)
         domain = size_domain(problem, settings)
-        steps = count_steps(problem, domain, settings.shape)
+        steps, courant = count_steps(problem, domain, settings)
         context.step(0.0, problem.horizon, "compiling")
-        target = _target(problem, domain, settings)
-        solver = Solver(problem.scenario, domain, settings, problem.kind, target)
+        target = TargetValues.of(problem, domain, settings)
+        solver = Solver(problem, domain, settings, target.terminal, courant)
         detail = _detail(problem, domain, settings, steps, target)
 
         begin = time.perf_counter()
         failure = _march(problem, settings, solver, target, steps, context)
         value = solver.value()
         if not failure and problem.kind is SetKind.TUBE:
-            excess = float((value - target).max())
+            excess = float((value - target.first).max())
             if excess > _slack(settings, target):
                 failure = f"the tube's value exceeds the target function by {excess:.4g} m"
         if failure:
@@ -86,33 +76,21 @@ class HamiltonJacobi:
         )
 
 
-def _axes(domain: Domain, settings: Settings) -> list[Floats]:
-    return [np.linspace(-half, half, count) for half, count in zip(domain.half, settings.shape, strict=True)]
-
-
-def _target(problem: Problem, domain: Domain, settings: Settings) -> Floats:
-    """l at every node, shape (nx, ny, nvx, nvy): the terminal value."""
-    x, y, _, _ = _axes(domain, settings)
-    points = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1)
-    distance = signed_distance(problem.scenario.corridor, points)
-    return np.broadcast_to(distance[:, :, None, None], settings.shape)
-
-
-def _slack(settings: Settings, target: Floats) -> float:
+def _slack(settings: Settings, target: TargetValues) -> float:
     share = MONOTONE_TOLERANCE if settings.accuracy == "low" else TOLERANCE
-    return share * float(target.max() - target.min())
+    return share * (target.high - target.low)
 
 
 def _march(
-    problem: Problem, settings: Settings, solver: Solver, target: Floats, steps: int, context: Context
+    problem: Problem, settings: Settings, solver: Solver, target: TargetValues, steps: int, context: Context
 ) -> str:
     """Run the horizon in equal stretches; the reason of a numerical failure, or nothing.
 
     The value is a least value of l over states that the grid holds, so it must stay inside l's range.
     """
-    batch = min(math.ceil(steps / MIN_STRETCHES), max(1, NODE_STEPS // target.size))
+    batch = min(math.ceil(steps / MIN_STRETCHES), max(1, NODE_STEPS // target.terminal.size))
     stretches = math.ceil(steps / batch)
-    low, high, slack = float(target.min()), float(target.max()), _slack(settings, target)
+    low, high, slack = target.low, target.high, _slack(settings, target)
     for k in range(stretches):
         finite, least, largest = solver.advance(problem.horizon / stretches)
         done = problem.horizon * (k + 1) / stretches
@@ -133,20 +111,22 @@ def _slice(problem: Problem, domain: Domain, settings: Settings, value: Floats) 
     A tube's value is at most l at the start itself, which is known exactly; near the apex of the corridor,
     which is finer than the grid, the interpolated value is not.
     """
-    states = start_states(problem)
-    found: Floats = RegularGridInterpolator(_axes(domain, settings), value, bounds_error=True)(states)
+    states = start_states(problem, settings.frame)
+    axes = domain.axes(settings.shape)
+    found: Floats = RegularGridInterpolator(axes, value, bounds_error=True)(states)
     if problem.kind is SetKind.TUBE:
         found = np.minimum(found, signed_distance(problem.scenario.corridor, states[..., :2]))
     return found
 
 
 def _detail(
-    problem: Problem, domain: Domain, settings: Settings, steps: int, target: Floats
+    problem: Problem, domain: Domain, settings: Settings, steps: int, target: TargetValues
 ) -> dict[str, Any]:
     """What the answer depends on, JSON-able."""
     return {
         "set": problem.kind.value,
         "rest": problem.rest.value,
+        "frame": settings.frame.value,
         "accuracy": settings.accuracy,
         "boundary": settings.boundary,
         "shape": list(settings.shape),
@@ -157,9 +137,9 @@ def _detail(
         },
         "spacing": [float(h) for h in domain.spacing(settings.shape)],
         "time_steps": steps,
-        "target_min_m": float(target.min()),
-        "target_max_m": float(target.max()),
+        "target_min_m": target.low,
+        "target_max_m": target.high,
         "precision": "float32",
-        "model": f"time-invariant body frame; dropped: {DROPPED_TERM}",
+        "model": MODEL[settings.frame],
         "warnings": warnings(problem, domain, settings),
     }

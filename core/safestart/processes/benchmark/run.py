@@ -20,7 +20,7 @@ from safestart.progress import Context
 from safestart.scenario import Bools
 
 # Shares of the progress bar, roughly the share of the time.
-_WEIGHTS = {"hamilton_jacobi": 90.0, "monte_carlo": 6.0}
+_WEIGHTS = {"hamilton_jacobi": 40.0, "monte_carlo": 6.0}
 _FINISH = 3.0
 
 
@@ -36,7 +36,7 @@ def problem_of(inputs: BenchmarkInputs) -> Problem:
         inputs.rest,
         inputs.set,
         inputs.seed,
-        {"hamilton_jacobi": {"accuracy": hj.accuracy, "shape": shape}},
+        {"hamilton_jacobi": {"accuracy": hj.accuracy, "shape": shape, "frame": hj.frame}},
     )
 
 

@@ -28,8 +28,13 @@ class HamiltonJacobiInput(WireModel):
     accuracy: Literal["low", "medium", "high", "very_high"] = Field(
         "low", description="Scheme of hj-reachability."
     )
-    nodes_xy: int = Field(41, ge=11, le=81, description="Nodes per position axis.")
-    nodes_v: int = Field(15, ge=7, le=41, description="Nodes per velocity axis.")
+    nodes_xy: int = Field(41, ge=11, le=61, description="Nodes per position axis.")
+    nodes_v: int = Field(15, ge=7, le=31, description="Nodes per velocity axis.")
+    frame: Literal["auto", "lvlh", "body"] = Field(
+        "auto",
+        description="Frame of the grid: lvlh (the corridor turns), body (paper 000; the corridor stands still), "
+        "auto: the frame in which the starts are at rest.",
+    )
 
 
 class BenchmarkInputs(ScenarioInput):
@@ -114,8 +119,8 @@ class BenchmarkOutputs(WireModel):
     corridor_cells: int
     cell_area_m2: float
     containment_horizon_s: float | None = Field(
-        description="Smallest horizon, from horizon_s on, at which the exact fixed-time set holds every certified start; "
-        "null: none up to 600 s."
+        description="Smallest horizon, from horizon_s on, at which the exact fixed-time set holds every certified "
+        "start; null: none up to 600 s."
     )
     rows: list[EngineRow]
     notes: list[str]

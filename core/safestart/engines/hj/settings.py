@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from safestart.engines.base import Problem
+from safestart.engines.hj.frame import Frame
 from safestart.errors import invalid
-from safestart.scenario import number
+from safestart.scenario import Rest, number
 
 ENGINE = "hamilton_jacobi"
 
@@ -16,6 +17,7 @@ Shape = tuple[int, int, int, int]
 
 ACCURACIES = ("low", "medium", "high", "very_high")
 BOUNDARIES = ("edge", "extrapolate_away_from_zero")
+FRAMES = ("auto", *(frame.value for frame in Frame))
 DEFAULT_SHAPE: Shape = (41, 41, 15, 15)
 MIN_NODES, MAX_NODES, MAX_TOTAL_NODES = 5, 101, 5_000_000
 
@@ -30,23 +32,26 @@ class Settings:
     (WENO3, RK3), very_high (WENO5, RK3). ``shape`` counts the nodes of (x, y, vx, vy). ``domain`` holds
     explicit half widths (x m, y m, v m/s), None to size it from the problem. ``boundary`` pads the grid:
     ``edge`` repeats the last value, ``extrapolate_away_from_zero`` is the library's own default, kept for
-    comparison.
+    comparison. ``frame`` is the frame of the state and of ``domain``; asked for as ``auto`` it is the one in
+    which the starts are at rest, ``body`` is the paper's.
     """
 
     accuracy: str = "low"
     shape: Shape = DEFAULT_SHAPE
     domain: tuple[float, float, float] | None = None
     boundary: str = "edge"
+    frame: Frame = Frame.LVLH
 
     @classmethod
     def of(cls, problem: Problem) -> Settings:
         """Settings from ``problem.options["hamilton_jacobi"]``; ``InvalidInput`` on anything unknown."""
-        problem.check_options(ENGINE, ("accuracy", "shape", "domain", "boundary"))
+        problem.check_options(ENGINE, ("accuracy", "shape", "domain", "boundary", "frame"))
         return cls(
             _one_of("accuracy", problem.option(ENGINE, "accuracy", "low"), ACCURACIES),
             _shape(problem.option(ENGINE, "shape", DEFAULT_SHAPE)),
             _domain(problem.option(ENGINE, "domain", None)),
             _one_of("boundary", problem.option(ENGINE, "boundary", "edge"), BOUNDARIES),
+            _frame(problem),
         )
 
 
@@ -54,6 +59,13 @@ def _one_of(name: str, value: Any, known: tuple[str, ...]) -> str:
     if not isinstance(value, str) or value not in known:
         raise invalid(f"{_PREFIX}.{name}", f"one of {', '.join(known)}", value)
     return value
+
+
+def _frame(problem: Problem) -> Frame:
+    asked = _one_of("frame", problem.option(ENGINE, "frame", "auto"), FRAMES)
+    if asked == "auto":
+        return Frame.BODY if problem.rest is Rest.BODY else Frame.LVLH
+    return Frame(asked)
 
 
 def _shape(value: Any) -> Shape:

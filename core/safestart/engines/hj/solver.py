@@ -1,0 +1,184 @@
+"""The time loop of hj-reachability, compiled ahead of time and kept for every problem of the same shape.
+
+Frame, tumble rate, thrust, corridor and box are arguments of the compiled program, so that a second operating
+point costs no compilation. Arithmetic is float32, JAX's default.
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from collections import OrderedDict
+from enum import StrEnum
+from functools import partial
+from typing import Any, NamedTuple
+
+import hj_reachability as hj
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from safestart.engines.base import Problem
+from safestart.engines.hj.domain import Domain
+from safestart.engines.hj.frame import Frame, coefficients
+from safestart.engines.hj.model import LinearMotion
+from safestart.engines.hj.settings import Settings
+from safestart.engines.hj.target import faces
+from safestart.scenario import Floats, SetKind
+
+KEPT_PROGRAMS = 8
+
+
+def _edge(values: Any, width: int) -> Any:
+    """Pad by repeating the last value: no slope across the wall, so nothing can flow in that is not inside.
+
+    With the first-order scheme the update is then a mean of values on the grid, and the value stays between
+    the extremes of the target function. The library's ``extrapolate_away_from_zero`` continues the slope
+    outwards instead, and inflow feeds on it without bound.
+    """
+    return jnp.pad(values, width, "edge")
+
+
+_BOUNDARIES = {
+    "edge": _edge,
+    "extrapolate_away_from_zero": hj.boundary_conditions.extrapolate_away_from_zero,
+}
+
+
+def make_lattice(domain: Domain, settings: Settings) -> hj.Grid:
+    """Grid of the library over a box, axes (x, y, vx, vy)."""
+    box = hj.sets.Box(jnp.asarray(-domain.half, jnp.float32), jnp.asarray(domain.half, jnp.float32))
+    return hj.Grid.from_lattice_parameters_and_boundary_conditions(
+        box, settings.shape, boundary_conditions=(_BOUNDARIES[settings.boundary],) * 4
+    )
+
+
+class Sweep(StrEnum):
+    """What happens to the value on the way back in time."""
+
+    END = "end"
+    """Nothing: the corridor counts at the horizon only."""
+    STILL = "still"
+    """It never rises: a tube towards a corridor that stands still (min(0, H) of the library)."""
+    TURNING = "turning"
+    """It is cut off at l(R(-omega_t t) p) after every step: a tube towards a corridor that turns."""
+
+    @classmethod
+    def of(cls, kind: SetKind, frame: Frame) -> Sweep:
+        """The sweep for a kind of set in a frame."""
+        if kind is not SetKind.TUBE:
+            return cls.END
+        return cls.STILL if frame is Frame.BODY else cls.TURNING
+
+
+class Parameters(NamedTuple):
+    """What one compiled program is given: numbers () and the corridor's ``faces`` (k, 3), all float32."""
+
+    turn: Any
+    gx: Any
+    gy: Any
+    a_max: Any
+    courant: Any
+    tumble_rate: Any
+    faces: Any
+
+
+def _distance(rows: Any, angle: Any, lattice: Any) -> Any:
+    """l(R(-angle) p) on the nodes, shape (nx, ny, 1, 1), metres."""
+    x, y = lattice.coordinate_vectors[0][:, None], lattice.coordinate_vectors[1][None, :]
+    c, s = jnp.cos(angle), jnp.sin(angle)
+    points = jnp.stack([c * x + s * y, c * y - s * x, jnp.ones_like(x + y)], axis=-1)
+    return (points @ rows.T).max(axis=-1)[:, :, None, None]
+
+
+def _advance(
+    accuracy: str, sweep: Sweep, lattice: Any, parameters: Parameters, values: Any, span: Any, angle: Any
+) -> Any:
+    """Value ``span`` seconds earlier, and whether it is finite with its extremes.
+
+    The model has no time in it, so that every stretch may run from 0 to -span: in float32 a clock that has
+    run for an hour cannot resolve a step of a tenth of a millisecond. ``angle`` is how far the corridor has
+    turned at the stretch's later end.
+    """
+
+    def cut(time: Any, value: Any) -> Any:
+        return jnp.minimum(value, _distance(parameters.faces, angle + parameters.tumble_rate * time, lattice))
+
+    scheme = hj.SolverSettings.with_accuracy(
+        accuracy,
+        hamiltonian_postprocessor=(
+            hj.solver.backwards_reachable_tube if sweep is Sweep.STILL else hj.solver.identity
+        ),
+        value_postprocessor=cut if sweep is Sweep.TURNING else hj.solver.identity,
+        CFL_number=parameters.courant,
+    )
+    dynamics = LinearMotion(parameters.turn, parameters.gx, parameters.gy, parameters.a_max)
+    start = jnp.zeros((), jnp.float32)
+    values = hj.step(scheme, dynamics, lattice, start, values, -span, progress_bar=False)
+    return values, jnp.isfinite(values).all(), values.min(), values.max()
+
+
+_programs: OrderedDict[tuple[Any, ...], Any] = OrderedDict()
+_lock = threading.Lock()
+
+
+def _program(settings: Settings, sweep: Sweep, arguments: tuple[Any, ...]) -> tuple[Any, float]:
+    """Compiled :func:`_advance` and the seconds its compilation took (0 when it was there already)."""
+    key = (settings.shape, settings.accuracy, settings.boundary, sweep)
+    with _lock:
+        if key in _programs:
+            _programs.move_to_end(key)
+            return _programs[key], 0.0
+        begin = time.perf_counter()
+        _programs[key] = jax.jit(partial(_advance, settings.accuracy, sweep)).lower(*arguments).compile()
+        if len(_programs) > KEPT_PROGRAMS:
+            _programs.popitem(last=False)
+        return _programs[key], time.perf_counter() - begin
+
+
+class Solver:
+    """Value function on the lattice, stepped backwards in stretches from the horizon.
+
+    ``values`` is the library's array over (x, y, vx, vy), metres; ``compile_s`` what compilation took, with
+    one warm-up stretch of no length, so that :meth:`advance` runs compiled code only.
+    """
+
+    def __init__(
+        self, problem: Problem, domain: Domain, settings: Settings, terminal: Floats, courant: float
+    ) -> None:
+        scenario = problem.scenario
+        self._lattice = make_lattice(domain, settings)
+        self._tumble_rate, self._time = scenario.target.tumble_rate, problem.horizon
+        turn, gx, gy = coefficients(scenario.target, settings.frame)
+        self._parameters = Parameters(
+            turn=jnp.asarray(turn, jnp.float32),
+            gx=jnp.asarray(gx, jnp.float32),
+            gy=jnp.asarray(gy, jnp.float32),
+            a_max=jnp.asarray(scenario.chaser.max_acceleration, jnp.float32),
+            courant=jnp.asarray(courant, jnp.float32),
+            tumble_rate=jnp.asarray(self._tumble_rate, jnp.float32),
+            faces=jnp.asarray(faces(scenario.corridor), jnp.float32),
+        )
+        self.values = jnp.asarray(terminal, jnp.float32)
+        sweep = Sweep.of(problem.kind, settings.frame)
+        self._run, self.compile_s = _program(settings, sweep, self._arguments(0.0))
+        begin = time.perf_counter()
+        self._run(*self._arguments(0.0))[1].block_until_ready()
+        self.compile_s += time.perf_counter() - begin
+
+    def _arguments(self, span: float) -> tuple[Any, ...]:
+        # The angle is reduced in float64: after an hour a float32 angle would be off by centimetres.
+        angle = math.fmod(self._tumble_rate * self._time, math.tau)
+        scalars = (jnp.asarray(span, jnp.float32), jnp.asarray(angle, jnp.float32))
+        return self._lattice, self._parameters, self.values, *scalars
+
+    def advance(self, span: float) -> tuple[bool, float, float]:
+        """Step ``span`` seconds back; returns whether all values are finite, and their least and largest."""
+        self.values, finite, low, high = self._run(*self._arguments(span))
+        self._time -= span
+        return bool(finite), float(low), float(high)
+
+    def value(self) -> Floats:
+        """The value function in float64."""
+        return np.asarray(self.values, dtype=np.float64)

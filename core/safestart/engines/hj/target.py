@@ -1,0 +1,73 @@
+"""The target function l: how far a position is from the corridor, standing still or turned."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from safestart.corridor import corridor_of
+from safestart.dynamics.body_frame import rotation
+from safestart.engines.base import Problem
+from safestart.engines.hj.domain import Domain
+from safestart.engines.hj.frame import Frame
+from safestart.engines.hj.settings import Settings
+from safestart.scenario import CorridorShape, Floats, SetKind
+
+
+def signed_distance(shape: CorridorShape, points: Floats) -> Floats:
+    """l = max over faces of (A_i p - b_i) / |A_i| in metres, shape (...): negative inside the corridor.
+
+    Exact inside and beside a face; past an edge of the corridor less than the distance, with the same sign.
+    """
+    corridor = corridor_of(shape)
+    distance: Floats = -(corridor.slack(points) / corridor.lengths).min(axis=-1)
+    return distance
+
+
+def faces(shape: CorridorShape) -> Floats:
+    """(k, 3) rows (A_i, -b_i) / |A_i|, so that l(p) = max_i of row_i . (p, 1)."""
+    corridor = corridor_of(shape)
+    return np.column_stack([corridor.normals, -corridor.offsets]) / corridor.lengths[:, None]
+
+
+@dataclass(frozen=True, slots=True)
+class TargetValues:
+    """l on the nodes of a grid, arrays (nx, ny, nvx, nvy) in metres, and what it allows the value to be.
+
+    ``terminal`` is l at the horizon, ``first`` l at t = 0; they differ where the corridor turns. The value of a
+    fixed-time set stays in the range of ``terminal``; a tube's may also take any lower value that l has on its
+    way: ``low`` and ``high`` bound it.
+    """
+
+    terminal: Floats
+    first: Floats
+    low: float
+    high: float
+
+    @classmethod
+    def of(cls, problem: Problem, domain: Domain, settings: Settings) -> TargetValues:
+        """Evaluate on the nodes of a box.
+
+        In LVLH axes the corridor has turned by omega_t t: l(R(-omega_t t) p). Of all points at one distance
+        from the target, the one on the corridor's axis has the least l (l is convex and even in x), and l falls
+        along the axis; so l there, at the distance of the box's corner, is the least that any angle can give.
+        """
+        x, y, _, _ = domain.axes(settings.shape)
+        points = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1)
+        shape = problem.scenario.corridor
+
+        def spread(positions: Floats) -> Floats:
+            distance = signed_distance(shape, positions)[:, :, None, None]
+            return np.broadcast_to(distance, settings.shape)
+
+        first = terminal = spread(points)
+        turns = settings.frame is Frame.LVLH and problem.scenario.target.tumble_rate != 0.0
+        if turns:
+            # Row vectors: p @ R(theta) is R(-theta) p.
+            terminal = spread(points @ rotation(problem.scenario.target.tumble_rate * problem.horizon))
+        low, high = float(terminal.min()), float(terminal.max())
+        if turns and problem.kind is SetKind.TUBE:
+            corner = np.array([0.0, np.hypot(domain.half[0], domain.half[1])])
+            low = float(signed_distance(shape, corner))
+        return cls(terminal, first, low, high)
