@@ -244,11 +244,13 @@ def test_frames_agree_where_nothing_turns() -> None:
         assert gap < 0.05
 
 
-def test_auto_is_the_frame_of_rest() -> None:
-    for rest, frame in ((Rest.LVLH, "lvlh"), (Rest.BODY, "body")):
-        detail = run(horizon=2.0, rest=rest, kind=SetKind.FIXED).detail
-        assert detail["frame"] == frame
-        assert ("nothing dropped" in detail["model"]) is (frame == "lvlh")
+def test_auto_is_lvlh_but_for_corotating_tubes() -> None:
+    for rest in Rest:
+        for kind in SetKind:
+            frame = "body" if (rest, kind) == (Rest.BODY, SetKind.TUBE) else "lvlh"
+            detail = run(horizon=2.0, rest=rest, kind=kind).detail
+            assert detail["frame"] == frame
+            assert ("nothing dropped" in detail["model"]) is (frame == "lvlh")
 
 
 def against_exact(
