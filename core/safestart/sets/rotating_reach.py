@@ -14,7 +14,7 @@ from safestart.sets.cone import DualArc
 from safestart.sets.reach_kernel import DRIFT, reach_margins, trig_table
 from safestart.sets.series import ReachSeries, reach_series
 
-DIRECTIONS = 33
+DIRECTIONS = 17
 """Nodes over the dual arc; polished afterwards."""
 PHASE_STEP = 0.03
 """Largest turn (rad) of the corridor, or of the orbit, between two coarse times."""
