@@ -21,7 +21,7 @@ INPUTS = {
     "grid": {"nx": 31, "ny": 31, "y_max_m": 150},
     "horizon_s": 60,
     "engines": ["analytical", "exact", "backward", "forward", "hamilton_jacobi", "monte_carlo"],
-    "hamilton_jacobi": {"frame": "body"},
+    "hamilton_jacobi": {"frame": "body", "accuracy": "low"},
     "seed": 7,
 }
 """The body frame takes more time steps: long enough to be killed in the middle."""

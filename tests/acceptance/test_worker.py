@@ -108,7 +108,7 @@ def test_bad_inputs_fail_with_the_field_and_what_it_requires(farm: Farm) -> None
     assert ended.problem is not None
     assert (ended.problem["type"], ended.problem["status"]) == ("urn:safestart:problem:invalid-input", 422)
     assert ended.problem["field"] == "a_max_m_s2"
-    assert "greater than 0" in ended.problem["required"]
+    assert ">= 1e-06" in ended.problem["required"]
     with pytest.raises(JobFailed, match="a_max_m_s2"):
         farm.results.result(job)
 

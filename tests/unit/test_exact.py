@@ -52,14 +52,23 @@ class TestTwin:
             np.testing.assert_allclose(ours, twin, atol=2e-4, rtol=0)
             np.testing.assert_array_equal(ours >= 0.0, twin >= 0.0)
 
-    def test_boundary_is_within_a_micrometre_of_the_twins(self, case: str, rest: Rest) -> None:
-        scenario, horizon, extent = CASES[case]
-        if scenario.target.tumble_rate * horizon > 2.0 * math.pi:
-            pytest.skip("a corridor that turned once has met every start")
-        inner, outer = boundary(scenario, horizon, rest, extent)
-        assert len(inner) >= 1
-        found = exact_twin.margin(scenario, 0.5 * (inner + outer), horizon, rest, SetKind.TUBE, rounds=10)
-        assert np.abs(found).max() <= 1e-6
+
+# A corridor that turned once has met every start, so its tube has no boundary.
+BOUNDED = [
+    name
+    for name, (scenario, horizon, _) in CASES.items()
+    if scenario.target.tumble_rate * horizon < 2.0 * math.pi
+]
+
+
+@pytest.mark.parametrize("rest", list(Rest))
+@pytest.mark.parametrize("case", BOUNDED)
+def test_boundary_is_within_a_micrometre_of_the_twins(case: str, rest: Rest) -> None:
+    scenario, horizon, extent = CASES[case]
+    inner, outer = boundary(scenario, horizon, rest, extent)
+    assert len(inner) >= 1
+    found = exact_twin.margin(scenario, 0.5 * (inner + outer), horizon, rest, SetKind.TUBE, rounds=10)
+    assert np.abs(found).max() <= 1e-6
 
 
 def boundary(scenario: Scenario, horizon: float, rest: Rest, extent: float) -> tuple[Floats, Floats]:
