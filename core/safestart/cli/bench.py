@@ -8,10 +8,9 @@ from pathlib import Path
 from typing import Any
 
 import typer
-from rich.table import Table
 
 import safestart
-from safestart.cli.console import Json, err, out, print_json
+from safestart.cli.console import Json, err, out, print_json, table_of
 from safestart.errors import Unavailable
 from safestart.provenance import versions
 
@@ -47,9 +46,8 @@ def _suite() -> Any:
 
 def _show(document: dict[str, Any]) -> None:
     for title, unit in (("ratios", "x"), ("times", "s")):
-        table = Table(title=f"{title} (medians, one run, compile time apart)", title_justify="left")
-        table.add_column(title)
-        table.add_column(unit, justify="right")
+        shown = f"{title} (medians, one run, compile time apart)"
+        table = table_of(shown, [(title, "left"), (unit, "right")])
         for key, value in document[title].items():
             table.add_row(key, f"{value:,.3g}" if unit == "s" else f"{value:,.2f}")
         out.print(table)

@@ -5,26 +5,37 @@ from __future__ import annotations
 import json
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import typer
+from rich.box import SIMPLE_HEAD
 from rich.console import Console
+from rich.table import Table
 
 from safestart.progress import Context
 
+Justify = Literal["left", "right"]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout and nothing else.")]
 
-# A pipe or a log has no width of its own: tables keep theirs there, a terminal folds them.
-_WIDE = 124
+# Tables are this wide at least: in a pipe or a log, and in a narrow terminal, which then folds whole lines
+# instead of cutting figures off.
+_LEAST_WIDTH = 112
 
 
 def _console(*, stderr: bool) -> Console:
     console = Console(stderr=stderr, highlight=False)
-    if not console.is_terminal:
-        console.width = _WIDE
+    console.width = max(console.width, _LEAST_WIDTH)
     return console
+
+
+def table_of(title: str, columns: Sequence[tuple[str, Justify]]) -> Table:
+    """Empty table in our style."""
+    table = Table(title=title, title_justify="left", box=SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
+    for name, justify in columns:
+        table.add_column(name, justify=justify, no_wrap=True)
+    return table
 
 
 out = _console(stderr=False)
