@@ -88,7 +88,7 @@ def rows(question: Question, times: Floats) -> Rows:
         turn[:2, :2] = rotation(-target.tumble_rate * t)
         normals = -(corridor.normals @ turn) / corridor.lengths[:, None]
         start[j] = normals @ transition_matrix(target.mean_motion, t)[:d][:, keep]
-        last = min(int(math.floor(t / dt * (1 + 1e-14))), count)
+        last = min(math.floor(float(t) / dt * (1 + 1e-14)), count)
         for k in range(last):
             reach = transition_matrix(target.mean_motion, t - (k + 1) * dt)[:d] @ held
             thrust[j, :, k * d : (k + 1) * d] = normals @ reach
