@@ -164,7 +164,8 @@ def _embedded(processes: int) -> LocalCluster:
         dashboard_address=None,
         scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
         memory_limit=int(_MEMORY_SHARE * MEMORY_LIMIT / max(processes, 1)),
-        silence_logs=logging.WARNING,
+        # Dask warns of every process that is ended on purpose; what matters of it our own lines say.
+        silence_logs=logging.ERROR,
         asynchronous=True,
     )
 
