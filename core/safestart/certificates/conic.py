@@ -1,0 +1,102 @@
+"""The exact question at finitely many rows as a second-order cone program, solved by Clarabel.
+
+Maximise m over thrusts u_k = a_max w_k, |w_k| <= 1, subject to offset_j + start_j . x0 + thrust_j . u >= m.
+The dual gives weights lambda >= 0 that sum to 1, and for any such weights no thrust history does better than
+sum_j lambda_j (offset + start . x0)_j + a_max sum_k |sum_j lambda_j thrust_jk|.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from safestart.scenario import Floats
+
+# A hair inside the disk, so that the norm is within a_max in exact arithmetic and not only in floats.
+_INSIDE = 1.0 - 1e-14
+
+
+@dataclass(frozen=True, slots=True)
+class Solved:
+    """Thrust (N, d) in m/s^2 inside the disk, weights (J,), and the dual bound (m) that they prove.
+
+    ``thrust`` is None where the solver gave nothing usable; ``status`` is its own word for why.
+    """
+
+    status: str
+    thrust: Floats | None = None
+    weights: Floats | None = None
+    bound: float = np.inf
+
+
+def solve(constant: Floats, thrust: Floats, a_max: float, dimensions: int) -> Solved:
+    """Solve for J rows: ``constant`` (J,) = offset + start . x0 in m, ``thrust`` (J, N d) in m per m/s^2."""
+    import clarabel
+    from scipy.sparse import csc_array
+
+    rows, columns = thrust.shape
+    count = columns // dimensions
+    cone = dimensions + 1
+    scaled = a_max * thrust
+    data, indices, starts = _columns(scaled, dimensions)
+    size = rows + count * cone
+    a = csc_array((data, indices, starts), shape=(size, columns + 1))
+    b = np.zeros(size)
+    b[:rows] = constant
+    b[rows::cone] = 1.0
+    cost = np.zeros(columns + 1)
+    cost[-1] = -1.0
+    cones = [clarabel.NonnegativeConeT(rows), *[clarabel.SecondOrderConeT(cone)] * count]
+    none = csc_array((columns + 1, columns + 1))
+    found = clarabel.DefaultSolver(none, cost, a, b, cones, _settings()).solve()
+    status = str(found.status)
+    if status not in ("Solved", "AlmostSolved", "InsufficientProgress", "MaxIterations"):
+        return Solved(status)
+    w = np.array(found.x[:-1]).reshape(count, dimensions)
+    weights = np.maximum(np.array(found.z[:rows]), 0.0)
+    total = float(weights.sum())
+    if not (np.isfinite(w).all() and np.isfinite(total) and total > 0.0):
+        return Solved(status)
+    norms = np.sqrt((w * w).sum(axis=1))
+    inside = w * (a_max * np.where(norms > _INSIDE, _INSIDE / np.maximum(norms, _INSIDE), 1.0))[:, None]
+    weights /= total
+    return Solved(status, inside, weights, bound(constant, thrust, weights, a_max, dimensions))
+
+
+def bound(constant: Floats, thrust: Floats, weights: Floats, a_max: float, dimensions: int) -> float:
+    """Upper bound (m) on the margin of every thrust history, from weights (J,) >= 0 of sum 1."""
+    pull = (weights @ thrust).reshape(-1, dimensions)
+    return float(weights @ constant + a_max * np.sqrt((pull * pull).sum(axis=1)).sum())
+
+
+def _columns(scaled: Floats, dimensions: int) -> tuple[Floats, Any, Any]:
+    """The constraint matrix by columns: (-thrust, then -1 in its cone) for each w, and 1 in every row for m."""
+    rows, columns = scaled.shape
+    component = np.arange(columns)
+    cone = rows + (dimensions + 1) * (component // dimensions) + 1 + component % dimensions
+    filled = np.empty((columns, rows + 1))
+    filled[:, :rows] = -scaled.T
+    filled[:, rows] = -1.0
+    where = np.empty((columns, rows + 1), dtype=np.int64)
+    where[:, :rows] = np.arange(rows)
+    where[:, rows] = cone
+    keep = filled != 0.0
+    counts = keep.sum(axis=1)
+    data = np.concatenate([filled[keep], np.ones(rows)])
+    indices = np.concatenate([where[keep], np.arange(rows)])
+    starts = np.concatenate([[0], np.cumsum(counts), [int(counts.sum()) + rows]])
+    return data, indices, starts
+
+
+def _settings() -> Any:
+    import clarabel
+
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    settings.max_threads = 1
+    settings.presolve_enable = False
+    settings.chordal_decomposition_enable = False
+    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-8
+    return settings

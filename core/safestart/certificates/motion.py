@@ -1,0 +1,93 @@
+"""CWH motion at many times at once, for thrust held over equal intervals: the tables behind the exact answer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from safestart.dynamics.cwh import input_matrix, transition_matrix
+from safestart.scenario import Floats
+
+
+@dataclass(frozen=True, slots=True)
+class NodeTables:
+    """States at the N nodes t_k = k dt, k < N, and within an interval; the state is (position, velocity), (2 d,).
+
+    ``free`` (N, 2 d, 2 d) and ``driven`` (N, 2 d, N d): x(t_k) = free_k x0 + driven_k u. ``along`` (2 d, (S+1) 2 d) and
+    ``held`` (d, (S+1) 2 d): states at S+1 equally spaced times of an interval from its first state and its thrust.
+    """
+
+    free: Floats
+    driven: Floats
+    along: Floats
+    held: Floats
+
+    def flight(self, state: Floats, thrust: Floats) -> Floats:
+        """States (N, S+1, 2 d) of the flight from ``state`` (2 d,) under ``thrust`` (N, d), both ends included."""
+        count, size, _ = self.free.shape
+        nodes = (self.free @ state) + (self.driven.reshape(count * size, -1) @ thrust.ravel()).reshape(
+            count, -1
+        )
+        out: Floats = (nodes @ self.along + thrust @ self.held).reshape(count, -1, size)
+        return out
+
+
+@lru_cache(maxsize=16)
+def motion_tables(mean_motion: float, dt: float, steps: int, dimensions: int, samples: int) -> NodeTables:
+    """Tables for N = ``steps`` intervals of ``dt`` seconds with ``samples`` parts each."""
+    d = dimensions
+    keep = np.r_[0:d, 3 : 3 + d]
+    step = transition_matrix(mean_motion, dt)[np.ix_(keep, keep)]
+    push = input_matrix(mean_motion, dt)[keep, :d]
+    free = np.empty((steps, 2 * d, 2 * d))
+    driven = np.zeros((steps, 2 * d, steps * d))
+    free[0] = np.eye(2 * d)
+    for k in range(1, steps):
+        free[k] = transition_matrix(mean_motion, k * dt)[np.ix_(keep, keep)]
+        driven[k] = step @ driven[k - 1]
+        driven[k, :, (k - 1) * d : k * d] = push
+    within = [dt * s / samples for s in range(samples + 1)]
+    along = np.hstack([transition_matrix(mean_motion, s)[np.ix_(keep, keep)].T for s in within])
+    held = np.hstack([input_matrix(mean_motion, s)[keep, :d].T for s in within])
+    return NodeTables(free, driven, np.ascontiguousarray(along), np.ascontiguousarray(held))
+
+
+def _phases(phase: Floats) -> tuple[Floats, Floats, Floats]:
+    """sin(p)/p, (1 - cos p)/p^2 and (p - sin p)/p^3, by series: exact at 0, to 1e-16 for |p| <= 0.5."""
+    square = phase * phase
+    sinc = versine = cubic = np.zeros_like(square)
+    for k in range(6, -1, -1):
+        sinc = 1.0 - square / ((2 * k + 2) * (2 * k + 3)) * sinc if k < 6 else np.ones_like(square)
+        versine = 1.0 - square / ((2 * k + 3) * (2 * k + 4)) * versine if k < 6 else np.ones_like(square)
+        cubic = 1.0 - square / ((2 * k + 4) * (2 * k + 5)) * cubic if k < 6 else np.ones_like(square)
+    return sinc, versine / 2.0, cubic / 6.0
+
+
+def held_displacement(mean_motion: float, tau: Floats, dimensions: int) -> tuple[Floats, Floats]:
+    """Position rows of Phi(tau), (J, d, 2 d), and of B_d(tau), (J, d, d), for J times in seconds."""
+    d, count = dimensions, len(tau)
+    p = mean_motion * tau
+    if count and float(np.abs(p).max()) > 0.5:
+        keep = np.r_[0:d, 3 : 3 + d]
+        return (
+            np.array([transition_matrix(mean_motion, float(t))[:d, keep] for t in tau]),
+            np.array([input_matrix(mean_motion, float(t))[:d, :d] for t in tau]),
+        )
+    f1, f2, f3 = _phases(p)
+    square = tau * tau
+    free, held = np.zeros((count, d, 2 * d)), np.zeros((count, d, d))
+    swing = 2.0 * tau * p * f2
+    free[:, 0, 0] = 1.0 + 3.0 * p * p * f2
+    free[:, 1, 0] = -6.0 * p**3 * f3
+    free[:, 1, 1] = 1.0
+    free[:, 0, d], free[:, 0, d + 1] = tau * f1, swing
+    free[:, 1, d], free[:, 1, d + 1] = -swing, tau * (4.0 * f1 - 3.0)
+    sweep = 2.0 * square * p * f3
+    held[:, 0, 0], held[:, 0, 1] = square * f2, sweep
+    held[:, 1, 0], held[:, 1, 1] = -sweep, square * (4.0 * f2 - 1.5)
+    if d == 3:
+        free[:, 2, 2], free[:, 2, 5] = 1.0 - p * p * f2, tau * f1
+        held[:, 2, 2] = square * f2
+    return free, held
