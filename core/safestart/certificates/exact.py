@@ -1,4 +1,4 @@
-"""The exact answer: may this start stay in the corridor at all times of [0, T]; yes with a thrust history, no with a proof.
+"""The exact answer: may this start stay in the corridor at all times of [0, T]? Yes with thrust, no with a proof.
 
 Cutting planes in time. The conic program is solved with few rows; the flight it proposes is watched at all times; where
 a face comes closer than the program knew, a row is added. The program's dual bounds the best margin from above, the
