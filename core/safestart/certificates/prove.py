@@ -14,8 +14,8 @@ from safestart.certificates.statement import SCHEMA, digest_of
 from safestart.errors import invalid
 from safestart.scenario import Floats
 
-# The claim stands back by what the solver's floats may have lost, in metres; for GO by more, so that the checker need not
-# cut time into ever smaller pieces where a face is touched.
+# The claim stands back by what the solver's floats may have lost, in metres; for GO by more, so that the checker
+# need not cut time into ever smaller pieces where a face is touched.
 _NO_GO_STAND_BACK_M = 1e-9
 _GO_STAND_BACK_M = 2e-7
 _LEAST_WEIGHT = 1e-12
@@ -59,7 +59,7 @@ def proof_of(question: Question, state: Floats, answer: Answer) -> dict[str, Any
         document["margin_m"] = max(answer.lower - _GO_STAND_BACK_M, 0.5 * answer.lower)
         document["thrust_m_s2"] = answer.thrust.tolist()
     elif answer.verdict is Verdict.NO_GO:
-        document["margin_m"] = min(answer.upper + X)
+        document["margin_m"] = min(answer.upper + _NO_GO_STAND_BACK_M, 0.5 * answer.upper)
         document["multipliers"] = [
             {"time_s": _within(row.time, question), "face": row.face, "value": row.value}
             for row in answer.multipliers
