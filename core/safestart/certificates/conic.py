@@ -98,5 +98,6 @@ def _settings() -> Any:
     settings.max_threads = 1
     settings.presolve_enable = False
     settings.chordal_decomposition_enable = False
+    settings.iterative_refinement_enable = False
     settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-8
     return settings

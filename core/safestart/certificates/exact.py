@@ -13,9 +13,9 @@ from enum import StrEnum
 
 import numpy as np
 
-from safestart.certificates.conic import solve
 from safestart.certificates.question import Question
-from safestart.certificates.watch import Cuts, Watch, watch_of
+from safestart.certificates.search import Search
+from safestart.certificates.watch import watch_of
 from safestart.errors import invalid
 from safestart.scenario import Floats, number
 
@@ -24,7 +24,6 @@ TOLERANCE = 1e-4
 GUARD = 1e-9
 _FINEST = 2e-7
 _ROUNDS = 40
-_FIRST_TIMES = 7
 
 
 class Verdict(StrEnum):
@@ -84,103 +83,41 @@ def decide(
     if not np.isfinite(state).all() or float(np.abs(state).max()) > 1e6:
         raise invalid("state", "finite numbers within 1e6", state)
     number("tolerance", tolerance, 1e-6, 1e3)
-    watch = watch_of(question)
-    search = _Search(watch, state)
-    outside = search.outside()
-    if outside is not None:
-        return outside
-    goal, reason = tolerance, "the tolerance lies between the bounds and 0"
+    search = Search(watch_of(question), state)
+    if search.distance_now < -GUARD:
+        return _outside(search)
+    reason = "0 lies between the bounds"
     for _ in range(_ROUNDS):
         failed = search.round()
         if failed:
             reason = failed
             break
         decided = search.lower > GUARD or search.upper < -GUARD
-        if decided and (verdict_only or search.upper - search.lower <= tolerance):
-            break
         goal = tolerance if decided else _FINEST
-        if search.upper - search.lower <= goal or not search.cut(goal):
+        if search.upper - search.lower <= goal or (decided and verdict_only) or not search.cut(goal):
             break
-    return search.answer(reason)
+    return _answer(search, reason)
 
 
-class _Search:
-    """The state of one answer's loop: rows so far, best flight, best proof."""
+def _outside(search: Search) -> Answer:
+    """NO_GO at once for a start outside the corridor: the distance at t = 0 is what it is, whatever the thrust."""
+    question = search.watch.question
+    still = np.zeros((question.steps, question.dimensions))
+    worst = search.distance_now
+    lower = min(worst, search.watch.minima(search.state, still).lowest)
+    proof = (Multiplier(0.0, search.watch.names[search.face_now], 1.0),)
+    return Answer(Verdict.NO_GO, worst, lower, worst, None, proof, 0)
 
-    def __init__(self, watch: Watch, state: Floats) -> None:
-        self.watch, self.state = watch, state
-        self.lower, self.upper = -math.inf, math.inf
-        self.thrust: Floats | None = None
-        self.iterations = 0
-        faces = len(watch.names)
-        self.start = watch.offsets - watch.normals @ state[: watch.question.dimensions]
-        times = np.repeat(np.linspace(0.0, watch.question.horizon, _FIRST_TIMES)[1:], faces)
-        first = np.full(1, int(np.argmin(self.start)), dtype=np.int64)
-        every = np.concatenate([first, np.tile(np.arange(faces), _FIRST_TIMES - 1)])
-        self._keep(watch.cuts(np.concatenate([[0.0], times]), every))
 
-    def _keep(self, cuts: Cuts) -> None:
-        constant = cuts.offset + cuts.start @ self.state
-        if self.iterations == 0:
-            self.times, self.faces, self.constant, self.rows = cuts.times, cuts.faces, constant, cuts.thrust
-            return
-        self.times = np.concatenate([self.times, cuts.times])
-        self.faces = np.concatenate([self.faces, cuts.faces])
-        self.constant = np.concatenate([self.constant, constant])
-        self.rows = np.concatenate([self.rows, cuts.thrust])
-
-    def outside(self) -> Answer | None:
-        """NO_GO at once for a start outside the corridor: the distance at t = 0 is what it is."""
-        face = int(np.argmin(self.start))
-        worst = float(self.start[face])
-        if worst >= -GUARD:
-            return None
-        still = np.zeros((self.watch.question.steps, self.watch.question.dimensions))
-        lower = min(worst, self.watch.minima(self.state, still).lowest)
-        proof = (Multiplier(0.0, self.watch.names[face], 1.0),)
-        return Answer(Verdict.NO_GO, worst, lower, worst, None, proof, 0)
-
-    def round(self) -> str:
-        """Solve with the rows so far and watch the flight; the reason if the solver failed, else empty."""
-        question = self.watch.question
-        self.iterations += 1
-        found = solve(
-            self.constant, self.rows, question.scenario.chaser.max_acceleration, question.dimensions
-        )
-        if found.thrust is None or found.weights is None:
-            return f"the solver stopped with {found.status} in round {self.iterations}"
-        if found.bound < self.upper:
-            self.upper = found.bound
-            kept = np.nonzero(found.weights > 0.0)[0]
-            self.weights = found.weights[kept], self.times[kept], self.faces[kept]
-        self.found = self.watch.minima(self.state, found.thrust)
-        if self.found.lowest > self.lower:
-            self.lower, self.thrust = self.found.lowest, found.thrust
-        return ""
-
-    def cut(self, goal: float) -> bool:
-        """Add the local minima that lie below what the program promised; False when there is none."""
-        minima = self.found
-        low = minima.values < self.upper - 0.25 * goal
-        times, faces = minima.times[low], minima.faces[low]
-        if not len(times):
-            return False
-        self._keep(self.watch.cuts(times, faces))
-        return True
-
-    def answer(self, reason: str) -> Answer:
-        """The answer with what the loop has proved."""
-        lower, upper = self.lower, self.upper
-        if lower > GUARD:
-            return Answer(Verdict.GO, lower, lower, upper, self.thrust, (), self.iterations)
-        proof: tuple[Multiplier, ...] = ()
-        if math.isfinite(upper):
-            proof = tuple(
-                Multiplier(float(time), self.watch.names[face], float(value))
-                for value, time, face in zip(*self.weights, strict=True)
-            )
-        if upper < -GUARD:
-            return Answer(Verdict.NO_GO, upper, lower, upper, None, proof, self.iterations)
-        finite = math.isfinite(lower) and math.isfinite(upper)
-        middle = 0.5 * (lower + upper) if finite else math.nan
-        return Answer(Verdict.UNDECIDED, middle, lower, upper, self.thrust, proof, self.iterations, reason)
+def _answer(search: Search, reason: str) -> Answer:
+    lower, upper, rounds = search.lower, search.upper, search.rounds
+    if lower > GUARD:
+        return Answer(Verdict.GO, lower, lower, upper, search.thrust, (), rounds)
+    proof = tuple(
+        Multiplier(float(time), search.watch.names[face], float(value)) for time, face, value in search.proof
+    )
+    if upper < -GUARD:
+        return Answer(Verdict.NO_GO, upper, lower, upper, None, proof, rounds)
+    finite = math.isfinite(lower) and math.isfinite(upper)
+    middle = 0.5 * (lower + upper) if finite else math.nan
+    return Answer(Verdict.UNDECIDED, middle, lower, upper, search.thrust, proof, rounds, reason)
