@@ -1,0 +1,211 @@
+"""Reach tubes of the switched rendezvous: sound against simulations, tight, and able to fail."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+from scipy.optimize import linprog
+
+from safestart.errors import InvalidInput
+from safestart.verification.falsify import approaches, closest, replay
+from safestart.verification.flow import flow_at, flow_table, growth
+from safestart.verification.model import FACE_LIMITS, FACES, Mode, matrix
+from safestart.verification.question import Question, Verdict
+from safestart.verification.reach import Mutation, reach
+from safestart.verification.separation import planar_clearance, timed_clearance
+from safestart.verification.simulate import active, crossing_times, drifted, flown
+from safestart.verification.tube import propagate
+from safestart.verification.verify import bracket, verify
+from tests.unit.reach_check import drift_excess, powered_excess, random_starts
+
+WHOLE = Question(window=(0.0, 300.0))
+FROM_THE_SIDE = Question(centre=(-200.0, -900.0, 0.0, 0.0), half=(10.0, 10.0, 0.0, 0.0), window=(0.0, 200.0))
+AT_A_CORNER = Question(centre=(-900.0, -520.0, 0.0, 0.0), half=(25.0, 25.0, 0.0, 0.0), window=(0.0, 200.0))
+
+
+def test_closed_loop_is_the_published_one() -> None:
+    """Rows of the competition's closed-loop files, as far as they print them."""
+    assert matrix(Mode.FAR)[2] == pytest.approx(
+        [-0.057599765881773, 0.000200959896519766, -2.89995083970656, 0.00877200894463775], rel=1e-13
+    )
+    assert matrix(Mode.NEAR)[2] == pytest.approx(
+        [-0.575999943070835, 0.000262486079431672, -19.2299795908647, 0.00876275931760007], rel=1e-13
+    )
+
+
+@pytest.mark.parametrize("mode", list(Mode))
+def test_exponentials(mode: Mode) -> None:
+    a = matrix(mode)
+    table = flow_table(mode, Fraction(3, 5), Fraction(1, 4), 300)
+    for k in (0, 7, 255, 256, 300):
+        there = expm(a * (0.6 + 0.25 * k))
+        assert table.phi[k] == pytest.approx(there, rel=1e-9, abs=1e-12)
+        assert table.psi[k] == pytest.approx(a @ a @ there, rel=1e-9, abs=1e-11)
+        assert flow_at(mode, 0.6 + 0.25 * k)[0] == pytest.approx(table.phi[k], rel=1e-12, abs=1e-14)
+    bound = growth(mode, Fraction(8))
+    assert all((np.abs(expm(a * s)) <= bound * (1 + 1e-12)).all() for s in np.linspace(0.0, 8.0, 101))
+
+
+def test_simulation_is_the_exponential() -> None:
+    start = np.array([[-880.0, -420.0, 0.0, 0.0]])
+    crossing = crossing_times(start, 300.0)
+    for abort, time in ((50.0, 50.0), (50.0, 200.0), (240.0, 260.0), (110.3, 130.0), (300.0, 300.0)):
+        flight = active(start, crossing, np.array([abort]))
+        there = replay(start[0], abort, time)
+        assert drifted(flight, np.array(time - abort))[0] == pytest.approx(there[:2], rel=1e-9, abs=1e-9)
+    assert crossing_times(start, 300.0, bracket(reach(WHOLE))) == pytest.approx(crossing, abs=1e-9)
+
+
+@pytest.mark.parametrize("question", [WHOLE, FROM_THE_SIDE, AT_A_CORNER], ids=["face", "side", "corner"])
+def test_no_simulated_flight_leaves_its_tube(question: Question) -> None:
+    tubes = reach(question)
+    assert tubes.entry.reason == ""
+    assert powered_excess(question, tubes, 2000, 7) <= 0.0
+
+
+def test_every_crossing_is_on_a_face_that_has_a_branch() -> None:
+    starts = random_starts(AT_A_CORNER, 500, 3)
+    crossing = crossing_times(starts, 300.0)
+    tubes = reach(AT_A_CORNER)
+    assert len(tubes.branches) > 1
+    heights = flown(Mode.FAR, starts, crossing)[:, :2] @ FACES.T - FACE_LIMITS
+    assert set(heights.argmax(axis=1)) <= {branch.crossing.face for branch in tubes.branches}
+    assert (crossing >= tubes.entry.first).all()
+    assert (crossing <= tubes.entry.last).all()
+
+
+def test_no_simulated_drift_leaves_its_cell() -> None:
+    tubes = reach(WHOLE)
+    for level in (0, 3, 5):
+        assert drift_excess(WHOLE, tubes, 2000, 11, level) <= 0.0
+
+
+@pytest.mark.parametrize(
+    "mutation", [Mutation(curvature=0.0), Mutation(remainder=0.0)], ids=["curvature", "guard remainder"]
+)
+def test_leaving_out_a_bound_is_caught_by_flights(mutation: Mutation) -> None:
+    assert powered_excess(WHOLE, reach(WHOLE, mutation), 500, 7) > 1e-4
+
+
+@pytest.mark.parametrize(
+    "mutation",
+    [Mutation(curvature=0.0), Mutation(remainder=0.0), Mutation(bins=False)],
+    ids=["curvature", "guard remainder", "bins"],
+)
+def test_leaving_out_a_bound_is_caught_by_drifts(mutation: Mutation) -> None:
+    assert drift_excess(WHOLE, reach(WHOLE, mutation), 2000, 2, 5, mutation) > 1e-4
+
+
+def test_tube_is_within_five_percent_of_the_hull_of_dense_simulations() -> None:
+    """Widths per component: mode 1, and the slow part of mode 2; of its first seconds the means."""
+    centre, gens = WHOLE.set()
+    side = np.linspace(-1.0, 1.0, 9)
+    starts = centre + np.stack(np.meshgrid(side, side), axis=-1).reshape(-1, 2) @ gens
+    tubes = reach(Question())
+    (branch,) = tubes.branches
+    crossed = flown(Mode.FAR, starts, crossing_times(starts, 300.0))
+    rows = np.vstack([np.eye(4), -np.eye(4)])
+    for tube, origin in ((tubes.far, starts), (branch.early, crossed), (branch.late, crossed)):
+        times = tube.start + tube.step * np.arange(tube.steps + 1)
+        values = (flown(tube.mode, origin[:, None, :], times) @ rows.T).max(axis=0)
+        hull = np.maximum(values[:-1], values[1:])
+        upper = tube.upper(rows)
+        ratio = (upper[:, :4] + upper[:, 4:]) / (hull[:, :4] + hull[:, 4:])
+        assert ratio.min() >= 1.0 - 1e-12
+        assert ratio[:, :2].mean(axis=0).max() < 1.05
+        assert np.median(ratio, axis=0).max() < 1.05
+    assert ratio.max() < 1.05
+
+
+def test_interpolation_bound_converges_with_order_two() -> None:
+    centre, gens = WHOLE.set()
+    bends = [
+        float(propagate(Mode.FAR, centre, gens, Fraction(0), step, 64).bend[0, 0])
+        for step in (Fraction(1, 20), Fraction(1, 40))
+    ]
+    assert bends[0] / bends[1] == pytest.approx(4.0, rel=0.15)
+
+
+def test_planar_clearance_is_the_distance() -> None:
+    """Against linear programs: the least max-norm of a point of the zonotope."""
+    random = np.random.default_rng(1)
+    for _ in range(40):
+        centre, gens, box = random.normal(size=2) * 4.0, random.normal(size=(5, 2)), random.uniform(0, 0.3, 2)
+        whole = np.vstack([gens, np.diag(box)])
+        got = planar_clearance(centre[None], gens[None], box[None])[0]
+        rows = np.block([[whole.T, -np.ones((2, 1))], [-whole.T, -np.ones((2, 1))]])
+        limits = np.concatenate([-centre, centre])
+        lp = linprog(np.eye(8)[7], rows, limits, bounds=[(-1, 1)] * 7 + [(0, None)])
+        # Nearest points at a corner of the square need a diagonal of it, which no face normal is.
+        assert got <= lp.fun + 1e-9
+        assert (got > 0.0) == (lp.fun > 1e-9)
+
+
+def test_timed_clearance_sees_only_members_inside_the_window() -> None:
+    gens = np.array([[[1.0, 0.0], [0.0, 0.1]]])
+    clock_gens = np.array([[1.0, 0.0]])
+    centre, box = np.array([[1.0, 0.0]]), np.zeros((1, 2))
+    # x = 1 + w, clock = 10 + w: the origin is met at clock 9 only.
+    assert planar_clearance(centre, gens, box)[0] <= 0.0
+    timed = timed_clearance(centre, gens, box, np.array([10.0]), clock_gens, (9.5, 11.0))[0]
+    assert timed == pytest.approx(0.5, abs=1e-9)
+    assert timed_clearance(centre, gens, box, np.array([10.0]), clock_gens, (8.0, 11.0))[0] <= 0.0
+    assert timed_clearance(centre, gens, box, np.array([10.0]), clock_gens, (12.0, 13.0))[0] == np.inf
+
+
+def test_start_beside_the_cone_violates_the_line_of_sight() -> None:
+    answer = verify(FROM_THE_SIDE)
+    finding = answer.findings["los"]
+    assert [branch.crossing.name for branch in answer.reach.branches] == ["y=-100"]
+    assert finding.verdict is Verdict.UNSAFE
+    assert finding.counter_example is not None
+    state = replay(np.array(finding.counter_example["start"]), np.inf, finding.counter_example["time_min"])
+    assert abs(state[1]) > -np.tan(np.pi / 6) * state[0] + 1.0
+
+
+def test_what_is_not_proved_is_unknown_with_a_reason() -> None:
+    """So wide a set that some starts may never enter within the tube, or cross a face twice."""
+    answer = verify(
+        Question(centre=(-900.0, 0.0, 0.0, 0.0), half=(300.0, 900.0, 0.0, 0.0), window=(0.0, 200.0))
+    )
+    assert answer.findings["thrust"].verdict is not Verdict.SAFE
+    for finding in answer.findings.values():
+        assert finding.verdict is not Verdict.SAFE
+        assert finding.reason or finding.counter_example
+
+
+def test_closest_approach_of_the_aborts_up_to_240_minutes() -> None:
+    found = closest(Question(window=(0.0, 240.0)), (0.0, 240.0))
+    assert found.max_norm == pytest.approx(0.28, abs=0.01)
+    assert np.abs(replay(np.array(found.start), found.abort, found.time)[:2]).max() == pytest.approx(
+        found.max_norm, abs=1e-9
+    )
+
+
+def test_random_aborts_keep_the_proved_distance() -> None:
+    question = Question(window=(0.0, 240.0), box=0.2)
+    bound = verify(question).findings["separation"].bound
+    assert bound is not None
+    starts = random_starts(question, 600, 21)
+    aborts = np.random.default_rng(22).uniform(0.0, 240.0, len(starts))
+    distance, _ = approaches(starts, aborts, question.horizon, crossing_times(starts, 240.0))
+    assert distance.min() >= bound
+
+
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [
+        ({"centre": (-90.0, 0.0, 0.0, 0.0)}, "centre"),
+        ({"centre": (float("nan"), 0.0, 0.0, 0.0)}, "centre.x"),
+        ({"half": (-1.0, 0.0, 0.0, 0.0)}, "half.x"),
+        ({"horizon": 0.0}, "horizon"),
+        ({"box": 0.0}, "box"),
+        ({"window": (10.0, 5.0)}, "window[1]"),
+        ({"window": (10.0, 301.0)}, "window[1]"),
+    ],
+)
+def test_bad_questions_name_the_field(change: dict, field: str) -> None:
+    with pytest.raises(InvalidInput) as error:
+        Question(**change)
+    assert error.value.field == field
