@@ -11,7 +11,7 @@ from safestart.certificates.explain import explain
 from safestart.certificates.point import certify_point, prepare
 from safestart.processes.base import WireModel
 from safestart.processes.go_no_go.run import run, single
-from safestart.processes.go_no_go.spec import GoNoGoInputs, StateInput
+from safestart.processes.go_no_go.spec import GoNoGoInputs, Method, StateInput
 from safestart.processes.wire import NO_SYNC_LIMIT, CorridorInput, Thrust, TumbleRate
 from safestart.progress import Context
 from safestart.scenario import MAX_MEAN_MOTION, MAX_RANGE, Rest
@@ -40,6 +40,13 @@ class GoNoGoQuery(WireModel):
     x0_m: float = Field(2.5, ge=0, le=1000, description="Corridor: half-width of the port in x, m.")
     z0_m: float = Field(2.5, ge=0, le=1000, description="Corridor: half-width of the port in z, m.")
     r_h_m: float = Field(0.5, ge=0, le=1000, description="Corridor: hold stand-off radius, m.")
+    method: Method = Field(
+        "closed_form", description="closed_form, or exact (auto is the same for one start)."
+    )
+    horizon_s: float = Field(
+        60.0, ge=2, le=600, multiple_of=2, description="How long to stay in the corridor (exact), s."
+    )
+    proofs: bool = Field(False, description="Return the proof document (exact).")
 
     def inputs(self) -> GoNoGoInputs:
         """The same question as inputs of the go-no-go process; validated already, so not again."""
@@ -53,15 +60,19 @@ class GoNoGoQuery(WireModel):
             corridor=corridor,
             states=[StateInput.model_construct(x_m=self.x_m, y_m=self.y_m, z_m=self.z_m)],
             rest=self.rest,
-            method="closed_form",
+            method=self.method,
+            horizon_s=self.horizon_s,
+            proofs=self.proofs,
         )
 
 
 class GoNoGoAnswer(WireModel):
     """The verdict on one start, with every margin it rests on."""
 
-    verdict: Literal["GO", "NO_GO"]
-    margin_m: float = Field(description="Smallest margin, m; GO needs it positive.")
+    verdict: Literal["GO", "NO_GO", "UNDECIDED"]
+    margin_m: float | None = Field(
+        description="Closed form: smallest margin, m; GO needs it positive. Exact: the proved bound."
+    )
     face_margins_m: dict[str, float] = Field(description="Margin after erosion by face, m.")
     range_margin_m: float | None = Field(description="r_sync minus range, m; null without a limit.")
     r_sync_m: float | None = Field(description="Synchronization range limit, m; null when there is none.")
@@ -71,12 +82,17 @@ class GoNoGoAnswer(WireModel):
         description="Faces of the corridor that the start itself is outside of."
     )
     reason: str = Field(description="The verdict in a sentence.")
-    method: Literal["closed_form"]
+    proof: dict[str, Any] | None = Field(
+        None, description="Proof document for `safestart verify`, when asked for."
+    )
+    method: Method
     rest: Rest
 
 
 def flat_answer(query: GoNoGoQuery) -> dict[str, Any]:
     """The go-no-go document of a single state, without arrays of length one."""
+    if query.method != "closed_form":
+        return single(run(query.inputs(), _SILENT).document)
     shape = (query.c_x, query.c_z, query.x0_m, query.z0_m, query.r_h_m)
     z = query.z_m
     prepared = prepare(
@@ -99,6 +115,7 @@ def flat_answer(query: GoNoGoQuery) -> dict[str, Any]:
         "binding": binding,
         "violated_faces": violated,
         "reason": reason,
+        "proof": None,
         "method": "closed_form",
         "rest": query.rest.value,
     }

@@ -38,9 +38,7 @@ def query_values(raw: bytes) -> dict[str, str]:
     return values
 
 
-def query_route(
-    model: type[BaseModel], answer: Callable[[Any], Response | Awaitable[Response]]
-) -> type[APIRoute]:
+def query_route(model: type[BaseModel], answer: Callable[[Any], Awaitable[Response]]) -> type[APIRoute]:
     """An ``APIRoute`` class that serves ``answer(model)``; the endpoint it decorates is the documentation."""
     validate = model.model_validate_strings
 
@@ -55,7 +53,7 @@ def query_route(
                     query = validate(query_values(request.scope["query_string"]))
                 except ValidationError as error:
                     raise validation_error(error) from None
-                return answer(query)  # type: ignore[return-value]
+                return await answer(query)
 
             return handle
 

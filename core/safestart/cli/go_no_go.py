@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from safestart.cli.console import Json, out, print_json
+from safestart.errors import invalid
 from safestart.processes.execute import execute
 from safestart.processes.go_no_go.run import single
 from safestart.scenario import Rest
@@ -24,9 +27,14 @@ def register(app: typer.Typer) -> None:
         z_m: Annotated[float | None, typer.Option(help="Start, body-frame z, m; absent: planar.")] = None,
         rest: Annotated[Rest, typer.Option(help="Frame in which the start is at rest.")] = Rest.LVLH,
         mean_motion_rad_s: Annotated[float, typer.Option(help="Mean motion of the orbit, rad/s.")] = 1.1e-3,
+        method: Annotated[str, typer.Option(help="closed_form, exact (proved) or auto.")] = "closed_form",
+        horizon_s: Annotated[float, typer.Option(help="How long to stay in the corridor (exact), s.")] = 60.0,
+        proof: Annotated[
+            Path | None, typer.Option(help="Where to write the proof (exact), for `safestart verify`.")
+        ] = None,
         as_json: Json = False,
     ) -> None:
-        """May a chaser at rest at this point start its approach? Answers at once, by the closed form."""
+        """May a chaser at rest at this point start its approach? By the closed form at once, or proved (exact)."""
         state = {"x_m": x_m, "y_m": y_m} | ({} if z_m is None else {"z_m": z_m})
         inputs = {
             "omega_t_deg_s": omega_t_deg_s,
@@ -34,9 +42,14 @@ def register(app: typer.Typer) -> None:
             "mean_motion_rad_s": mean_motion_rad_s,
             "states": [state],
             "rest": rest.value,
+            "method": method,
+            "horizon_s": horizon_s,
+            "proofs": proof is not None,
         }
         document = execute("go-no-go", inputs).document
         answer = document["outputs"]
+        if proof is not None:
+            _write(proof, answer["proof"] and answer["proof"][0])
         if as_json:
             print_json(single(answer))
             return
@@ -48,4 +61,13 @@ def register(app: typer.Typer) -> None:
         shown = f"{r_sync:.2f} m" if r_sync is not None else f"none ({answer['r_sync_reason']})"
         out.print(f"  synchronization range limit: {shown}")
         for face, margin in zip(answer["faces"], answer["face_margins_m"][0], strict=True):
-            out.print(f"  margin {face:<11} {margin:9.2f} m")
+            out.print(f"  closed-form margin {face:<11} {margin:9.2f} m")
+
+
+def _write(path: Path, document: object) -> None:
+    if document is None:
+        raise invalid("--proof", "a proved verdict (method exact, GO or NO_GO)", "none")
+    try:
+        path.write_text(json.dumps(document, allow_nan=False) + "\n", encoding="utf-8")
+    except OSError as error:
+        raise invalid("--proof", "a writable path", f"{path} ({error.strerror})") from None

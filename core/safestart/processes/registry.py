@@ -11,6 +11,7 @@ from safestart.processes.base import ProcessSpec
 _SPECS = {
     "go-no-go": "safestart.processes.go_no_go.spec",
     "certificate": "safestart.processes.certificate.spec",
+    "atlas": "safestart.processes.atlas.spec",
     "coverage": "safestart.processes.coverage.spec",
     "benchmark": "safestart.processes.benchmark.spec",
 }

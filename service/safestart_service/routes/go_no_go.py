@@ -18,8 +18,10 @@ from safestart_service.openapi import answer, json_body, refusals
 from safestart_service.state import services
 
 
-def _answer(query: GoNoGoQuery) -> Response:
-    return Json(flat_answer(query))
+async def _answer(query: GoNoGoQuery) -> Response:
+    # The closed form takes microseconds; a cone program would hold up every other request.
+    at_once = query.method == "closed_form"
+    return Json(flat_answer(query) if at_once else await asyncio.to_thread(flat_answer, query))
 
 
 one = APIRouter(tags=["instant answers"], route_class=query_route(GoNoGoQuery, _answer))
@@ -34,10 +36,10 @@ many = APIRouter(tags=["instant answers"])
 async def go_no_go_one(query: Annotated[GoNoGoQuery, Query()]) -> Response:
     """May a chaser at rest at this point start its approach?
 
-    By the paper's closed form. NO_GO means not certified; GO is no proof (next to the range limit keep metres of
-    margin, see the description of the process). A start outside the corridor is NO_GO; ``violated_faces`` says where.
+    By the paper's closed form, where NO_GO means not certified and GO is no proof, or with ``method=exact`` by a cone
+    program that proves either. A start outside the corridor is NO_GO; ``violated_faces`` says where.
     """
-    return _answer(query)
+    return await _answer(query)
 
 
 @many.post(

@@ -19,11 +19,11 @@ from safestart.scenario import Floats
 
 def run(inputs: GoNoGoInputs, context: Context) -> ProcessOutput:
     """Answer for every state; planar and spatial states may not be mixed."""
-    certificate = certify(inputs.scenario(), _points(inputs), inputs.rest)
-    context.step(1, 1)
+    points = _points(inputs)
+    certificate = certify(inputs.scenario(), points, inputs.rest)
     limit = certificate.range_limit
     document: dict[str, Any] = {
-        "method": "closed_form",
+        "method": inputs.method,
         "rest": inputs.rest.value,
         "r_sync_m": finite(limit),
         "r_sync_reason": None if math.isfinite(limit) else NO_SYNC_LIMIT,
@@ -33,7 +33,15 @@ def run(inputs: GoNoGoInputs, context: Context) -> ProcessOutput:
         "face_margins_m": certificate.face_margin.tolist(),
         "range_margin_m": [finite(value) for value in certificate.range_margin.tolist()],
         **_explain(certificate),
+        "proof": None,
     }
+    if inputs.method == "closed_form":
+        context.step(1, 1)
+    else:
+        # The solver is loaded where it is asked for: the closed form answers without it.
+        from safestart.processes.go_no_go.proved import prove_all
+
+        document |= prove_all(inputs, points, context)
     return ProcessOutput(document)
 
 
@@ -69,4 +77,5 @@ def single(outputs: dict[str, Any]) -> dict[str, Any]:
     """The outputs of one state, flat: no array around each value, face margins by name."""
     margins = dict(zip(outputs["faces"], outputs["face_margins_m"][0], strict=True))
     shared = {key: outputs[key] for key in ("r_sync_m", "r_sync_reason", "method", "rest")}
-    return {key: outputs[key][0] for key in _PER_STATE} | {"face_margins_m": margins} | shared
+    proof = None if outputs["proof"] is None else outputs["proof"][0]
+    return {key: outputs[key][0] for key in _PER_STATE} | {"face_margins_m": margins, "proof": proof} | shared

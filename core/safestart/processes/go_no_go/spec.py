@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, Literal
 
 from pydantic import Field
 
@@ -11,6 +11,9 @@ from safestart.processes.wire import ScenarioInput
 from safestart.scenario import MAX_RANGE, Rest
 
 MAX_STATES = 100_000
+
+
+Method = Literal["closed_form", "exact", "auto"]
 
 
 class StateInput(WireModel):
@@ -30,26 +33,43 @@ class GoNoGoInputs(ScenarioInput):
 
     states: list[StateInput] = Field(min_length=1, max_length=MAX_STATES, description="Starts at rest.")
     rest: Rest = Field(Rest.LVLH, description="Frame in which the starts are at rest.")
-    method: Literal["closed_form"] = Field("closed_form", description="How the verdict is reached.")
+    method: Method = Field(
+        "closed_form",
+        description="closed_form: the paper's conditions, at once. exact: can any thrust history stay in the corridor "
+        "at all times of horizon_s? One cone program per start, at most 1000 starts. auto: the same verdicts, by an atlas "
+        "where there are many planar starts at rest in LVLH.",
+    )
+    horizon_s: float = Field(
+        60.0, ge=2, le=600, multiple_of=2, description="How long to stay in the corridor (exact, auto), s."
+    )
+    proofs: bool = Field(False, description="Return proof documents (exact, auto); at most 100 starts.")
 
 
 class GoNoGoOutputs(WireModel):
     """Arrays over the states, in their order; margins per face in metres."""
 
-    method: Literal["closed_form"]
+    method: Method
     rest: Rest
     r_sync_m: float | None = Field(description="Synchronization range limit, m; null when there is none.")
     r_sync_reason: str | None = Field(None, description="Why r_sync_m is null.")
     faces: list[str] = Field(description="Names of the corridor's faces, in the order of face_margins_m.")
-    verdict: list[Literal["GO", "NO_GO"]]
-    margin_m: list[float] = Field(description="Smallest margin of each state, m; GO needs it positive.")
-    face_margins_m: list[list[float]] = Field(description="Margin after erosion per state and face, m.")
+    verdict: list[Literal["GO", "NO_GO", "UNDECIDED"]]
+    margin_m: list[float | None] = Field(
+        description="closed_form: smallest margin of each state, m; GO needs it positive. exact, auto: proved bound on "
+        "the distance that can be kept to every face, from below for GO, from above for NO_GO."
+    )
+    face_margins_m: list[list[float]] = Field(
+        description="Closed form: margin after erosion per state and face, m."
+    )
     range_margin_m: list[float | None] = Field(description="r_sync minus range, m; null without a limit.")
     binding: list[str] = Field(description="What gives the smallest margin: a face or 'range'.")
     violated_faces: list[list[str]] = Field(
         description="Faces of the corridor that the start itself is outside of."
     )
     reason: list[str] = Field(description="The verdict in a sentence.")
+    proof: list[dict[str, Any] | None] | None = Field(
+        None, description="Proof documents for `safestart verify`, when asked for; null for UNDECIDED."
+    )
 
 
 SPEC = ProcessSpec(
@@ -58,7 +78,7 @@ SPEC = ProcessSpec(
     description=(
         "Answers at once, by the paper's closed form (directional erosion and synchronization range), whether a "
         "chaser at rest may start its approach. NO_GO means not certified. GO is no proof: a sliver of certified "
-        "starts, about 3 m wide next to the range limit, cannot stay in the corridor; keep metres of margin there."
+        "starts, about 3 m wide next to the range limit, cannot stay in the corridor. Methods exact and auto prove."
     ),
     inputs=GoNoGoInputs,
     outputs=GoNoGoOutputs,

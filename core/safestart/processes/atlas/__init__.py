@@ -1,0 +1,1 @@
+"""The atlas process: every start at rest of one operating point, proved."""

@@ -1,0 +1,69 @@
+"""Run atlas: build it, answer the grid with it, draw it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from safestart.certificates.atlas import Atlas, build
+from safestart.certificates.closed_form import certify_grid
+from safestart.certificates.question import Question
+from safestart.errors import invalid
+from safestart.processes.atlas.plots import atlas_map
+from safestart.processes.atlas.spec import AtlasInputs
+from safestart.processes.base import Artifact, ProcessOutput
+from safestart.processes.plotting import npz
+from safestart.progress import Context
+from safestart.scenario import Floats
+
+
+def run(inputs: AtlasInputs, context: Context) -> ProcessOutput:
+    """Build the atlas and bracket the margin of every cell of the grid."""
+    scenario, grid = inputs.scenario(), inputs.grid.grid()
+    steps = round(inputs.horizon_s / inputs.dt_s)
+    if abs(steps * inputs.dt_s - inputs.horizon_s) > 1e-9 * inputs.horizon_s:
+        raise invalid("horizon_s", f"a whole number of intervals of {inputs.dt_s:g} s", inputs.horizon_s)
+    points = grid.points(scenario.corridor)
+    context.step(0, 3, "directions")
+    atlas = build(Question(scenario, inputs.dt_s, steps), grid.y_max, inputs.gap)
+    context.step(1, 3, "cells")
+    lower, upper = atlas.bounds(points)
+    region = certify_grid(scenario, grid)
+    context.step(2, 3, "picture")
+    go, no_go = (lower > 0.0) & region.inside, (upper < 0.0) & region.inside
+    document: dict[str, Any] = {
+        "inner_area_m2": atlas.inner_area,
+        "outer_area_m2": atlas.outer_area,
+        "relative_gap": atlas.relative_gap,
+        "deepest_start_m": atlas.deepest.start.tolist(),
+        "deepest_margin_m": atlas.deepest.margin,
+        "inner_polygon_m": [witness.start.tolist() for witness in atlas.rim],
+        "half_planes": np.column_stack([atlas.slopes, atlas.levels]).tolist(),
+        "verdict_cells": {
+            "GO": int(go.sum()),
+            "NO_GO": int(no_go.sum()),
+            "UNDECIDED": int((region.inside & ~go & ~no_go).sum()),
+        },
+        "certified_outside": int((region.mask & no_go).sum()),
+        "message": atlas.message,
+    }
+    picture = atlas_map(scenario, grid, atlas)
+    return ProcessOutput(document, (picture, _arrays(atlas, points, lower, upper)))
+
+
+def _arrays(atlas: Atlas, points: Floats, lower: Floats, upper: Floats) -> Artifact:
+    steps = atlas.question.steps
+    return npz(
+        "atlas.npz",
+        {
+            "points_m": points,
+            "margin_lower_m": lower,
+            "margin_upper_m": upper,
+            "witness_start_m": np.array([w.start for w in atlas.rim]).reshape(-1, 2),
+            "witness_thrust_m_s2": np.array([w.thrust for w in atlas.rim]).reshape(-1, steps, 2),
+            "witness_margin_m": np.array([w.margin for w in atlas.rim]),
+            "half_plane_slope": atlas.slopes,
+            "half_plane_level_m": atlas.levels,
+        },
+    )

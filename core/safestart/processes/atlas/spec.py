@@ -1,0 +1,56 @@
+"""atlas: the starts at rest that can stay in the corridor, between proved polygons."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from safestart.processes.base import ProcessSpec, WireModel
+from safestart.processes.wire import GridInput, ScenarioInput
+
+
+class AtlasInputs(ScenarioInput):
+    """One operating point, how long to stay, and how narrow the strip between the polygons must be."""
+
+    grid: GridInput = Field(default_factory=GridInput)
+    horizon_s: float = Field(60.0, gt=0, le=600, description="How long to stay in the corridor, s.")
+    dt_s: float = Field(2.0, ge=0.1, le=60, description="Interval over which thrust is held, s.")
+    gap: float = Field(
+        0.005, ge=1e-4, le=1, description="Largest share of the outer area that stays undecided."
+    )
+
+
+class AtlasOutputs(WireModel):
+    """Proved GO polygon, proved NO_GO half-planes, and the grid's cells; masks row-major ``[iy][ix]``."""
+
+    inner_area_m2: float
+    outer_area_m2: float
+    relative_gap: float = Field(description="(outer - inner) / outer area.")
+    deepest_start_m: list[float] = Field(description="Start with the largest margin, body-frame x, y.")
+    deepest_margin_m: float
+    inner_polygon_m: list[list[float]] = Field(
+        description="Corners of the polygon of proved GO, counter-clockwise."
+    )
+    half_planes: list[list[float]] = Field(
+        description="Rows (a, b, c): a x + b y + c bounds the margin of every start, m; negative proves NO_GO."
+    )
+    verdict_cells: dict[str, int] = Field(description="Cells of the corridor by verdict.")
+    certified_outside: int = Field(
+        description="Cells that the closed form certifies and the atlas proves NO_GO."
+    )
+    message: str
+
+
+SPEC = ProcessSpec(
+    id="atlas",
+    title="Proof atlas of the starts that can stay",
+    description=(
+        "Exact answer for every start at rest in LVLH: can any thrust history keep it in the rotating corridor at all "
+        "times of the horizon? Inner polygon of proved GO, outer half-planes of proved NO_GO, a thin strip undecided; "
+        "witnesses and multipliers are in the NPZ artifact."
+    ),
+    inputs=AtlasInputs,
+    outputs=AtlasOutputs,
+    run="safestart.processes.atlas.run:run",
+    keywords=("exact", "proof", "safe-start region"),
+    example={"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "grid": {"nx": 31, "ny": 31, "y_max_m": 150}},
+)
