@@ -1,4 +1,4 @@
-"""The picture that opens the README: the benchmark's overlay map at 2 deg/s, 0.10 m/s^2."""
+"""The pictures of the README: the benchmark's overlay map at 2 deg/s, 0.10 m/s^2, and an atlas at 0.05 m/s^2."""
 
 from __future__ import annotations
 
@@ -6,11 +6,17 @@ from pathlib import Path
 
 from safestart.processes.execute import execute
 
-TARGET = Path(__file__).resolve().parent.parent / "docs" / "safe-start.png"
+DOCS = Path(__file__).resolve().parent.parent / "docs"
+
+
+def draw(process_id: str, inputs: dict[str, object], artifact: str, target: str) -> None:
+    """Run a process and keep one of its pictures."""
+    (picture,) = [a for a in execute(process_id, inputs).artifacts if a.name == artifact]
+    (DOCS / target).write_bytes(picture.data)
+    print(f"{target}: {len(picture.data)} bytes")
+
 
 if __name__ == "__main__":
-    inputs = {"omega_t_deg_s": 2, "a_max_m_s2": 0.1, "grid": {"nx": 121, "ny": 121, "y_max_m": 150}}
-    result = execute("benchmark", inputs)
-    (picture,) = [a for a in result.artifacts if a.name == "overlay.png"]
-    TARGET.write_bytes(picture.data)
-    print(f"{TARGET.name}: {len(picture.data)} bytes")
+    grid = {"nx": 121, "ny": 121, "y_max_m": 150}
+    draw("benchmark", {"omega_t_deg_s": 2, "a_max_m_s2": 0.1, "grid": grid}, "overlay.png", "safe-start.png")
+    draw("atlas", {"omega_t_deg_s": 2, "a_max_m_s2": 0.05, "grid": grid}, "atlas.png", "atlas.png")

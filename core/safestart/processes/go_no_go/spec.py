@@ -36,8 +36,8 @@ class GoNoGoInputs(ScenarioInput):
     method: Method = Field(
         "closed_form",
         description="closed_form: the paper's conditions, at once. exact: can any thrust history stay in the corridor "
-        "at all times of horizon_s? One cone program per start, at most 1000 starts. auto: the same verdicts, by an atlas "
-        "where there are many planar starts at rest in LVLH.",
+        "at all times of horizon_s? One cone program per start, at most 1000 starts. auto: the same verdicts, "
+        "by an atlas where there are many planar starts at rest in LVLH.",
     )
     horizon_s: float = Field(
         60.0, ge=2, le=600, multiple_of=2, description="How long to stay in the corridor (exact, auto), s."
