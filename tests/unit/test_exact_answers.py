@@ -1,6 +1,8 @@
 """Exact answers: brackets, witnesses flown by another integrator, the linear program as an independent solver."""
 
 import math
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -194,3 +196,10 @@ def test_a_failing_solver_is_never_a_go(monkeypatch: pytest.MonkeyPatch) -> None
 def test_bad_states(state: Floats) -> None:
     with pytest.raises(InvalidInput):
         decide(Question(Scenario.of(1.0, 0.1)), state)
+
+
+@pytest.mark.parametrize("module", ["safestart.certificates.closed_form", "safestart.cli"])
+def test_the_solver_is_loaded_with_the_first_question(module: str) -> None:
+    code = f"import sys, {module}; assert not {{'clarabel', 'scipy', 'flint'}} & set(sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr

@@ -33,24 +33,23 @@ class Solved:
 
 def solve(constant: Floats, thrust: Floats, a_max: float, dimensions: int) -> Solved:
     """Solve for J rows: ``constant`` (J,) = offset + start . x0 in m, ``thrust`` (J, N d) in m per m/s^2."""
+    # Loaded with the first question and not with every import of the certificates.
     import clarabel
-    from scipy.sparse import csc_array
 
     rows, columns = thrust.shape
     count = columns // dimensions
     cone = dimensions + 1
     scaled = a_max * thrust
-    data, indices, starts = _columns(scaled, dimensions)
     size = rows + count * cone
-    a = csc_array((data, indices, starts), shape=(size, columns + 1))
+    a = _columns(scaled, dimensions, size)
     b = np.zeros(size)
     b[:rows] = constant
     b[rows::cone] = 1.0
     cost = np.zeros(columns + 1)
     cost[-1] = -1.0
     cones = [clarabel.NonnegativeConeT(rows), *[clarabel.SecondOrderConeT(cone)] * count]
-    none = csc_array((columns + 1, columns + 1))
-    found = clarabel.DefaultSolver(none, cost, a, b, cones, _settings()).solve()
+    none = _Sparse([], [], [0] * (columns + 2), (columns + 1, columns + 1))
+    found = clarabel.DefaultSolver(none, cost.tolist(), a, b.tolist(), cones, _settings()).solve()
     status = str(found.status)
     if status not in ("Solved", "AlmostSolved", "InsufficientProgress", "MaxIterations"):
         return Solved(status)
@@ -71,7 +70,18 @@ def bound(constant: Floats, thrust: Floats, weights: Floats, a_max: float, dimen
     return float(weights @ constant + a_max * np.sqrt((pull * pull).sum(axis=1)).sum())
 
 
-def _columns(scaled: Floats, dimensions: int) -> tuple[Floats, Any, Any]:
+class _Sparse:
+    """Compressed columns as Clarabel reads them; lists, because it would box every element of an array."""
+
+    has_canonical_format = has_sorted_indices = True
+
+    def __init__(
+        self, data: list[float], indices: list[int], indptr: list[int], shape: tuple[int, int]
+    ) -> None:
+        self.data, self.indices, self.indptr, self.shape = data, indices, indptr, shape
+
+
+def _columns(scaled: Floats, dimensions: int, size: int) -> _Sparse:
     """The constraint matrix by columns: (-thrust, then -1 in its cone) for each w, and 1 in every row for m."""
     rows, columns = scaled.shape
     component = np.arange(columns)
@@ -87,7 +97,7 @@ def _columns(scaled: Floats, dimensions: int) -> tuple[Floats, Any, Any]:
     data = np.concatenate([filled[keep], np.ones(rows)])
     indices = np.concatenate([where[keep], np.arange(rows)])
     starts = np.concatenate([[0], np.cumsum(counts), [int(counts.sum()) + rows]])
-    return data, indices, starts
+    return _Sparse(data.tolist(), indices.tolist(), starts.tolist(), (size, columns + 1))
 
 
 def _settings() -> Any:
