@@ -117,3 +117,17 @@ def test_go_no_go_starts_without_the_engines() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_reproduce_passive_safety() -> None:
+    answer = document("reproduce", "passive-safety", "--json")
+    rows = answer["rows"]
+    assert len(rows) == 22
+    for row in rows:
+        expected = "UNSAFE" if row["case"].startswith("SRU") and row["half_width_m"] == 0.2 else "SAFE"
+        assert row["separation"] == expected
+        assert (row["counter_example"] is None) == (expected == "SAFE")
+        assert [row["thrust"], row["los"], row["velocity"]] == ["SAFE"] * 3
+        assert row["published"]["verdict"] in ("SAFE", "UNSAFE")
+    assert answer["paper"]["separation"] == "SAFE"
+    assert answer["paper"]["published"]["tools_s"]["SDVTool"]["all"] == 5.5

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from safestart.verification.cases import CASES, HALF_WIDTHS, HORIZON
+from safestart.verification.critical import critical_abort
 from safestart.verification.falsify import replay
 from safestart.verification.question import Question, Verdict
 from safestart.verification.verify import verify
@@ -39,3 +40,22 @@ def test_speed_as_a_true_disc_is_violated_after_the_octagon_guard() -> None:
     assert finding.verdict is Verdict.UNSAFE
     assert finding.counter_example is not None
     assert 5.15 <= finding.counter_example["value"] / 0.6 <= 5.25
+
+
+@pytest.mark.parametrize(("half_width", "minutes"), [(0.1, 274.4), (0.2, 251.3)])
+def test_critical_abort_time(half_width: float, minutes: float) -> None:
+    """Proof below, counter-example above, and the published time between or next to them."""
+    question = Question(horizon=360.0, box=half_width)
+    found = critical_abort(question, 0.0, 300.0)
+    assert found.proved_until is not None
+    assert found.example is not None
+    assert found.proved_until < found.example.abort
+    assert found.example.abort - found.proved_until < 0.5
+    assert found.proved_until == pytest.approx(minutes, abs=0.5)
+    assert found.example.abort == pytest.approx(minutes, abs=0.5)
+    state = replay(np.array(found.example.start), found.example.abort, found.example.time)
+    assert np.abs(state[:2]).max() < half_width
+
+
+def test_no_abort_is_critical_for_contacts_after_the_horizon() -> None:
+    assert critical_abort(Question(horizon=300.0, box=0.1), 0.0, 300.0).proved_until == 300.0

@@ -8,6 +8,7 @@ from typing import Any
 import typer
 
 from safestart import published
+from safestart.cli import passive_safety
 from safestart.cli.console import Json, Justify, number, out, print_json, reporting, seconds, table_of
 from safestart.processes.execute import execute
 
@@ -65,6 +66,8 @@ def register(app: typer.Typer) -> None:
         else:
             show_table2(rows)
 
+    passive_safety.register(group)
+
     @group.command("all")
     def everything(as_json: Json = False) -> None:
         """Every table, one after another."""
@@ -72,10 +75,17 @@ def register(app: typer.Typer) -> None:
             rows: list[dict[str, Any]] = []
             for rate in published.TABLE2:
                 rows += table2_rows(rate, execute("benchmark", table2_inputs(rate)).document["outputs"])
-            print_json({"table1": {"cells": table1_cells()}, "table2": {"rows": rows}})
+            print_json(
+                {
+                    "table1": {"cells": table1_cells()},
+                    "table2": {"rows": rows},
+                    "passive_safety": passive_safety.passive_safety_document(),
+                }
+            )
             return
         table1()
         table2()
+        passive_safety.print_passive_safety()
 
 
 def table1_cells() -> list[dict[str, float]]:

@@ -28,7 +28,7 @@ DRIFT_STEP = Fraction(1, 2)
 DRIFT_LEVELS = 4
 """Coarsest piece: 2^4 finest."""
 
-MAX_CELLS = 40_000
+MAX_CELLS = 20_000
 """Cells of one level beyond which the proof is given up."""
 
 FEW_CELLS = 48
