@@ -33,9 +33,9 @@ class Atlas:
     """Proved answers for starts at rest in LVLH with y at most ``y_max`` metres.
 
     ``deepest`` is the start with the largest margin; ``rim`` the witnesses of the inner polygon, counter-clockwise as
-    seen from ``centre``, a witness well inside it; ``angles`` (R,) their directions from there. ``slopes`` (C, 2) and
-    ``levels`` (C,) are the ceilings in metres. ``message`` is empty unless the construction stopped early; the proofs
-    hold all the same.
+    seen from ``centre``, a witness well inside it; ``corners`` (R, 2), ``margins`` (R,) and ``angles`` (R,) hold their
+    starts as seen from there, their margins and directions. ``slopes`` (C, 2) and ``levels`` (C,) are the ceilings in
+    metres. ``message`` is empty unless the construction stopped early; the proofs hold all the same.
     """
 
     question: Question
@@ -43,6 +43,8 @@ class Atlas:
     deepest: Witness
     centre: Witness
     rim: tuple[Witness, ...]
+    corners: Floats
+    margins: Floats
     angles: Floats
     ceilings: tuple[Ceiling, ...]
     slopes: Floats
@@ -72,12 +74,11 @@ class Atlas:
         if len(self.rim) >= 3:
             sector, weights = self._fan(flat)
             inside = (weights >= 0.0).all(axis=1)
-            margins = np.array([witness.margin for witness in self.rim])
             after = (sector + 1) % len(self.rim)
             mixed = (
                 weights[:, 0] * self.centre.margin
-                + weights[:, 1] * margins[sector]
-                + weights[:, 2] * margins[after]
+                + weights[:, 1] * self.margins[sector]
+                + weights[:, 2] * self.margins[after]
             )
             lower = np.where(inside, mixed, lower)
         beyond = flat[:, 1] > self.y_max
@@ -104,7 +105,7 @@ class Atlas:
 
     def _fan(self, flat: Floats) -> tuple[Ints, Floats]:
         """Sector (P,) of the fan around the centre, and weights (P, 3) of the centre and its two rim points."""
-        rim = np.array([witness.start for witness in self.rim]) - self.centre.start
+        rim = self.corners
         ahead = flat - self.centre.start
         turn = np.arctan2(ahead[:, 1], ahead[:, 0])
         sector = (np.searchsorted(self.angles, turn, side="right") - 1) % len(rim)
@@ -176,6 +177,8 @@ def _assemble(
         deepest,
         centre,
         tuple(witness for _, witness in ordered),
+        np.array([witness.start - centre.start for _, witness in ordered]).reshape(-1, 2),
+        np.array([witness.margin for _, witness in ordered]),
         np.array([angle for angle, _ in ordered]),
         ceilings,
         np.array([c.slope for c in ceilings]).reshape(-1, 2),

@@ -57,7 +57,9 @@ class Extent:
         self.a_max = watch.question.scenario.chaser.max_acceleration
         faces = len(watch.names)
         times = np.repeat(np.linspace(0.0, watch.question.horizon, _FIRST_TIMES), faces)
-        self._rows: list[tuple[Floats, Any]] = [(times, np.tile(np.arange(faces), _FIRST_TIMES))]
+        self._base: tuple[Floats, Any] = (times, np.tile(np.arange(faces), _FIRST_TIMES))
+        # Rows that bound the last answer: a neighbouring direction touches the corridor at nearly the same times.
+        self._active: tuple[Floats, Any] = (np.empty(0), np.empty(0, dtype=np.int64))
 
     def farthest(self, direction: Floats) -> tuple[Witness, Ceiling | None, float]:
         """Start that keeps ``CLEARANCE`` and lies farthest along the unit ``direction`` (2,), its ceiling, and how far
@@ -73,9 +75,8 @@ class Extent:
 
     def _search(self, direction: Floats | None) -> tuple[Witness, Ceiling | None, float]:
         watch = self.watch
+        times, faces = (np.concatenate(pair) for pair in zip(self._base, self._active, strict=True))
         for _ in range(_ROUNDS):
-            times = np.concatenate([rows[0] for rows in self._rows])
-            faces = np.concatenate([rows[1] for rows in self._rows])
             cuts = watch.cuts(times, faces)
             start, thrust, margin, weights, reach = self._solve(
                 cuts.offset, cuts.start[:, :2], cuts.thrust, direction
@@ -84,9 +85,10 @@ class Extent:
             wanted = CLEARANCE if direction is not None else margin
             low = minima.values < wanted - 0.25 * CLEARANCE
             if minima.lowest >= wanted - 0.5 * CLEARANCE or not low.any():
+                active = weights > 1e-9 * weights.sum()
+                self._active = times[active], faces[active]
                 return Witness(start, thrust, minima.lowest), self._ceiling(times, faces, weights), reach
-            # Kept for the next direction too: neighbours touch the corridor at nearly the same times.
-            self._rows.append((minima.times[low], minima.faces[low]))
+            times, faces = np.append(times, minima.times[low]), np.append(faces, minima.faces[low])
         raise NotSolved("the flight still came closer than the program knew after every round")
 
     def _ceiling(self, times: Floats, faces: Any, weights: Floats) -> Ceiling | None:
