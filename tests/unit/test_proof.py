@@ -50,6 +50,16 @@ def test_valid_proofs(verdict: str, dimensions: int) -> None:
     assert math.copysign(1.0, verified.margin_m) == (1.0 if verdict == "GO" else -1.0)
 
 
+@pytest.mark.parametrize(("steps", "dt"), [(1, 3600.0), (10, 300.0), (100, 0.5)])
+def test_long_and_short_steps(steps: int, dt: float) -> None:
+    for dimensions, rate in ((2, 1.0), (3, 0.02)):
+        question = Question(Scenario.of(rate, 0.1), dt, steps, dimensions)
+        state = np.zeros(2 * dimensions)
+        state[:2] = 3.0, 40.0
+        answer = decide(question, state)
+        assert check(proof_of(question, state, answer)).verdict == answer.verdict.value
+
+
 @pytest.mark.parametrize("mean_motion", [0.0, 1e-12, 1.3e-3])
 @pytest.mark.parametrize("rate", [0.0, 0.02])
 def test_limits_of_the_motion(mean_motion: float, rate: float) -> None:
@@ -84,8 +94,8 @@ def _start(made: dict[str, Any]) -> None:
 
 
 def _multiplier(made: dict[str, Any]) -> None:
-    row = max(made["multipliers"], key=lambda r: r["value"])
-    row["value"] *= 1.2
+    row = min(made["multipliers"], key=lambda r: r["value"])
+    row["value"] += 0.2
 
 
 def _negative(made: dict[str, Any]) -> None:

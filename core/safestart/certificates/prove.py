@@ -18,7 +18,6 @@ from safestart.scenario import Floats
 # need not cut time into ever smaller pieces where a face is touched.
 _NO_GO_STAND_BACK_M = 1e-9
 _GO_STAND_BACK_M = 2e-7
-_LEAST_WEIGHT = 1e-12
 
 
 def proof_of(question: Question, state: Floats, answer: Answer) -> dict[str, Any]:
@@ -63,7 +62,6 @@ def proof_of(question: Question, state: Floats, answer: Answer) -> dict[str, Any
         document["multipliers"] = [
             {"time_s": _within(row.time, question), "face": row.face, "value": row.value}
             for row in answer.multipliers
-            if row.value >= _LEAST_WEIGHT
         ]
     else:
         raise invalid("answer", "a GO or NO_GO", answer.verdict.value)
