@@ -14,6 +14,7 @@ _SPECS = {
     "atlas": "safestart.processes.atlas.spec",
     "coverage": "safestart.processes.coverage.spec",
     "benchmark": "safestart.processes.benchmark.spec",
+    "passive-safety": "safestart.processes.passive_safety.spec",
 }
 
 PROCESS_IDS = tuple(_SPECS)

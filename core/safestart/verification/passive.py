@@ -8,7 +8,7 @@ cell; a cell that is not proved apart is quartered, down to the grid of the tube
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 
 import numpy as np
@@ -68,11 +68,13 @@ class Drift:
     """Outcome: ``clearance`` is a proved max-norm distance (m) from the target's centre; ``open`` cells remain.
 
     Rows of ``open``: (first, last) abort time, (first, last) time after the abort, min. ``cells`` were tried.
+    Rows of ``leaves``: bin level, drift level, bin, piece, and 1 where the cell is proved apart, else 0.
     """
 
     clearance: float
     open: Floats
     cells: int
+    leaves: Cells = field(default_factory=lambda: np.zeros((0, 5), dtype=np.intp))
 
 
 def make_bins(tube: Tube, clock: Clock, level: int, blocks: Cells, span: bool = True) -> Bins:
@@ -152,6 +154,7 @@ def prove_drift(
         -1, 2
     )
     least, tried = np.inf, 0
+    leaves: list[Cells] = []
     while len(cells):
         context.step(tried, tried + len(cells), "drift cells")
         unique, pick = np.unique(cells[:, 0], return_inverse=True)
@@ -177,14 +180,21 @@ def prove_drift(
             clearance[doubt] = np.maximum(clearance[doubt], timed)
         fail = clearance <= box
         least = min(least, float(clearance[~fail].min(initial=np.inf)))
+        leaves.append(_leaves(cells[~fail], level, drift_level, 1))
         cells, pick = cells[fail], pick[fail]
         if last_level or 4 * len(cells) > MAX_CELLS:
-            return Drift(least, _rows(bins, pick, cells, drift_level), tried)
+            leaves.append(_leaves(cells, level, drift_level, 0))
+            return Drift(least, _rows(bins, pick, cells, drift_level), tried, np.concatenate(leaves))
         down, after_down = int(level > 0), int(drift_level > 0)
         cells = _split(cells, down, after_down)
         level, drift_level = level - down, drift_level - after_down
         cells = cells[(cells[:, 0] << level) < tube.steps]
-    return Drift(least, np.zeros((0, 4)), tried)
+    return Drift(least, np.zeros((0, 4)), tried, np.concatenate([*leaves, _leaves(cells, 0, 0, 1)]))
+
+
+def _leaves(cells: Cells, level: int, drift_level: int, proved: int) -> Cells:
+    marks = np.broadcast_to(np.array([level, drift_level], dtype=np.intp), cells.shape)
+    return np.hstack([marks, cells, np.full((len(cells), 1), proved, dtype=np.intp)])
 
 
 def flow_steps(horizon: float) -> int:

@@ -76,14 +76,8 @@ def prove_separation(
     """Passive safety of every start in the window; the drift that is left ``open`` is not proved."""
     assert question.window is not None
     context = context or Context()
-    rest = Clock(0.0, np.zeros(0), 0.0)
-    work: list[tuple[Tube, Clock, int]] = [(tubes.far, rest, FAR_LEVEL)]
-    for branch in tubes.branches:
-        crossing = branch.crossing
-        clock = Clock(crossing.time, crossing.time_gens, crossing.time_radius)
-        work += [(tube, clock, NEAR_LEVEL) for tube in branch.tubes()]
     done: list[Drift] = []
-    for tube, clock, level in work:
+    for tube, clock, level in drift_sources(tubes):
         done.append(
             prove_drift(
                 tube, clock, question.window, question.horizon, question.box, level, context, mutation.bins
@@ -92,6 +86,16 @@ def prove_separation(
     return Drift(
         min(d.clearance for d in done), np.concatenate([d.open for d in done]), sum(d.cells for d in done)
     )
+
+
+def drift_sources(tubes: Reach) -> list[tuple[Tube, Clock, int]]:
+    """Tubes that passive starts come from, with the clock of their abort times and the level of the coarsest bins."""
+    sources = [(tubes.far, Clock(0.0, np.zeros(0), 0.0), FAR_LEVEL)]
+    for branch in tubes.branches:
+        crossing = branch.crossing
+        clock = Clock(crossing.time, crossing.time_gens, crossing.time_radius)
+        sources += [(tube, clock, NEAR_LEVEL) for tube in branch.tubes()]
+    return sources
 
 
 def _searched(

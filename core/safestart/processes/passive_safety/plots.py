@@ -1,0 +1,188 @@
+"""Pictures of passive-safety: powered tubes (positions, velocities, thrust), drifts after an abort; their arrays."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.patches import Circle, Polygon, Rectangle
+
+from safestart.processes.base import Artifact
+from safestart.processes.passive_safety.outlines import outlines
+from safestart.processes.plotting import figure, png
+from safestart.progress import Context
+from safestart.scenario import Floats
+from safestart.verification.model import (
+    FACE_LIMITS,
+    FACES,
+    LOS_SLOPE,
+    MAX_SPEED,
+    MAX_THRUST,
+    NEWTON,
+    gain,
+)
+from safestart.verification.passive import cell_positions, flow_steps, make_bins, prove_drift
+from safestart.verification.reach import Reach
+from safestart.verification.tube import Tube
+from safestart.verification.verify import Verification, drift_sources
+
+_FAR, _NEAR, _DRIFT, _BAD = "#0072B2", "#009E73", "#CC79A7", "#D55E00"
+
+
+def powered_picture(answer: Verification) -> Artifact:
+    """Positions, positions near the target, velocities in mode 2, thrust over time."""
+    reach = answer.reach
+    drawing = figure(10.4, 8.0)
+    (whole, close), (speed, force) = drawing.subplots(2, 2)
+    for axes in (whole, close):
+        _frame(axes)
+        _fill(axes, _nodes(reach.far, slice(0, 2)), _FAR)
+        for branch in reach.branches:
+            for tube in branch.tubes():
+                _fill(axes, _nodes(tube, slice(0, 2)), _NEAR)
+    whole.autoscale_view()
+    whole.set_title("positions", fontsize=10)
+    close.set_xlim(-115, 15)
+    close.set_ylim(-75, 75)
+    close.set_title("positions in mode 2; guard, line-of-sight cone", fontsize=10)
+    for branch in reach.branches:
+        for tube in branch.tubes():
+            _fill(speed, _nodes(tube, slice(2, 4)) / 60.0, _NEAR)
+    speed.add_patch(Circle((0, 0), MAX_SPEED / 60.0, fill=False, color="#333333", linestyle=":"))
+    speed.autoscale_view()
+    speed.set_aspect("equal")
+    speed.set_xlabel("vx [m/s]")
+    speed.set_ylabel("vy [m/s]")
+    speed.set_title("velocities in mode 2; limit 0.05 m/s", fontsize=10)
+    _thrust(force, reach)
+    drawing.suptitle("Reach tubes with the engines on", fontsize=11)
+    return png("tubes.png", drawing)
+
+
+def drift_picture(answer: Verification) -> Artifact:
+    """Positions after an abort inside the window: as a whole, and near the target's box."""
+    question = answer.question
+    drawing = figure(10.4, 4.6)
+    whole, close = drawing.subplots(1, 2)
+    cells, middles = _drifts(answer)
+    for axes in (whole, close):
+        _frame(axes)
+        for polygons, colour in cells:
+            _fill(axes, polygons, colour, 0.35)
+        box = question.box
+        axes.add_patch(Rectangle((-box, -box), 2 * box, 2 * box, color="#000000", zorder=5))
+    # The first minutes of mode 1 make wide cells: the picture shows where the middles go.
+    reach_x, reach_y = 1.1 * np.abs(middles).max(axis=0) + 10.0
+    whole.set_xlim(-reach_x, reach_x)
+    whole.set_ylim(-reach_y, reach_y)
+    whole.set_aspect("auto")
+    close.set_xlim(-20 * question.box, 20 * question.box)
+    close.set_ylim(-20 * question.box, 20 * question.box)
+    assert question.window is not None
+    first, last = question.window
+    whole.set_title("drifts", fontsize=10)
+    verdict = answer.findings["separation"].verdict.value
+    close.set_title(f"near the target's box of half-width {question.box:g} m: {verdict}", fontsize=10)
+    drawing.suptitle(
+        f"Aborts in [{first:g}, {last:g}] min, {question.horizon:g} min in all: cells of the proof (orange: open)",
+        fontsize=11,
+    )
+    return png("after_abort.png", drawing)
+
+
+def arrays(answer: Verification) -> dict[str, Floats]:
+    """Bounds per segment: times (n+1,) in min, state bounds (n, 4) in m and m/s, thrust bounds (n, 2) in N."""
+    scale = np.array([1.0, 1.0, 1.0 / 60.0, 1.0 / 60.0])
+    out: dict[str, Floats] = {}
+    for name, tube in _named(answer.reach):
+        rows = gain(tube.mode)
+        out[f"{name}_time_min"] = tube.start + tube.step * np.arange(tube.steps + 1.0)
+        out[f"{name}_upper"] = tube.upper(np.eye(4)) * scale
+        out[f"{name}_lower"] = -tube.upper(-np.eye(4)) * scale
+        out[f"{name}_thrust_n"] = np.maximum(tube.upper(rows), tube.upper(-rows)) / NEWTON
+    return out
+
+
+def _named(reach: Reach) -> list[tuple[str, Tube]]:
+    named = [("mode1", reach.far)]
+    for k, branch in enumerate(reach.branches):
+        named += [(f"mode2_{k}_early", branch.early), (f"mode2_{k}_late", branch.late)]
+    return named
+
+
+def _nodes(tube: Tube, part: slice) -> Floats:
+    """Outlines of the hull of neighbouring nodes, as one zonotope per segment."""
+    low, high = tube.centre[:-1, part], tube.centre[1:, part]
+    first, last = tube.gens[:-1, :, part], tube.gens[1:, :, part]
+    box = tube.bend[:, part] + 0.5 * np.abs(last - first).sum(axis=1)
+    sweep = 0.5 * (high - low)[:, None, :]
+    gens = np.concatenate([0.5 * (first + last), sweep, box[:, None, :] * np.eye(2)], axis=1)
+    return outlines(0.5 * (low + high), gens)
+
+
+def _drifts(answer: Verification) -> tuple[list[tuple[Floats, str]], Floats]:
+    """Outlines of the cells of the proof with their colours, and the drifts of the bins' middles (K, 2)."""
+    question = answer.question
+    assert question.window is not None
+    steps = flow_steps(question.horizon)
+    cells: list[tuple[Floats, str]] = []
+    middles = [np.zeros((1, 2))]
+    for tube, clock, level in drift_sources(answer.reach):
+        ends = question.window, question.horizon, question.box
+        leaves = prove_drift(tube, clock, *ends, level, Context()).leaves
+        for kind in np.unique(leaves[:, [0, 1, 4]], axis=0):
+            own = leaves[(leaves[:, [0, 1, 4]] == kind).all(axis=1)]
+            blocks, pick = np.unique(own[:, 2], return_inverse=True)
+            bins = make_bins(tube, clock, int(kind[0]), blocks)
+            centre, gens, box = cell_positions(bins, pick, int(kind[1]), own[:, 3], steps)
+            middles.append(centre)
+            shapes = outlines(centre, np.concatenate([gens, box[:, None, :] * np.eye(2)], axis=1))
+            cells.append((shapes, _DRIFT if kind[2] else _BAD))
+    return cells, np.concatenate(middles)
+
+
+def _thrust(axes: Axes, reach: Reach) -> None:
+    offset = reach.branches[0].crossing.time if reach.branches else 0.0
+    for name, tube in _named(reach):
+        near = name != "mode1"
+        times = (offset if near else 0.0) + tube.start + tube.step * np.arange(tube.steps)
+        rows = gain(tube.mode)
+        for axis, style in ((0, "-"), (1, "--")):
+            upper = tube.upper(-rows)[:, axis] / NEWTON
+            lower = -tube.upper(rows)[:, axis] / NEWTON
+            colour = _NEAR if near else _FAR
+            axes.fill_between(times, lower, upper, color=colour, alpha=0.35, linewidth=0.8, linestyle=style)
+    for limit in (-MAX_THRUST, MAX_THRUST):
+        axes.axhline(limit / NEWTON, color="#333333", linestyle=":")
+    axes.set_xlabel("time [min], mode 2 from the nominal crossing")
+    axes.set_ylabel("thrust per axis [N]")
+    axes.set_title("thrust (Fx, Fy); limit 10 N", fontsize=10)
+
+
+def _frame(axes: Axes) -> None:
+    corners = np.array(
+        [
+            np.linalg.solve(FACES[[i, j]], FACE_LIMITS[[i, j]])
+            for i, j in zip(_RING, _RING[1:] + _RING[:1], strict=True)
+        ]
+    )
+    axes.add_patch(Polygon(corners, fill=False, edgecolor="#666666", linestyle="--"))
+    axes.add_patch(
+        Polygon(
+            [(0, 0), (-100, -100 * LOS_SLOPE), (-100, 100 * LOS_SLOPE)], color="#F0E442", alpha=0.35, zorder=0
+        )
+    )
+    axes.plot(0.0, 0.0, marker="s", color="#333333", markersize=3, zorder=6)
+    axes.set_aspect("equal")
+    axes.set_xlabel("x radial [m]")
+    axes.set_ylabel("y along-track [m]")
+
+
+_RING = [0, 4, 2, 7, 1, 5, 3, 6]
+"""Faces of the guard in the order of their normals."""
+
+
+def _fill(axes: Axes, polygons: Floats, colour: str, alpha: float = 0.6) -> None:
+    axes.add_collection(
+        PolyCollection(list(polygons), facecolors=colour, edgecolors="none", alpha=alpha), autolim=True
+    )

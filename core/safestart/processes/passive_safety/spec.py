@@ -1,0 +1,138 @@
+"""passive-safety: proofs about the switched rendezvous of paper 003, with counter-examples where they fail."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from safestart.processes.base import ProcessSpec, WireModel
+from safestart.processes.wire import Seed
+
+Minutes = Annotated[float, Field(ge=0.0, le=600.0)]
+Window = Annotated[list[Minutes], Field(min_length=2, max_length=2)]
+VerdictName = Literal["SAFE", "UNSAFE", "UNKNOWN"]
+
+
+class StartInput(WireModel):
+    """A start in Hill's frame of the target: x radial, y along-track."""
+
+    x_m: float = Field(-900.0, ge=-2000, le=2000, description="Radial position, m.")
+    y_m: float = Field(-400.0, ge=-2000, le=2000, description="Along-track position, m.")
+    vx_m_s: float = Field(0.0, ge=-1, le=1, description="Radial velocity, m/s.")
+    vy_m_s: float = Field(0.0, ge=-1, le=1, description="Along-track velocity, m/s.")
+
+
+class SpreadInput(WireModel):
+    """Half-widths of the box of starts around the centre."""
+
+    x_m: float = Field(25.0, ge=0, le=500, description="Half-width in x, m.")
+    y_m: float = Field(25.0, ge=0, le=500, description="Half-width in y, m.")
+    vx_m_s: float = Field(0.0, ge=0, le=0.1, description="Half-width in vx, m/s.")
+    vy_m_s: float = Field(0.0, ge=0, le=0.1, description="Half-width in vy, m/s.")
+
+
+class PassiveSafetyInputs(WireModel):
+    """Starts, horizon, abort windows and the target's box."""
+
+    centre: StartInput = Field(default_factory=lambda: StartInput.model_validate({}))
+    half_widths: SpreadInput = Field(default_factory=lambda: SpreadInput.model_validate({}))
+    horizon_min: float = Field(
+        300.0, gt=0, le=600, description="Horizon of powered flight and drift together, min."
+    )
+    abort_windows_min: list[Window] = Field(
+        [[0.0, 240.0]],
+        max_length=12,
+        description="Windows [first, last] of the time of failure, min, each verified apart; empty: no failure.",
+    )
+    box_half_width_m: float = Field(0.1, gt=0, le=100, description="Half-width of the target's box, m.")
+    model: Literal["linear"] = Field("linear", description="Relative dynamics: Clohessy-Wiltshire-Hill.")
+    critical_abort: bool = Field(
+        True, description="Also bracket the critical abort time, between 0 and the horizon."
+    )
+    critical_drift_min: float = Field(
+        60.0,
+        ge=0,
+        le=120,
+        description="How long a drift is followed after the last abort for the critical time, min.",
+    )
+    seed: Seed = 0
+
+    @model_validator(mode="after")
+    def _windows(self) -> PassiveSafetyInputs:
+        for first, last in self.abort_windows_min:
+            if not first <= last <= self.horizon_min:
+                raise ValueError("abort_windows_min: first <= last <= horizon_min")
+        return self
+
+
+class CounterExample(WireModel):
+    """A flight to replay: fly from the start, cut the engines at ``abort_min``, look at ``time_min``."""
+
+    x_m: float
+    y_m: float
+    vx_m_s: float
+    vy_m_s: float
+    abort_min: float | None = Field(description="When the engines fail, min; null: they work up to time_min.")
+    time_min: float
+    value: float = Field(description="The restricted quantity there, in the finding's unit.")
+
+
+class FindingOutput(WireModel):
+    """Answer for one requirement."""
+
+    requirement: Literal["separation", "thrust", "los", "velocity", "velocity_disc"]
+    verdict: VerdictName
+    unit: str
+    limit: float | None
+    bound: float | None = Field(description="Proved extreme: least distance, else the greatest value.")
+    margin: float | None = Field(description="Proved room to the limit.")
+    reason: str
+    counter_example: CounterExample | None
+
+
+class WindowOutput(WireModel):
+    """Findings of one abort window."""
+
+    abort_window_min: list[float] | None
+    findings: list[FindingOutput]
+    run_s: float
+
+
+class CriticalOutput(WireModel):
+    """The critical abort time lies between its two sides."""
+
+    proved_until_min: float | None = Field(
+        description="Every abort from 0 to here is proved safe; null: none is."
+    )
+    counter_example: CounterExample | None = Field(
+        description="Collides after the earliest such abort found."
+    )
+    reason: str
+
+
+class PassiveSafetyOutputs(WireModel):
+    """Per window the findings; the crossing into mode 2; the critical abort time."""
+
+    crossing_first_min: float | None
+    crossing_last_min: float | None
+    crossed_faces: list[str]
+    windows: list[WindowOutput]
+    critical: CriticalOutput | None
+    notes: list[str]
+
+
+SPEC = ProcessSpec(
+    id="passive-safety",
+    title="Passive safety of the switched rendezvous, proved",
+    description=(
+        "Reach tubes of the switched LQR rendezvous of paper 003 (linear model): thrust, line of sight, speed, and "
+        "separation after an engine failure at any time of a window. SAFE is proved, UNSAFE comes with a flight to "
+        "replay, UNKNOWN with a reason. Brackets the critical abort time."
+    ),
+    inputs=PassiveSafetyInputs,
+    outputs=PassiveSafetyOutputs,
+    run="safestart.processes.passive_safety.run:run",
+    keywords=("verification", "passive safety", "hybrid system", "abort"),
+    example={"abort_windows_min": [[120, 125], [0, 240]], "box_half_width_m": 0.1, "horizon_min": 300},
+)
