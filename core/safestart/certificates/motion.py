@@ -34,10 +34,15 @@ class NodeTables:
         return out
 
 
-@lru_cache(maxsize=16)
 def motion_tables(mean_motion: float, dt: float, steps: int, dimensions: int, samples: int) -> NodeTables:
     """Tables for N = ``steps`` intervals of ``dt`` seconds with ``samples`` parts each."""
-    d = dimensions
+    # Kept apart: the tumble rate decides the samples, and the large tables do not depend on them.
+    nodes = _nodes(mean_motion, dt, steps, dimensions)
+    return NodeTables(*nodes, *_within(mean_motion, dt, dimensions, samples))
+
+
+@lru_cache(maxsize=4)
+def _nodes(mean_motion: float, dt: float, steps: int, d: int) -> tuple[Floats, Floats]:
     keep = np.r_[0:d, 3 : 3 + d]
     step = transition_matrix(mean_motion, dt)[np.ix_(keep, keep)]
     push = input_matrix(mean_motion, dt)[keep, :d]
@@ -48,10 +53,16 @@ def motion_tables(mean_motion: float, dt: float, steps: int, dimensions: int, sa
         free[k] = transition_matrix(mean_motion, k * dt)[np.ix_(keep, keep)]
         driven[k] = step @ driven[k - 1]
         driven[k, :, (k - 1) * d : k * d] = push
-    within = [dt * s / samples for s in range(samples + 1)]
-    along = np.hstack([transition_matrix(mean_motion, s)[np.ix_(keep, keep)].T for s in within])
-    held = np.hstack([input_matrix(mean_motion, s)[keep, :d].T for s in within])
-    return NodeTables(free, driven, np.ascontiguousarray(along), np.ascontiguousarray(held))
+    return free, driven
+
+
+@lru_cache(maxsize=64)
+def _within(mean_motion: float, dt: float, d: int, samples: int) -> tuple[Floats, Floats]:
+    keep = np.r_[0:d, 3 : 3 + d]
+    times = [dt * s / samples for s in range(samples + 1)]
+    along = np.hstack([transition_matrix(mean_motion, s)[np.ix_(keep, keep)].T for s in times])
+    held = np.hstack([input_matrix(mean_motion, s)[keep, :d].T for s in times])
+    return np.ascontiguousarray(along), np.ascontiguousarray(held)
 
 
 def _phases(phase: Floats) -> tuple[Floats, Floats, Floats]:

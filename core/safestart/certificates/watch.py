@@ -143,7 +143,7 @@ class Watch:
         return w**4 * r + 4.0 * w**3 * v + 6.0 * w * w * a + 4.0 * w * jerk + snap
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=16)
 def watch_of(question: Question) -> Watch:
     """The watch of a question, kept between calls."""
     return Watch(question)
