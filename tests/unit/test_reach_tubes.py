@@ -8,6 +8,7 @@ from scipy.linalg import expm
 from scipy.optimize import linprog
 
 from safestart.errors import InvalidInput
+from safestart.verification.audit import drift_excess, powered_excess, random_starts
 from safestart.verification.falsify import approaches, closest, replay
 from safestart.verification.flow import flow_at, flow_table, growth
 from safestart.verification.model import FACE_LIMITS, FACES, Mode, matrix
@@ -17,7 +18,6 @@ from safestart.verification.separation import planar_clearance, timed_clearance
 from safestart.verification.simulate import active, crossing_times, drifted, flown
 from safestart.verification.tube import propagate
 from safestart.verification.verify import bracket, verify
-from tests.unit.reach_check import drift_excess, powered_excess, random_starts
 
 WHOLE = Question(window=(0.0, 300.0))
 FROM_THE_SIDE = Question(centre=(-200.0, -900.0, 0.0, 0.0), half=(10.0, 10.0, 0.0, 0.0), window=(0.0, 200.0))

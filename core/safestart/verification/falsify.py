@@ -19,7 +19,7 @@ from safestart.verification.simulate import active, crossing_times, drifted
 _SAMPLES, _ZOOMS, _SHRINK, _BEST = 150, 6, 0.4, 3
 _AFTER_STEP = 1.0
 _TURNS = 3
-_REPLAY_STEP = 0.05
+_REPLAY_STEP, _NEWTONS = 0.05, 6
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +100,7 @@ def closest(
 def replay(start: Floats, abort: float, time: float) -> Floats:
     """State (4,) at ``time`` of the flight from ``start`` whose engines fail at ``abort`` (min); inf: never.
 
-    By matrix exponentials alone; the crossing by a scan of 0.05 min and bisection.
+    By matrix exponentials alone; the crossing by a scan of 0.05 min and Newton's method.
     """
     powered, far = min(time, abort), matrix(Mode.FAR)
     states = np.asarray(start, dtype=np.float64)[None, :]
@@ -111,19 +111,17 @@ def replay(start: Floats, abort: float, time: float) -> Floats:
     k = int(np.argmax(entered))
     crossing = np.inf
     if entered[k]:
-        low, high = 0.0, _REPLAY_STEP
-        for _ in range(50):
-            middle = 0.5 * (low + high)
-            low, high = (low, middle) if _inside(expm(far * middle) @ states[k - 1]) else (middle, high)
-        crossing = (k - 1) * _REPLAY_STEP + high
+        since = 0.5 * _REPLAY_STEP
+        for _ in range(_NEWTONS):
+            state = expm(far * since) @ states[k - 1]
+            heights = FACES @ state[:2] - FACE_LIMITS
+            rate = float(FACES[heights.argmax()] @ state[2:])
+            since = float(np.clip(since - heights.max() / rate if rate < 0.0 else since, 0.0, _REPLAY_STEP))
+        crossing = (k - 1) * _REPLAY_STEP + since
     state = expm(far * min(powered, crossing)) @ np.asarray(start, dtype=np.float64)
     if crossing < powered:
         state = expm(matrix(Mode.NEAR) * (powered - crossing)) @ state
     return np.asarray(expm(matrix(Mode.PASSIVE) * (time - powered)) @ state)
-
-
-def _inside(state: Floats) -> bool:
-    return bool((FACES @ state[:2] < FACE_LIMITS).all())
 
 
 @dataclass(frozen=True, slots=True)

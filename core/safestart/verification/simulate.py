@@ -80,15 +80,18 @@ def crossing_times(starts: Floats, horizon: float, bracket: tuple[float, float] 
 def _scan(starts: Floats, horizon: float) -> tuple[Floats, Bools]:
     """Last scan time outside (N,), and whether the next one is inside (N,)."""
     low = np.zeros(len(starts))
-    waiting = np.arange(len(starts))
+    waiting, states = np.arange(len(starts)), starts
     found: Bools = np.zeros(len(starts), dtype=np.bool_)
+    one = flown(Mode.FAR, np.eye(4), np.full(4, _SCAN))
     for k in range(1, int(np.ceil(horizon / _SCAN)) + 1):
-        inside = _depth(flown(Mode.FAR, starts[waiting], np.full(len(waiting), k * _SCAN))) < 0.0
-        low[waiting] = (k - 1) * _SCAN
-        found[waiting[inside]] = True
-        waiting = waiting[~inside]
-        if not len(waiting):
-            break
+        states = states @ one
+        inside = _depth(states) < 0.0
+        if inside.any():
+            found[waiting[inside]] = True
+            low[waiting[inside]] = (k - 1) * _SCAN
+            waiting, states = waiting[~inside], states[~inside]
+            if not len(waiting):
+                break
     return low, found
 
 
