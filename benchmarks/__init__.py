@@ -1,3 +1,12 @@
 """Benchmarks: each of ours beside its peer, in one run. ``safestart bench`` runs them in this order."""
 
-BENCHMARKS = ("certificate", "reach", "closed_loop", "exact_answers", "passive_safety", "atlas", "http", "start_up")
+BENCHMARKS = (
+    "certificate",
+    "reach",
+    "closed_loop",
+    "exact_answers",
+    "passive_safety",
+    "atlas",
+    "http",
+    "start_up",
+)

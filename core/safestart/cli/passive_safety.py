@@ -13,7 +13,7 @@ NOTES = (
     "Half-width of the target's box: paper 003 and CORA take 0.1 m, other tools 0.2 m; at 0.1 m the rows SRU01 and "
     "SRU02, meant to be unsafe, are proved safe.",
     "velocity is the octagon of the competition; disc is the true limit of 5 cm/s, which starts that cross the "
-    "octagonal guard break at the switch.",
+    "octagonal guard far from the target break after the switch.",
     "Times: the published ones are from other machines. Ours leave out the tables of matrix exponentials, once per "
     "process.",
 )
