@@ -9,7 +9,7 @@ from scipy.optimize import linprog
 
 from safestart.errors import InvalidInput
 from safestart.verification.audit import drift_excess, powered_excess, random_starts
-from safestart.verification.falsify import approaches, closest, replay
+from safestart.verification.falsify import approaches, closest, powered_extremes, replay
 from safestart.verification.flow import flow_at, flow_table, growth
 from safestart.verification.model import FACE_LIMITS, FACES, Mode, matrix
 from safestart.verification.question import Question, Verdict
@@ -209,3 +209,40 @@ def test_bad_questions_name_the_field(change: dict, field: str) -> None:
     with pytest.raises(InvalidInput) as error:
         Question(**change)
     assert error.value.field == field
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_no_proof_is_contradicted_by_flights_from_anywhere(seed: int) -> None:
+    """Random initial sets all around the target, with velocities, windows and boxes."""
+    random = np.random.default_rng(seed)
+    angle, radius = random.uniform(0.0, 2.0 * np.pi), random.uniform(300.0, 1000.0)
+    first = random.uniform(0.0, 150.0)
+    question = Question(
+        centre=(radius * np.cos(angle), radius * np.sin(angle), *random.uniform(-2.0, 2.0, 2)),
+        half=(*random.uniform(0.0, 25.0, 2), *random.uniform(0.0, 0.2, 2)),
+        window=(first, random.uniform(first, 250.0)),
+        box=random.uniform(0.1, 5.0),
+    )
+    answer = verify(question)
+    tubes, window = answer.reach, answer.question.window
+    assert window is not None
+    if not tubes.entry.reason:
+        assert powered_excess(question, tubes, 300, seed) <= 0.0
+    starts = random_starts(question, 400, seed)
+    aborts = random.uniform(*window, 400)
+    crossings = crossing_times(starts, 300.0)
+    separation = answer.findings["separation"]
+    if separation.verdict is Verdict.SAFE:
+        distance, _ = approaches(starts, aborts, question.horizon, crossings)
+        assert distance.min() >= (question.box if separation.bound is None else separation.bound)
+    extremes = powered_extremes(question)
+    for name, source in (
+        ("thrust", "thrust"),
+        ("los", "los"),
+        ("velocity", "speed_octagon"),
+        ("velocity_disc", "speed"),
+    ):
+        finding = answer.findings[name]
+        if finding.verdict is Verdict.SAFE and finding.bound is not None:
+            assert extremes[source].value <= finding.bound + 1e-9
+        assert finding.verdict is not Verdict.UNKNOWN or finding.reason
