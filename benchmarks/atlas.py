@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from benchmarks.timing import median_seconds
-from safestart.certificates.atlas import build
 from safestart.certificates.question import Question
+from safestart.certificates.survey import build
 from safestart.scenario import Scenario
 
 RATE_DEG_S, THRUST = 3.0, 0.1

@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 
-from safestart.certificates.atlas import Atlas, build
+from safestart.certificates.atlas import Atlas
 from safestart.certificates.exact import Verdict, decide
 from safestart.certificates.proof import check
 from safestart.certificates.prove import proof_of
 from safestart.certificates.question import Question
 from safestart.certificates.sandwich import Support, refine
+from safestart.certificates.survey import build
 from safestart.errors import InvalidInput
 from safestart.scenario import Floats, Scenario
 

@@ -14,18 +14,12 @@ from typing import Any
 import numpy as np
 
 from safestart.certificates.exact import GUARD, Answer, Multiplier, Verdict
-from safestart.certificates.extent import Ceiling, Extent, NotSolved, Witness
+from safestart.certificates.extent import Ceiling, Witness
 from safestart.certificates.question import Question
-from safestart.certificates.sandwich import Sandwich, Support, refine
-from safestart.certificates.watch import watch_of
 from safestart.errors import invalid
-from safestart.scenario import MAX_RANGE, Floats, number
-
-TOLERANCE = 0.005
-MOST_DIRECTIONS = 200
+from safestart.scenario import Floats
 
 Ints = np.ndarray[tuple[Any, ...], np.dtype[np.signedinteger[Any]]]
-Evidence = tuple[Witness, Ceiling | None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,11 +59,13 @@ class Atlas:
         if points.ndim == 0 or points.shape[-1] != 2 or not np.isfinite(points).all():
             raise invalid("points", "finite, last axis of length 2 (metres)", points.shape)
         flat = points.reshape(-1, 2)
-        upper = (
-            (flat @ self.slopes.T + self.levels).min(axis=1)
-            if len(self.levels)
-            else np.full(len(flat), np.inf)
-        )
+        x, y = np.ascontiguousarray(flat[:, 0]), np.ascontiguousarray(flat[:, 1])
+        upper = np.full(len(flat), np.inf)
+        for (across, along), level in zip(self.slopes.tolist(), self.levels.tolist(), strict=True):
+            ceiling = across * x
+            ceiling += along * y
+            ceiling += level
+            np.minimum(upper, ceiling, out=upper)
         lower = np.full(len(flat), -np.inf)
         if len(self.rim) >= 3:
             sector, weights = self._fan(flat)
@@ -81,8 +77,7 @@ class Atlas:
                 + weights[:, 2] * self.margins[after]
             )
             lower = np.where(inside, mixed, lower)
-        beyond = flat[:, 1] > self.y_max
-        upper = np.where(beyond, np.inf, upper)
+        upper[y > self.y_max] = np.inf
         return lower.reshape(points.shape[:-1]), upper.reshape(points.shape[:-1])
 
     def answer(self, point: Floats) -> Answer:
@@ -90,16 +85,24 @@ class Atlas:
         point = np.asarray(point, dtype=np.float64)
         if point.shape != (2,):
             raise invalid("point", "shape (2,): x, y in metres", point.shape)
-        low, high = (float(value) for value in self.bounds(point))
-        if low > GUARD:
-            return Answer(Verdict.GO, low, low, high, self._thrust(point), (), 0)
+        if not np.isfinite(point).all():
+            raise invalid("point", "finite coordinates in metres", "NaN or infinity")
+        x, y = point.tolist()
+        within = y <= self.y_max
+        least = int(np.argmin(self.slopes @ point + self.levels)) if within and len(self.levels) else -1
+        high = math.inf if least < 0 else float(self.slopes[least] @ point + self.levels[least])
         if high < -GUARD:
-            best = self.ceilings[int(np.argmin(self.slopes @ point + self.levels))]
+            best = self.ceilings[least]
             proof = tuple(
-                Multiplier(float(time), self.names[int(face)], float(value))
-                for time, face, value in zip(best.times, best.faces, best.weights, strict=True)
+                Multiplier(time, self.names[face], value)
+                for time, face, value in zip(
+                    best.times.tolist(), best.faces.tolist(), best.weights.tolist(), strict=True
+                )
             )
-            return Answer(Verdict.NO_GO, high, low, high, None, proof, 0)
+            return Answer(Verdict.NO_GO, high, -math.inf, high, None, proof, 0)
+        low, thrust = self._mix(x, y)
+        if low > GUARD:
+            return Answer(Verdict.GO, low, low, high, thrust, (), 0)
         where = "beyond the atlas" if point[1] > self.y_max else "between the proved polygons"
         return Answer(Verdict.UNDECIDED, math.nan, low, high, None, (), 0, where)
 
@@ -117,87 +120,23 @@ class Atlas:
         weights = np.stack([1.0 - first - second, first, second], axis=1)
         return sector, np.where(np.isfinite(weights), weights, -1.0)
 
-    def _thrust(self, point: Floats) -> Floats:
-        sector, weights = self._fan(point[None])
-        k = int(sector[0])
-        parts = (self.centre, self.rim[k], self.rim[(k + 1) % len(self.rim)])
-        mixed: Floats = np.sum([w * part.thrust for w, part in zip(weights[0], parts, strict=True)], axis=0)
-        return mixed
-
-
-def build(question: Question, y_max: float = 150.0, tolerance: float = TOLERANCE) -> Atlas:
-    """Build the atlas: directions are asked until the relative area gap is at most ``tolerance``.
-
-    Raises ``InvalidInput`` for a question in 3-D, for a tolerance outside (1e-4, 1] and a cut below the hold plane.
-    """
-    if question.dimensions != 2:
-        raise invalid("dimensions", "2: an atlas is planar", question.dimensions)
-    number("tolerance", tolerance, 1e-4, 1.0)
-    number("y_max", y_max, question.scenario.corridor.hold_radius, MAX_RANGE, open_low=True)
-    watch = watch_of(question)
-    extent = Extent(watch, y_max)
-    deepest, ceiling = extent.deepest()
-    found: list[Support[Evidence]] = []
-    message, sandwich = "", None
-
-    def oracle(direction: Floats) -> Support[Evidence]:
-        witness, above, reach = extent.farthest(direction)
-        bound = max(reach, float(direction @ witness.start))
-        support = Support(direction, witness.start, bound, (witness, above))
-        found.append(support)
-        return support
-
-    if deepest.margin > 2.0 * GUARD:
-        try:
-            sandwich = refine(oracle, tolerance, MOST_DIRECTIONS)
-        except NotSolved as error:
-            message = str(error)
-    return _assemble(question, y_max, deepest, ceiling, found, sandwich, watch.names, message)
-
-
-def _assemble(
-    question: Question,
-    y_max: float,
-    deepest: Witness,
-    ceiling: Ceiling | None,
-    found: list[Support[Evidence]],
-    sandwich: Sandwich[Evidence] | None,
-    names: tuple[str, ...],
-    message: str,
-) -> Atlas:
-    # Directions that end in one corner find it again, up to rounding: one witness of it is enough.
-    rim = {tuple(np.round(s.point, 4)): s.evidence[0] for s in found if s.evidence[0].margin > GUARD}
-    centre = _mean(deepest, tuple(rim.values()))
-    ahead = [(math.atan2(*(w.start - centre.start)[::-1]), w) for w in rim.values()]
-    ordered = sorted(ahead, key=lambda pair: pair[0])
-    ceilings = tuple(c for c in (ceiling, *(s.evidence[1] for s in found)) if c is not None)
-    return Atlas(
-        question,
-        y_max,
-        deepest,
-        centre,
-        tuple(witness for _, witness in ordered),
-        np.array([witness.start - centre.start for _, witness in ordered]).reshape(-1, 2),
-        np.array([witness.margin for _, witness in ordered]),
-        np.array([angle for angle, _ in ordered]),
-        ceilings,
-        np.array([c.slope for c in ceilings]).reshape(-1, 2),
-        np.array([c.level for c in ceilings]),
-        sandwich.inner_area if sandwich else 0.0,
-        sandwich.outer_area if sandwich else 0.0,
-        names,
-        message,
-    )
-
-
-def _mean(deepest: Witness, rim: tuple[Witness, ...]) -> Witness:
-    """Half the deepest start, half the mean of the rim: inside the polygon, and by convexity a witness itself.
-
-    The deepest start alone may lie on the polygon's edge (on the cut), where a fan of triangles degenerates.
-    """
-    if not rim:
-        return deepest
-    share = 0.5 / len(rim)
-    start = 0.5 * deepest.start + share * np.sum([w.start for w in rim], axis=0)
-    thrust = 0.5 * deepest.thrust + share * np.sum([w.thrust for w in rim], axis=0)
-    return Witness(start, thrust, 0.5 * deepest.margin + share * sum(w.margin for w in rim))
+    def _mix(self, x: float, y: float) -> tuple[float, Floats | None]:
+        """Margin and thrust of the mix of witnesses at one start, (-inf, None) outside; :meth:`_fan` singly."""
+        count = len(self.rim)
+        if count < 3:
+            return -math.inf, None
+        origin = self.centre.start
+        dx, dy = x - float(origin[0]), y - float(origin[1])
+        k = (int(np.searchsorted(self.angles, math.atan2(dy, dx), side="right")) - 1) % count
+        after = (k + 1) % count
+        (ax, ay), (bx, by) = self.corners[k].tolist(), self.corners[after].tolist()
+        cross = ax * by - ay * bx
+        if cross <= 0.0:
+            return -math.inf, None
+        first, second = (dx * by - dy * bx) / cross, (ax * dy - ay * dx) / cross
+        rest = 1.0 - first - second
+        if min(first, second, rest) < 0.0:
+            return -math.inf, None
+        one, two = self.rim[k], self.rim[after]
+        margin = rest * self.centre.margin + first * one.margin + second * two.margin
+        return margin, rest * self.centre.thrust + first * one.thrust + second * two.thrust

@@ -6,9 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from safestart.certificates.atlas import Atlas, build
+from safestart.certificates.atlas import Atlas
 from safestart.certificates.closed_form import certify_grid
 from safestart.certificates.question import Question
+from safestart.certificates.survey import build
 from safestart.errors import invalid
 from safestart.processes.atlas.plots import atlas_map
 from safestart.processes.atlas.spec import AtlasInputs

@@ -65,7 +65,7 @@ def _one_by_one(question: Question, starts: Floats, context: Context) -> list[An
 
 def _by_atlas(question: Question, starts: Floats, context: Context) -> list[Answer]:
     """Atlas first; what lies in its undecided strip is solved, as far as the number of programs allows."""
-    from safestart.certificates.atlas import build
+    from safestart.certificates.survey import build
 
     hold = question.scenario.corridor.hold_radius
     cut = min(max(float(starts[:, 1].max()), hold + 1.0), MAX_RANGE)
