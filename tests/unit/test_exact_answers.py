@@ -12,10 +12,11 @@ from benchmarks.peers.dense_lp import DenseLP
 from safestart.certificates import search
 from safestart.certificates.conic import Solved
 from safestart.certificates.exact import Answer, Verdict, decide
-from safestart.certificates.question import Question, rows
+from safestart.certificates.question import Question
 from safestart.certificates.watch import watch_of
 from safestart.errors import InvalidInput
 from safestart.scenario import Floats, Scenario
+from tests.unit.linear_model import rows
 
 SWEEP = [(0.02, 1.0, 30.0), (0.05, 2.0, 50.0), (0.10, 3.0, 50.0), (0.10, 2.0, 100.0), (0.05, 5.0, 30.0)]
 

@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 
-from safestart.certificates.question import Question, rows
+from safestart.certificates.question import Question
 from safestart.corridor import corridor_of
 from safestart.dynamics.body_frame import rotation
 from safestart.dynamics.cwh import input_matrix, transition_matrix
 from safestart.errors import InvalidInput
 from safestart.scenario import Scenario
+from tests.unit.linear_model import rows
 
 
 @pytest.mark.parametrize("dimensions", [2, 3])
@@ -43,8 +44,3 @@ def test_rows_are_the_face_distances_of_the_flight(dimensions: int, mean_motion:
 def test_bad_questions(change: dict[str, object]) -> None:
     with pytest.raises(InvalidInput):
         Question(Scenario.of(1.0, 0.1), **change)  # type: ignore[arg-type]
-
-
-def test_times_outside_the_horizon() -> None:
-    with pytest.raises(InvalidInput):
-        rows(Question(Scenario.of(1.0, 0.1)), np.array([61.0]))
