@@ -15,7 +15,7 @@ from safestart.errors import InvalidInput
 from safestart.progress import Context
 from safestart.scenario import Bools, Chaser, CorridorShape, Floats, Grid, Rest, Scenario, SetKind, Target
 from safestart.sets import zonotope
-from safestart.sets.support import disk_support
+from tests.unit.support_twin import disk_support
 
 NARROW = Scenario(Target(math.radians(4.0)), Chaser(0.05), CorridorShape(c_x=0.4, x0=0.0, hold_radius=3.0))
 OTHERS = {

@@ -21,8 +21,8 @@ from safestart.errors import InvalidInput
 from safestart.progress import Context
 from safestart.scenario import Chaser, CorridorShape, Floats, Grid, Rest, Scenario, SetKind, Target
 from safestart.sets import series
-from safestart.sets.support import disk_support
 from tests.unit import exact_twin
+from tests.unit.support_twin import disk_support
 
 NARROW = CorridorShape(c_x=0.3, x0=0.0, hold_radius=3.0)
 CASES = {
