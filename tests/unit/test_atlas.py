@@ -65,6 +65,20 @@ def test_every_answer_carries_a_proof_that_checks(atlas: Atlas) -> None:
     assert seen == {Verdict.GO, Verdict.NO_GO}
 
 
+def test_one_start_and_many_are_the_same_answer(atlas: Atlas) -> None:
+    starts = _starts(300)
+    lower, upper = atlas.bounds(starts)
+    for start, low, high in zip(starts, lower.tolist(), upper.tolist(), strict=True):
+        answer = atlas.answer(start)
+        if answer.verdict is Verdict.GO:
+            assert answer.lower == pytest.approx(low, rel=1e-9, abs=1e-9)
+        elif answer.verdict is Verdict.NO_GO:
+            assert answer.upper == pytest.approx(high, rel=1e-9, abs=1e-9)
+        else:
+            assert low <= 1e-9
+            assert high >= -1e-9
+
+
 def test_the_sliver_is_refused() -> None:
     atlas = build(Question(Scenario.of(2.0, 0.05)))
     answer = atlas.answer(COUNTEREXAMPLE)

@@ -74,7 +74,7 @@ def certify(scenario: Scenario, points: Floats, rest: Rest = Rest.LVLH) -> Certi
         raise invalid("points", "finite coordinates in metres", "NaN or infinity")
     corridor = corridor_of(scenario.corridor, points.shape[-1])
     slack = corridor.slack(points)
-    slack_rate = points @ _rate_matrix(corridor, scenario, rest)
+    slack_rate = points @ rate_matrix(corridor, scenario, rest)
     erosion = np.minimum(slack_rate, 0.0) ** 2 / (2.0 * scenario.chaser.max_acceleration)
     face_margin = (slack - erosion) / corridor.lengths
     limit = range_limit(scenario, rest)
@@ -85,7 +85,7 @@ def certify(scenario: Scenario, points: Floats, rest: Rest = Rest.LVLH) -> Certi
     )
 
 
-def _rate_matrix(corridor: Corridor, scenario: Scenario, rest: Rest) -> Floats:
+def rate_matrix(corridor: Corridor, scenario: Scenario, rest: Rest) -> Floats:
     """Matrix M (d, k) with s' = p @ M for a start at rest: s_i' = A_i (omega x p_B), 0 for body rest."""
     omega = scenario.target.tumble_rate if rest is Rest.LVLH else 0.0
     rate = np.zeros_like(corridor.normals.T)
@@ -102,7 +102,7 @@ def certify_grid(scenario: Scenario, grid: Grid, rest: Rest = Rest.LVLH) -> MapC
     x, y = grid.axes(scenario.corridor)
     y = y[:, None]
     corridor = corridor_of(scenario.corridor)
-    rate = _rate_matrix(corridor, scenario, rest)
+    rate = rate_matrix(corridor, scenario, rest)
     limit = range_limit(scenario, rest)
     twice = 2.0 * scenario.chaser.max_acceleration
     margin = limit - np.sqrt(x * x + y * y)

@@ -50,7 +50,7 @@ def solve(constant: Floats, thrust: Floats, a_max: float, dimensions: int) -> So
     cost[-1] = -1.0
     cones = [clarabel.NonnegativeConeT(rows), *[clarabel.SecondOrderConeT(cone)] * count]
     none = _Sparse([], [], [0] * (columns + 2), (columns + 1, columns + 1))
-    found = clarabel.DefaultSolver(none, cost.tolist(), a, b.tolist(), cones, _settings()).solve()
+    found = clarabel.DefaultSolver(none, cost.tolist(), a, b.tolist(), cones, solver_settings()).solve()
     status = str(found.status)
     if status not in ("Solved", "AlmostSolved", "InsufficientProgress", "MaxIterations"):
         return Solved(status)
@@ -61,14 +61,19 @@ def solve(constant: Floats, thrust: Floats, a_max: float, dimensions: int) -> So
     total = float(weights.sum())
     if not (np.isfinite(w).all() and np.isfinite(total) and total > 0.0):
         return Solved(status)
-    norms = np.sqrt((w * w).sum(axis=1))
-    inside = w * (a_max * np.where(norms > _INSIDE, _INSIDE / np.maximum(norms, _INSIDE), 1.0))[:, None]
     weights /= total
-    return Solved(status, inside, weights, bound(constant, thrust, weights, a_max, dimensions))
+    return Solved(status, a_max * into_disk(w), weights, bound(constant, thrust, weights, a_max, dimensions))
+
+
+def into_disk(w: Floats) -> Floats:
+    """Thrusts (N, d) in units of a_max, those that the solver left a hair outside the unit disk scaled back into it."""
+    norms = np.sqrt((w * w).sum(axis=1))
+    inside: Floats = w * np.where(norms > _INSIDE, _INSIDE / np.maximum(norms, _INSIDE), 1.0)[:, None]
+    return inside
 
 
 def bound(constant: Floats, thrust: Floats, weights: Floats, a_max: float, dimensions: int) -> float:
-    """Upper bound (m) on the margin of every thrust history, from weights (J,) >= 0 of sum 1."""
+    """Largest weighted sum of the rows (m) over all thrust histories: with weights (J,) of sum 1, a margin's bound."""
     pull = (weights @ thrust).reshape(-1, dimensions)
     return float(weights @ constant + a_max * np.sqrt((pull * pull).sum(axis=1)).sum())
 
@@ -103,7 +108,8 @@ def _columns(scaled: Floats, dimensions: int, size: int) -> _Sparse:
     return _Sparse(data.tolist(), indices.tolist(), starts.tolist(), (size, columns + 1))
 
 
-def _settings() -> Any:
+def solver_settings() -> Any:
+    """Clarabel's settings for programs of this size."""
     import clarabel
 
     settings = clarabel.DefaultSettings()

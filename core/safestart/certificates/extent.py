@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from safestart.certificates.conic import bound
+from safestart.certificates.conic import bound, into_disk, solver_settings
 from safestart.certificates.watch import Watch
 from safestart.scenario import Floats
 
@@ -22,7 +22,6 @@ CLEARANCE = 1e-3
 """Distance (m) that the witness of a farthest start keeps, so that its proof does not hang on the last digit."""
 _ROUNDS = 40
 _FIRST_TIMES = 7
-_INSIDE = 1.0 - 1e-14
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,21 +128,15 @@ class Extent:
             a[:rows, -1], cost[-1] = 1.0, -1.0
         else:
             cost[columns : columns + 2] = -direction
-        settings = clarabel.DefaultSettings()
-        settings.verbose, settings.max_threads = False, 1
         kinds = [clarabel.NonnegativeConeT(rows + 1), *[clarabel.SecondOrderConeT(3)] * count]
         none = csc_array((len(cost), len(cost)))
-        found = clarabel.DefaultSolver(none, cost, csc_array(a), b, kinds, settings).solve()
+        found = clarabel.DefaultSolver(none, cost, csc_array(a), b, kinds, solver_settings()).solve()
         status = str(found.status)
         x, weights = np.array(found.x), np.maximum(np.array(found.z[:rows]), 0.0)
         if status not in ("Solved", "AlmostSolved") or not (
             np.isfinite(x).all() and np.isfinite(weights).all()
         ):
             raise NotSolved(f"the solver stopped with {status}")
-        w = x[:columns].reshape(count, 2)
-        norms = np.sqrt((w * w).sum(axis=1))
-        w = w * np.where(norms > _INSIDE, _INSIDE / np.maximum(norms, _INSIDE), 1.0)[:, None]
-        pull = (weights @ thrust).reshape(count, 2)
-        reach = float(weights @ offset + self.a_max * np.sqrt((pull * pull).sum(axis=1)).sum())
-        reach += max(float(found.z[rows]), 0.0) * self.y_max
-        return x[columns : columns + 2], self.a_max * w, float(x[-1]) if free else CLEARANCE, weights, reach
+        used = self.a_max * into_disk(x[:columns].reshape(count, 2))
+        reach = bound(offset, thrust, weights, self.a_max, 2) + max(float(found.z[rows]), 0.0) * self.y_max
+        return x[columns : columns + 2], used, float(x[-1]) if free else CLEARANCE, weights, reach

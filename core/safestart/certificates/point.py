@@ -12,7 +12,7 @@ import math
 from dataclasses import dataclass
 from functools import lru_cache
 
-from safestart.certificates.closed_form import range_limit
+from safestart.certificates.closed_form import range_limit, rate_matrix
 from safestart.corridor import corridor_of
 from safestart.scenario import Chaser, CorridorShape, Rest, Scenario, Target
 
@@ -55,12 +55,16 @@ def prepare(
     )
     corridor = corridor_of(scenario.corridor, 3 if spatial else 2)
     flat = () if spatial else (0.0,)
-    # A start at rest in LVLH moves in the body frame with -omega x p: s_i' = omega (A_iy x - A_ix y).
-    omega = scenario.target.tumble_rate if rest is Rest.LVLH else 0.0
+    rates = rate_matrix(corridor, scenario, rest)
     rows = tuple(
-        (offset, *normal, *flat, omega * normal[1], -omega * normal[0], length)
-        for offset, normal, length in zip(
-            corridor.offsets.tolist(), corridor.normals.tolist(), corridor.lengths.tolist(), strict=True
+        (offset, *normal, *flat, across, along, length)
+        for offset, normal, across, along, length in zip(
+            corridor.offsets.tolist(),
+            corridor.normals.tolist(),
+            rates[0].tolist(),
+            rates[1].tolist(),
+            corridor.lengths.tolist(),
+            strict=True,
         )
     )
     return Prepared(scenario, corridor.faces, range_limit(scenario, rest), 2.0 * a_max, rows)

@@ -21,7 +21,7 @@ from safestart.progress import Context
 from safestart.settings import settings
 
 _START_LIMIT_S = 90.0
-_FIRST_TRY_PORT_HELD_S = 0.2
+_READY_POLL_S = 0.2
 
 
 def demonstrate(as_json: bool) -> None:
@@ -90,7 +90,7 @@ def _await_ready(client: httpx.Client, child: subprocess.Popen[bytes]) -> None:
                 return
         except httpx.TransportError:
             pass
-        time.sleep(_FIRST_TRY_PORT_HELD_S)
+        time.sleep(_READY_POLL_S)
     raise Unavailable(f"demo: required a ready service within {_START_LIMIT_S:g} s of start")
 
 

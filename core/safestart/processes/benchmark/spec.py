@@ -121,7 +121,7 @@ class BenchmarkOutputs(WireModel):
     cell_area_m2: float
     containment_horizon_s: float | None = Field(
         description="Smallest horizon, from horizon_s on, at which the exact fixed-time set holds every certified "
-        "start; null: none up to 600 s."
+        "start; null: none up to 600 s, or nothing is certified."
     )
     rows: list[EngineRow]
     notes: list[str]
