@@ -1,4 +1,4 @@
-"""Hamilton-Jacobi reachability on a grid (paper 000, eq. 11), with hj-reachability.
+"""Hamilton-Jacobi reachability on a grid (paper 000, eq. 11), with our own solver or with hj-reachability.
 
 V(x, -T) is the least signed distance to the corridor that thrust can bring about from x: at time T (fixed), or
 at some time up to T (tube). The set of starts is {V <= 0} on the slice of states at rest.
@@ -8,17 +8,17 @@ from __future__ import annotations
 
 import math
 import time
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
 from safestart.engines.base import EngineResult, Problem, ResultCode
+from safestart.engines.hj.certified import count_errors, exact_answer
 from safestart.engines.hj.domain import Domain, count_steps, size_domain, start_states, warnings
 from safestart.engines.hj.frame import MODEL
 from safestart.engines.hj.settings import ENGINE, Settings
-from safestart.engines.hj.solver import Solver
-from safestart.engines.hj.target import TargetValues, signed_distance
+from safestart.engines.hj.target import TargetValues, target_at
 from safestart.engines.region import restrict
 from safestart.progress import Context
 from safestart.scenario import Floats, SetKind
@@ -30,17 +30,33 @@ MIN_STRETCHES, NODE_STEPS = 20, 20_000_000
 MONOTONE_TOLERANCE, TOLERANCE = 1e-3, 0.05
 
 
+class Solver(Protocol):
+    """A time loop: ours, or the library's."""
+
+    compile_s: float
+
+    def advance(self, span: float) -> tuple[bool, float, float]:
+        """Step ``span`` seconds back; returns whether all values are finite, and their least and largest."""
+        ...
+
+    def value(self) -> Floats:
+        """The value function in float64."""
+        ...
+
+
 class HamiltonJacobi:
     """Level sets on a four-dimensional grid: neither an inner nor an outer bound, its error has no sign."""
 
     name = ENGINE
-    summary = "Hamilton-Jacobi level sets on a grid (hj-reachability)"
+    summary = "Hamilton-Jacobi level sets on a grid (own solver, or hj-reachability)"
 
     def solve(self, problem: Problem, context: Context) -> EngineResult:
         """Step the value function back over the horizon and read its slice at the starts.
 
         ``arrays`` holds ``margin_unrestricted`` (ny, nx), minus the value at the starts, before the set is cut
-        down to the corridor.
+        down to the corridor, and ``margin_exact`` (ny, nx), the margin by support functions (of the position-only
+        target). ``detail["certified"]`` counts the cells that the exact set refutes
+        (:mod:`safestart.engines.hj.certified`); the mask is the level set's own.
 
         Raises ``InvalidInput`` for settings it does not know, for a box that does not hold every start and for
         a grid that needs more time steps than anyone waits for; ``Cancelled`` between stretches of time. A
@@ -51,7 +67,7 @@ class HamiltonJacobi:
         steps, courant = count_steps(problem, domain, settings)
         context.step(0.0, problem.horizon, "compiling")
         target = TargetValues.of(problem, domain, settings)
-        solver = Solver(problem, domain, settings, target.terminal, courant)
+        solver = _solver(problem, domain, settings, target.terminal, courant)
         detail = _detail(problem, domain, settings, steps, target)
 
         begin = time.perf_counter()
@@ -69,11 +85,26 @@ class HamiltonJacobi:
         mask, margin = restrict(problem, field)
         run = time.perf_counter() - begin
         message = "; ".join(detail["warnings"])
+        exact = exact_answer(problem, context)
+        detail["certified"] = count_errors(problem, settings, field, exact)
         arrays = {"margin_unrestricted": field}
+        if exact.code is ResultCode.OK:
+            arrays["margin_exact"] = exact.arrays["margin_unrestricted"]
         detail["value_min_m"], detail["value_max_m"] = float(value.min()), float(value.max())
         return EngineResult(
             self.name, ResultCode.OK, mask, margin, run, solver.compile_s, message, detail, arrays
         )
+
+
+def _solver(problem: Problem, domain: Domain, settings: Settings, terminal: Floats, courant: float) -> Solver:
+    # JAX takes seconds to import; only its own solver needs it.
+    if settings.solver == "fused":
+        from safestart.engines.hj.fused import FusedSolver
+
+        return FusedSolver(problem, domain, settings, terminal, courant)
+    from safestart.engines.hj.peer import PeerSolver
+
+    return PeerSolver(problem, domain, settings, terminal, courant)
 
 
 def _slack(settings: Settings, target: TargetValues) -> float:
@@ -115,7 +146,7 @@ def _slice(problem: Problem, domain: Domain, settings: Settings, value: Floats) 
     axes = domain.axes(settings.shape)
     found: Floats = RegularGridInterpolator(axes, value, bounds_error=True)(states)
     if problem.kind is SetKind.TUBE:
-        found = np.minimum(found, signed_distance(problem.scenario.corridor, states[..., :2]))
+        found = np.minimum(found, target_at(problem, settings, states))
     return found
 
 
@@ -129,6 +160,7 @@ def _detail(
         "frame": settings.frame.value,
         "accuracy": settings.accuracy,
         "boundary": settings.boundary,
+        "match_m_s": settings.match,
         "shape": list(settings.shape),
         "half_widths": {
             "x_m": float(domain.half[0]),
@@ -139,7 +171,8 @@ def _detail(
         "time_steps": steps,
         "target_min_m": target.low,
         "target_max_m": target.high,
-        "precision": "float32",
+        "solver": settings.solver,
+        "precision": settings.precision,
         "model": MODEL[settings.frame],
         "warnings": warnings(problem, domain, settings),
     }

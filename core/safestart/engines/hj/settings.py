@@ -17,6 +17,8 @@ Shape = tuple[int, int, int, int]
 
 ACCURACIES = ("low", "medium", "high", "very_high")
 BOUNDARIES = ("edge", "extrapolate_away_from_zero")
+SOLVERS = ("fused", "hj_reachability")
+PRECISIONS = ("float32", "float64")
 FRAMES = ("auto", *(frame.value for frame in Frame))
 DEFAULT_SHAPE: Shape = (41, 41, 15, 15)
 MIN_NODES, MAX_NODES, MAX_TOTAL_NODES = 5, 101, 5_000_000
@@ -28,12 +30,15 @@ _PREFIX = f"options.{ENGINE}"
 class Settings:
     """Checked settings.
 
-    ``accuracy`` names the scheme of hj-reachability: low (first order, Euler), medium (ENO2, RK2), high
-    (WENO3, RK3), very_high (WENO5, RK3). ``shape`` counts the nodes of (x, y, vx, vy). ``domain`` holds
-    explicit half widths (x m, y m, v m/s), None to size it from the problem. ``boundary`` pads the grid:
-    ``edge`` repeats the last value, ``extrapolate_away_from_zero`` is the library's own default, kept for
-    comparison. ``frame`` is the frame of the state and of ``domain``; asked for as ``auto`` it is LVLH, but for
-    tubes of starts at rest in the body frame; ``body`` is the paper's.
+    ``solver`` is ours (``fused``, :mod:`safestart.levelset`) or ``hj_reachability``; both run the same schemes, the
+    latter in ``precision`` float32 only. ``accuracy`` names the scheme as hj-reachability does: low (first order,
+    Euler), medium (ENO2, RK2), high (WENO3, RK3), very_high (WENO5, RK3). ``shape`` counts the nodes of
+    (x, y, vx, vy). ``domain`` holds explicit half widths (x m, y m, v m/s), None to size it from the problem.
+    ``boundary`` pads the grid: ``edge`` repeats the last value, ``extrapolate_away_from_zero`` is the library's own
+    default, kept for comparison. ``frame`` is the frame of the state and of ``domain``; asked for as ``auto`` it is
+    LVLH, but for tubes of starts at rest in the body frame; ``body`` is the paper's. ``match`` makes the target
+    velocity-aware: the corridor counts only where the velocity differs from co-rotation by at most that many m/s (None:
+    any velocity).
     """
 
     accuracy: str = "low"
@@ -41,17 +46,26 @@ class Settings:
     domain: tuple[float, float, float] | None = None
     boundary: str = "edge"
     frame: Frame = Frame.LVLH
+    match: float | None = None
+    solver: str = "fused"
+    precision: str = "float32"
 
     @classmethod
     def of(cls, problem: Problem) -> Settings:
         """Settings from ``problem.options["hamilton_jacobi"]``; ``InvalidInput`` on anything unknown."""
-        problem.check_options(ENGINE, ("accuracy", "shape", "domain", "boundary", "frame"))
+        known = ("accuracy", "shape", "domain", "boundary", "frame", "match", "solver", "precision")
+        problem.check_options(ENGINE, known)
+        solver = _one_of("solver", problem.option(ENGINE, "solver", "fused"), SOLVERS)
+        precisions = PRECISIONS if solver == "fused" else PRECISIONS[:1]
         return cls(
             _one_of("accuracy", problem.option(ENGINE, "accuracy", "low"), ACCURACIES),
             _shape(problem.option(ENGINE, "shape", DEFAULT_SHAPE)),
             _domain(problem.option(ENGINE, "domain", None)),
             _one_of("boundary", problem.option(ENGINE, "boundary", "edge"), BOUNDARIES),
             _frame(problem),
+            _match(problem.option(ENGINE, "match", None)),
+            solver,
+            _one_of("precision", problem.option(ENGINE, "precision", "float32"), precisions),
         )
 
 
@@ -68,6 +82,10 @@ def _frame(problem: Problem) -> Frame:
         corotating_tube = problem.rest is Rest.BODY and problem.kind is SetKind.TUBE
         return Frame.BODY if corotating_tube else Frame.LVLH
     return Frame(asked)
+
+
+def _match(value: Any) -> float | None:
+    return None if value is None else number(f"{_PREFIX}.match", value, 0.0, 1e3, open_low=True)
 
 
 def _shape(value: Any) -> Shape:

@@ -1,4 +1,10 @@
-"""The target function l: how far a position is from the corridor, standing still or turned."""
+"""The target function l: how far a state is from the corridor, standing still or turned, and from co-rotation.
+
+The position-only target is the signed distance l(p). The velocity-aware one (paper 000, section 10) is
+max(l(p), tau (|v - omega x p| - match)): at most 0 where the position is in the corridor and the velocity within
+``match`` of the one that a point fixed in the target's body has. The difference of velocities turns with the frame, so
+its length is the same at every time.
+"""
 
 from __future__ import annotations
 
@@ -14,6 +20,9 @@ from safestart.engines.hj.frame import Frame
 from safestart.engines.hj.settings import Settings
 from safestart.scenario import CorridorShape, Floats, SetKind
 
+MATCH_S = 30.0
+"""Seconds tau that turn a difference of velocities into metres; the zero level does not depend on it."""
+
 
 def signed_distance(shape: CorridorShape, points: Floats) -> Floats:
     """l = max over faces of (A_i p - b_i) / |A_i| in metres, shape (...): negative inside the corridor.
@@ -25,10 +34,26 @@ def signed_distance(shape: CorridorShape, points: Floats) -> Floats:
     return distance
 
 
+def mismatch(states: Floats, tumble_rate: float, frame: Frame, match: float) -> Floats:
+    """tau (|v - omega x p| - match) in metres for states (..., 4); in the body frame v is that difference already."""
+    carried = tumble_rate if frame is Frame.LVLH else 0.0
+    x, y, vx, vy = np.moveaxis(states, -1, 0)
+    return np.asarray(MATCH_S * (np.hypot(vx + carried * y, vy - carried * x) - match))
+
+
 def faces(shape: CorridorShape) -> Floats:
     """(k, 3) rows (A_i, -b_i) / |A_i|, so that l(p) = max_i of row_i . (p, 1)."""
     corridor = corridor_of(shape)
     return np.column_stack([corridor.normals, -corridor.offsets]) / corridor.lengths[:, None]
+
+
+def target_at(problem: Problem, settings: Settings, states: Floats) -> Floats:
+    """l at t = 0 for states (..., 4) in the frame of the settings, metres, shape (...)."""
+    distance = signed_distance(problem.scenario.corridor, states[..., :2])
+    if settings.match is None:
+        return distance
+    away = mismatch(states, problem.scenario.target.tumble_rate, settings.frame, settings.match)
+    return np.maximum(distance, away)
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +62,7 @@ class TargetValues:
 
     ``terminal`` is l at the horizon, ``first`` l at t = 0; they differ where the corridor turns. The value of a
     fixed-time set stays in the range of ``terminal``; a tube's may also take any lower value that l has on its
-    way: ``low`` and ``high`` bound it.
+    way: ``low`` and ``high`` bound it. With ``match`` in the settings l is the velocity-aware one.
     """
 
     terminal: Floats
@@ -70,4 +95,9 @@ class TargetValues:
         if turns and problem.kind is SetKind.TUBE:
             corner = np.array([0.0, np.hypot(domain.half[0], domain.half[1])])
             low = float(signed_distance(shape, corner))
+        if settings.match is not None:
+            nodes = np.stack(np.meshgrid(*domain.axes(settings.shape), indexing="ij"), axis=-1)
+            away = mismatch(nodes, problem.scenario.target.tumble_rate, settings.frame, settings.match)
+            first, terminal = np.maximum(first, away), np.maximum(terminal, away)
+            low, high = max(low, float(away.min())), float(terminal.max())
         return cls(terminal, first, low, high)

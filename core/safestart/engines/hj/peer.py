@@ -24,7 +24,7 @@ from safestart.engines.hj.domain import Domain
 from safestart.engines.hj.frame import Frame, coefficients
 from safestart.engines.hj.model import LinearMotion
 from safestart.engines.hj.settings import Settings
-from safestart.engines.hj.target import faces
+from safestart.engines.hj.target import MATCH_S, faces
 from safestart.scenario import Floats, SetKind
 
 KEPT_PROGRAMS = 8
@@ -73,12 +73,16 @@ class Sweep(StrEnum):
 
 
 class Parameters(NamedTuple):
-    """What one compiled program is given: numbers () and the corridor's ``faces`` (k, 3), all float32."""
+    """What one compiled program is given: numbers () and the corridor's ``faces`` (k, 3), all float32.
+
+    ``match`` is None for the position-only target, which makes it another program.
+    """
 
     turn: Any
     gx: Any
     gy: Any
     a_max: Any
+    match: Any
     courant: Any
     tumble_rate: Any
     faces: Any
@@ -92,6 +96,13 @@ def _distance(rows: Any, angle: Any, lattice: Any) -> Any:
     return (points @ rows.T).max(axis=-1)[:, :, None, None]
 
 
+def _mismatch(parameters: Parameters, lattice: Any) -> Any:
+    """tau (|v - omega x p| - match) on the nodes in LVLH, (nx, ny, nvx, nvy), metres; the same at every time."""
+    x, y, vx, vy = jnp.meshgrid(*lattice.coordinate_vectors, indexing="ij", sparse=True)
+    rate = parameters.tumble_rate
+    return MATCH_S * (jnp.hypot(vx + rate * y, vy - rate * x) - parameters.match)
+
+
 def _advance(
     accuracy: str, sweep: Sweep, lattice: Any, parameters: Parameters, values: Any, span: Any, angle: Any
 ) -> Any:
@@ -103,7 +114,10 @@ def _advance(
     """
 
     def cut(time: Any, value: Any) -> Any:
-        return jnp.minimum(value, _distance(parameters.faces, angle + parameters.tumble_rate * time, lattice))
+        target = _distance(parameters.faces, angle + parameters.tumble_rate * time, lattice)
+        if parameters.match is not None:
+            target = jnp.maximum(target, _mismatch(parameters, lattice))
+        return jnp.minimum(value, target)
 
     scheme = hj.SolverSettings.with_accuracy(
         accuracy,
@@ -125,7 +139,7 @@ _lock = threading.Lock()
 
 def _program(settings: Settings, sweep: Sweep, arguments: tuple[Any, ...]) -> tuple[Any, float]:
     """Compiled :func:`_advance` and the seconds its compilation took (0 when it was there already)."""
-    key = (settings.shape, settings.accuracy, settings.boundary, sweep)
+    key = (settings.shape, settings.accuracy, settings.boundary, sweep, settings.match is None)
     with _lock:
         if key in _programs:
             _programs.move_to_end(key)
@@ -137,7 +151,7 @@ def _program(settings: Settings, sweep: Sweep, arguments: tuple[Any, ...]) -> tu
         return _programs[key], time.perf_counter() - begin
 
 
-class Solver:
+class PeerSolver:
     """Value function on the lattice, stepped backwards in stretches from the horizon.
 
     ``values`` is the library's array over (x, y, vx, vy), metres; ``compile_s`` what compilation took, with
@@ -156,6 +170,7 @@ class Solver:
             gx=jnp.asarray(gx, jnp.float32),
             gy=jnp.asarray(gy, jnp.float32),
             a_max=jnp.asarray(scenario.chaser.max_acceleration, jnp.float32),
+            match=None if settings.match is None else jnp.asarray(settings.match, jnp.float32),
             courant=jnp.asarray(courant, jnp.float32),
             tumble_rate=jnp.asarray(self._tumble_rate, jnp.float32),
             faces=jnp.asarray(faces(scenario.corridor), jnp.float32),

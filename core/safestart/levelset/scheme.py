@@ -1,0 +1,67 @@
+"""Names of what a solver can be asked for: derivative, flux, set."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import NamedTuple
+
+from safestart.levelset import sweep_kernel
+
+
+class Scheme(StrEnum):
+    """One-sided derivative. Each comes with the Runge-Kutta order that its accuracy deserves."""
+
+    FIRST = "first"
+    ENO2 = "eno2"
+    WENO3 = "weno3"
+    ENO3 = "eno3"
+    WENO5 = "weno5"
+
+
+class SchemeFacts(NamedTuple):
+    """Number in the kernel, ghost nodes it needs, Runge-Kutta stages by default."""
+
+    number: int
+    width: int
+    stages: int
+
+
+FACTS = {
+    Scheme.FIRST: SchemeFacts(0, 1, 1),
+    Scheme.ENO2: SchemeFacts(1, 2, 2),
+    Scheme.WENO3: SchemeFacts(2, 2, 3),
+    Scheme.ENO3: SchemeFacts(3, 3, 3),
+    Scheme.WENO5: SchemeFacts(4, 3, 3),
+}
+
+
+class Flux(StrEnum):
+    """Numerical Hamiltonian.
+
+    ``LAX_FRIEDRICHS`` works for all; its dissipation at a node is the largest |dH/dp_i| there. ``GODUNOV`` has the
+    least dissipation of all monotone ones; it needs a separable H: every input channel moves one axis, no ball
+    of more than one channel, no price.
+    """
+
+    LAX_FRIEDRICHS = "lax_friedrichs"
+    GODUNOV = "godunov"
+
+
+class Kind(StrEnum):
+    """Which time counts.
+
+    ``FIXED``: the value at the horizon. ``TUBE``: the least value on the way (reach: {V <= 0} can be brought, or
+    is forced, into the target at some time). ``ALWAYS``: the largest on the way (stay: {V <= 0} can be kept in it).
+    """
+
+    FIXED = "fixed"
+    TUBE = "tube"
+    ALWAYS = "always"
+
+
+FLUX_NUMBER = {Flux.LAX_FRIEDRICHS: sweep_kernel.LAX_FRIEDRICHS, Flux.GODUNOV: sweep_kernel.GODUNOV}
+KIND_NUMBER = {
+    Kind.FIXED: sweep_kernel.FIXED,
+    Kind.TUBE: sweep_kernel.TUBE,
+    Kind.ALWAYS: sweep_kernel.ALWAYS,
+}
