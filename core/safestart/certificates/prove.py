@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-import math
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
-from safestart.certificates.exact import Answer, Verdict
-from safestart.certificates.question import Question
+from safestart.certificates.answer import Answer, Multiplier, Verdict
+from safestart.certificates.limits import AT_END
+from safestart.certificates.question import SPEED_SCALE, Question
 from safestart.certificates.statement import SCHEMA, digest_of
 from safestart.errors import invalid
 from safestart.scenario import Floats
 
 # The claim stands back by what the solver's floats may have lost, in metres; for GO by more, so that the checker
 # need not cut time into ever smaller pieces where a face is touched.
-_NO_GO_STAND_BACK_M = 1e-9
-_GO_STAND_BACK_M = 2e-7
+NO_GO_STAND_BACK_M = 1e-9
+GO_STAND_BACK_M = 2e-7
 
 
 def proof_of(question: Question, state: Floats, answer: Answer) -> dict[str, Any]:
@@ -27,26 +26,10 @@ def proof_of(question: Question, state: Floats, answer: Answer) -> dict[str, Any
     UNDECIDED answer: there is nothing to prove.
     """
     d = question.dimensions
-    target, shape = question.scenario.target, question.scenario.corridor
     document: dict[str, Any] = {
         "schema": SCHEMA,
         "verdict": answer.verdict.value,
-        "question": {
-            "kind": "stay",
-            "dimensions": d,
-            "dt_s": float(question.dt),
-            "steps": question.steps,
-            "tumble_rate_rad_s": float(target.tumble_rate),
-            "mean_motion_rad_s": float(target.mean_motion),
-            "max_acceleration_m_s2": float(question.scenario.chaser.max_acceleration),
-            "corridor": {
-                "c_x": float(shape.c_x),
-                "c_z": float(shape.c_z),
-                "x0_m": float(shape.x0),
-                "z0_m": float(shape.z0),
-                "hold_radius_m": float(shape.hold_radius),
-            },
-        },
+        "question": question_of(question),
         "start": {
             "frame": "lvlh",
             "position_m": np.asarray(state, dtype=np.float64)[:d].tolist(),
@@ -55,22 +38,68 @@ def proof_of(question: Question, state: Floats, answer: Answer) -> dict[str, Any
     }
     if answer.verdict is Verdict.GO and answer.thrust is not None:
         # A margin below the stand-back keeps a claim above 0 that the checker can still prove.
-        document["margin_m"] = max(answer.lower - _GO_STAND_BACK_M, 0.5 * answer.lower)
+        document["margin_m"] = max(answer.lower - GO_STAND_BACK_M, 0.5 * answer.lower)
         document["thrust_m_s2"] = answer.thrust.tolist()
     elif answer.verdict is Verdict.NO_GO:
-        document["margin_m"] = min(answer.upper + _NO_GO_STAND_BACK_M, 0.5 * answer.upper)
-        document["multipliers"] = [
-            {"time_s": _within(row.time, question), "face": row.face, "value": row.value}
-            for row in answer.multipliers
-        ]
+        document["margin_m"] = min(answer.upper + NO_GO_STAND_BACK_M, 0.5 * answer.upper)
+        latest = question.latest
+        if question.goal is None:
+            document["multipliers"] = [multiplier_of(row, latest) for row in answer.multipliers]
+        else:
+            document["parts"] = [
+                {
+                    "first_step": part.first,
+                    "last_step": part.last,
+                    "multipliers": [multiplier_of(row, latest) for row in part.multipliers],
+                }
+                for part in answer.parts
+            ]
     else:
         raise invalid("answer", "a GO or NO_GO", answer.verdict.value)
     document["digest"] = digest_of(document)
     return document
 
 
-def _within(time: float, question: Question) -> float:
-    """The time, moved by an ulp where rounding put it beyond the exact horizon."""
-    while Fraction(time) > Fraction(question.dt) * question.steps:
-        time = math.nextafter(time, 0.0)
-    return time
+def question_of(question: Question) -> dict[str, Any]:
+    """The question as a document states it, in SI units."""
+    target, shape = question.scenario.target, question.scenario.corridor
+    return {
+        "kind": question.kind,
+        "dimensions": question.dimensions,
+        "dt_s": float(question.dt),
+        "steps": question.steps,
+        "tumble_rate_rad_s": float(target.tumble_rate),
+        "mean_motion_rad_s": float(target.mean_motion),
+        "max_acceleration_m_s2": float(question.scenario.chaser.max_acceleration),
+        "corridor": {
+            "c_x": float(shape.c_x),
+            "c_z": float(shape.c_z),
+            "x0_m": float(shape.x0),
+            "z0_m": float(shape.z0),
+            "hold_radius_m": float(shape.hold_radius),
+        },
+        **_limits(question),
+    }
+
+
+def _limits(question: Question) -> dict[str, Any]:
+    """What the question asks beyond the corridor at all times."""
+    out: dict[str, Any] = {}
+    if question.goal is not None:
+        out["earliest_step"] = question.goal.earliest
+        out["goal"] = {
+            "hold_m": [float(e) for e in question.hold],
+            "radius_m": float(question.goal.radius),
+            "rest_m_s": float(question.goal.rest),
+        }
+    if question.speed_limit is not None:
+        out["speed_limit"] = {"most_m_s": float(question.speed_limit), "scale_s": SPEED_SCALE}
+    if question.keep_out > 0.0:
+        out["keep_out_m"] = float(question.keep_out)
+    return out
+
+
+def multiplier_of(row: Multiplier, latest: float) -> dict[str, Any]:
+    """One multiplier as a document states it; ``latest`` is the question's, s."""
+    time = {} if row.face in AT_END else {"time_s": min(row.time, latest)}
+    return time | {"face": row.face, "value": row.value} | ({"pull": list(row.pull)} if row.pull else {})

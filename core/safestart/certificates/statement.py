@@ -13,10 +13,13 @@ from typing import Any
 
 from flint import fmpq
 
-from safestart.errors import SafestartError
+from safestart.certificates.strict import LARGEST, ProofRejected, number, part, vector
+from safestart.certificates.weights import Limits, Weight, limits_of, parts_of
+
+__all__ = ["SCHEMA", "ProofRejected", "Stated", "digest_of", "read"]
 
 SCHEMA = "safestart-proof/1"
-_MOST_STEPS, _MOST_MULTIPLIERS, _LARGEST = 400, 20_000, 1e7
+_MOST_STEPS = 400
 # Face: the signs of its normal, whose y (and only y) is scaled by the slope; y >= r_h, then +x, -x, +z, -z sides.
 _FACES = {
     "hold_plane": (0, -1, 0),
@@ -27,19 +30,12 @@ _FACES = {
 }
 
 
-class ProofRejected(SafestartError):
-    """The document proves nothing; the message names the inequality that fails, with its numbers."""
-
-    status = 422
-    slug = "proof-rejected"
-    title = "Proof rejected"
-
-
 @dataclass(frozen=True, slots=True)
 class Stated:
     """A document's statement in SI: question, start (2 d numbers), claim and the evidence for it.
 
-    ``faces`` maps a name to (normal, offset); ``thrust`` (N, d) for GO, ``weights`` (time, face, value) for NO_GO.
+    ``faces`` maps a name to (normal, offset); ``thrust`` (k, d) for GO; for NO_GO ``parts`` (first, last, weights),
+    each against the ends first .. last (in steps), together against all ends asked for.
     """
 
     verdict: str
@@ -50,10 +46,11 @@ class Stated:
     w: fmpq
     a_max: fmpq
     faces: dict[str, tuple[list[fmpq], fmpq]]
+    limits: Limits
     start: list[fmpq]
     claim: fmpq
     thrust: list[list[fmpq]]
-    weights: list[tuple[fmpq, str, fmpq]]
+    parts: list[tuple[int, int, list[Weight]]]
 
 
 def digest_of(document: Mapping[str, Any]) -> str:
@@ -73,61 +70,46 @@ def read(document: Any) -> Stated:
         raise ProofRejected(f"document: required plain JSON ({error})") from None
     if document.get("digest") != digest:
         raise ProofRejected(f"digest: required {digest}, received {str(document.get('digest'))[:80]}")
-    question, start = _part(document, "question", dict), _part(document, "start", dict)
+    question, start = part(document, "question", dict), part(document, "start", dict)
     verdict = document.get("verdict")
-    if question.get("kind") != "stay" or verdict not in ("GO", "NO_GO"):
-        raise ProofRejected("kind, verdict: required stay and GO or NO_GO")
-    d, steps = _part(question, "dimensions", int), _part(question, "steps", int)
+    kind = question.get("kind")
+    if kind not in ("stay", "synchronize") or verdict not in ("GO", "NO_GO"):
+        raise ProofRejected("kind, verdict: required stay or synchronize, and GO or NO_GO")
+    d, steps = part(question, "dimensions", int), part(question, "steps", int)
     if d not in (2, 3) or not 1 <= steps <= _MOST_STEPS:
         raise ProofRejected(f"dimensions, steps: required 2 or 3 and 1..{_MOST_STEPS}")
-    dt = _number(question, "dt_s", 1e-6, 3600.0)
-    faces = _faces(_part(question, "corridor", dict), d)
-    go = verdict == "GO"
+    dt = number(question, "dt_s", 1e-6, 3600.0)
+    faces = _faces(part(question, "corridor", dict), d)
+    go, free = verdict == "GO", kind == "synchronize"
+    earliest = part(question, "earliest_step", int) if free else steps
+    if not 1 <= earliest <= steps:
+        raise ProofRejected(f"earliest_step: required 1..{steps}, received {earliest}")
+    limits = limits_of(question, d, free)
+    evidence = part(document, "thrust_m_s2" if go else "parts" if free else "multipliers", list)
+    parts: list[Any] = [] if go else evidence
+    if not go and not free:
+        parts = [{"first_step": steps, "last_step": steps, "multipliers": evidence}]
     return Stated(
         verdict=verdict,
         d=d,
         steps=steps,
         dt=dt,
-        n=_number(question, "mean_motion_rad_s", 0.0, 0.01),
-        w=_number(question, "tumble_rate_rad_s", 0.0, 10.0),
-        a_max=_number(question, "max_acceleration_m_s2", 0.0, 1e3),
+        n=number(question, "mean_motion_rad_s", 0.0, 0.01),
+        w=number(question, "tumble_rate_rad_s", 0.0, 10.0),
+        a_max=number(question, "max_acceleration_m_s2", 0.0, 1e3),
         faces=faces,
-        start=_vector(start.get("position_m"), "position_m", d)
-        + _vector(start.get("velocity_m_s"), "velocity_m_s", d),
-        claim=_number(document, "margin_m", -_LARGEST),
-        thrust=_thrust(_part(document, "thrust_m_s2", list), steps, d) if go else [],
-        weights=[] if go else _weights(_part(document, "multipliers", list), faces, dt * steps),
+        limits=limits,
+        start=vector(start.get("position_m"), "position_m", d)
+        + vector(start.get("velocity_m_s"), "velocity_m_s", d),
+        claim=number(document, "margin_m", -LARGEST),
+        thrust=_thrust(evidence, earliest, steps, d) if go else [],
+        parts=parts_of(parts, (earliest, steps), faces, limits, dt * steps),
     )
 
 
-def _part(document: Any, key: str, kind: type) -> Any:
-    value = document.get(key) if isinstance(document, Mapping) else None
-    if not isinstance(value, kind) or isinstance(value, bool):
-        raise ProofRejected(f"{key}: required a {kind.__name__}, received {type(value).__name__}")
-    return value
-
-
-def _exact(value: Any, name: str, low: float, high: float = _LARGEST) -> fmpq:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
-        raise ProofRejected(f"{name}: required a number in [{low:g}, {high:g}], received {str(value)[:60]}")
-    return fmpq(*value.as_integer_ratio())
-
-
-def _number(document: Any, key: str, low: float, high: float = _LARGEST) -> fmpq:
-    if not isinstance(document, Mapping):
-        raise ProofRejected(f"{key}: required an object that holds it, received {str(document)[:60]}")
-    return _exact(document.get(key), key, low, high)
-
-
-def _vector(value: Any, name: str, size: int) -> list[fmpq]:
-    if not isinstance(value, list) or len(value) != size:
-        raise ProofRejected(f"{name}: required a list of {size} numbers, received {str(value)[:60]}")
-    return [_exact(entry, name, -_LARGEST) for entry in value]
-
-
 def _faces(shape: Any, d: int) -> dict[str, tuple[list[fmpq], fmpq]]:
-    hold = _number(shape, "hold_radius_m", 0.0)
-    sides = {axis: (_number(shape, f"c_{axis}", 0.0), _number(shape, f"{axis}0_m", 0.0)) for axis in "xz"}
+    hold = number(shape, "hold_radius_m", 0.0)
+    sides = {axis: (number(shape, f"c_{axis}", 0.0), number(shape, f"{axis}0_m", 0.0)) for axis in "xz"}
     out = {}
     for name, (x, y, z) in list(_FACES.items())[: 3 if d == 2 else 5]:
         slope, width = sides["x"] if x else sides["z"] if z else (fmpq(1), fmpq(0))
@@ -135,22 +117,7 @@ def _faces(shape: Any, d: int) -> dict[str, tuple[list[fmpq], fmpq]]:
     return out
 
 
-def _thrust(history: list[Any], steps: int, d: int) -> list[list[fmpq]]:
-    if len(history) != steps:
-        raise ProofRejected(f"thrust_m_s2: required {steps} thrusts, received {len(history)}")
-    return [_vector(entry, "thrust_m_s2", d) for entry in history]
-
-
-def _weights(rows: list[Any], faces: Mapping[str, Any], horizon: fmpq) -> list[tuple[fmpq, str, fmpq]]:
-    if not 1 <= len(rows) <= _MOST_MULTIPLIERS:
-        raise ProofRejected(f"multipliers: required 1..{_MOST_MULTIPLIERS}, received {len(rows)}")
-    out = []
-    for row in rows:
-        time, value = _number(row, "time_s", 0.0), _number(row, "value", 0.0)
-        face = row.get("face")
-        if time > horizon or not isinstance(face, str) or face not in faces:
-            raise ProofRejected(
-                f"multipliers: required a face and a time in [0, T], received {str(row)[:90]}"
-            )
-        out.append((time, face, value))
-    return out
+def _thrust(history: list[Any], earliest: int, steps: int, d: int) -> list[list[fmpq]]:
+    if not earliest <= len(history) <= steps:
+        raise ProofRejected(f"thrust_m_s2: required {earliest} to {steps} thrusts, received {len(history)}")
+    return [vector(entry, "thrust_m_s2", d) for entry in history]

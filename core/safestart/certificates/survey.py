@@ -24,10 +24,13 @@ Evidence = tuple[Witness, Ceiling | None]
 def build(question: Question, y_max: float = 150.0, tolerance: float = TOLERANCE) -> Atlas:
     """Build the atlas: directions are asked until the relative area gap is at most ``tolerance``.
 
-    Raises ``InvalidInput`` for a question in 3-D, for a tolerance outside (1e-4, 1] and a cut below the hold plane.
+    Raises ``InvalidInput`` for a question in 3-D or other than plain `stay`, for a tolerance outside (1e-4, 1] and a
+    cut below the hold plane.
     """
     if question.dimensions != 2:
         raise invalid("dimensions", "2: an atlas is planar", question.dimensions)
+    if not question.plain:
+        raise invalid("question", "stay without a speed limit: an atlas answers no other", question.kind)
     number("tolerance", tolerance, 1e-4, 1.0)
     number("y_max", y_max, question.scenario.corridor.hold_radius, MAX_RANGE, open_low=True)
     watch = watch_of(question)
