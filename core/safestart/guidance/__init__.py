@@ -1,6 +1,8 @@
-"""Guidance laws: the three-regime controller, its single-input safety filter and the flights they fly (paper 000).
+"""Guidance laws and the flights they fly: the three-regime controller with its filter (paper 000), and sequence MPC.
 
 ``gains`` holds the tuned and the paper's settings, ``regimes`` the nominal command, ``projection`` and
-``least_violation`` the two small solvers of ``safety_filter`` (eq. 7), ``plan`` what is tabulated once per
-scenario, ``flight`` the closed loop against exact CWH truth, ``trajectory`` one flight with its whole history.
+``least_violation`` the two small solvers of ``safety_filter`` (eq. 7), ``plan`` what is tabulated once per scenario.
+``sequence_mpc`` plans whole thrust sequences, ``least_fuel`` is its cone program. ``truth`` says what the world does
+beyond the plan, ``passage`` flies one interval and watches the corridor, ``flight`` is the compiled loop of the filter,
+``pilots`` flies any controller in any of the ``worlds``; ``trajectory`` keeps one flight with its whole history.
 """

@@ -72,9 +72,12 @@ class Gains:
     speed_limit: float = 0.0
     """Limit on each LVLH velocity component one step ahead, m/s; 0 switches the rows off."""
 
+    disk_limit: float = 1.0
+    """Length, in a_max, that the projection after the solve cuts the command to; from sqrt(3) on it cuts nothing."""
+
     def __post_init__(self) -> None:
         for item in fields(self):
-            divisor = item.name in ("kd", "kd_far", "kd_hold")
+            divisor = item.name in ("kd", "kd_far", "kd_hold", "disk_limit")
             number(item.name, getattr(self, item.name), 0.0, 1e6, open_low=divisor)
 
 

@@ -44,6 +44,7 @@ class Plan(NamedTuple):
     closing_factor: float
     keep_out_radius: float
     keep_out_row: int
+    disk_limit: float
     dt: float
     components: np.ndarray[tuple[int], np.dtype[np.int64]]
     normals: Floats
@@ -61,7 +62,14 @@ class Plan(NamedTuple):
 
 
 def flight_plan(
-    scenario: Scenario, gains: Gains, dt: float, steps: int, *, nodes: int = 6, planar: bool = True
+    scenario: Scenario,
+    gains: Gains,
+    dt: float,
+    steps: int,
+    *,
+    nodes: int = 6,
+    planar: bool = True,
+    substeps: int = SUBSTEPS,
 ) -> Plan:
     """Tabulate ``steps`` control intervals of ``dt`` seconds with a forecast of ``nodes`` intervals (eq. 7).
 
@@ -107,7 +115,7 @@ def flight_plan(
     box = np.concatenate([np.eye(d), -np.eye(d)], axis=1)
     blocks.append(_constant(steps, box, np.zeros((len(components), 2 * d)), np.ones(2 * d)))
 
-    instants = np.arange(steps)[:, None] + np.arange(1, SUBSTEPS + 1) / SUBSTEPS
+    instants = np.arange(steps)[:, None] + np.arange(1, substeps + 1) / substeps
     faces = _turn(corridor.normals / corridor.lengths[:, None], scenario.target.tumble_rate * dt * instants)
     theta = scenario.target.tumble_rate * dt * np.arange(steps)
     normals, state, bounds, weights = (
@@ -120,6 +128,7 @@ def flight_plan(
         gains.closing_factor,
         gains.keep_out_radius,
         keep_out_row,
+        gains.disk_limit,
         dt,
         components,
         normals,
@@ -132,8 +141,8 @@ def flight_plan(
         np.stack([np.cos(theta), np.sin(theta)], axis=-1),
         transition_matrix(n, dt),
         input_matrix(n, dt),
-        transition_matrix(n, dt / SUBSTEPS),
-        input_matrix(n, dt / SUBSTEPS),
+        transition_matrix(n, dt / substeps),
+        input_matrix(n, dt / substeps),
     )
 
 

@@ -87,7 +87,7 @@ def _build(stamp: int):  # type: ignore[no-untyped-def]
         length = 0.0
         for i in range(d):
             length += command[i] * command[i]
-        length = a_max / max(math.sqrt(length), 1.0)
+        length = a_max / max(math.sqrt(length) / plan.disk_limit, 1.0)
         for i in range(d):
             command[i] *= length
         return feasible

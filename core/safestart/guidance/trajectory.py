@@ -10,10 +10,11 @@ import numpy as np
 from safestart.corridor import corridor_of
 from safestart.dynamics.body_frame import transport
 from safestart.errors import invalid
-from safestart.guidance.flight import roll_out
+from safestart.guidance.flight import SUB_STEPPED, roll_out
 from safestart.guidance.gains import TUNED, Gains
 from safestart.guidance.plan import SUBSTEPS, flight_plan
 from safestart.guidance.regimes import REGIMES
+from safestart.guidance.truth import NO_DRAWS
 from safestart.scenario import Bools, Floats, Rest, Scenario
 
 
@@ -77,10 +78,10 @@ def fly_start(
     start = start_states(scenario, position[None], rest)
     plan = flight_plan(scenario, gains, dt, steps_of(t_sim, dt), nodes=nodes, planar=planar)
     steps = len(plan.normals)
-    counts, sums = np.empty((1, 3), np.int64), np.empty((1, 3))
+    counts, sums = np.empty((1, 3), np.int64), np.empty((1, 4))
     states = np.full((steps * SUBSTEPS, 6), np.nan)
     commands, codes = np.empty((steps, 3)), np.empty((steps, 2), np.int64)
-    roll_out(plan, start, counts, sums, states, commands, codes)
+    roll_out(plan, SUB_STEPPED, NO_DRAWS, start, counts, sums, states, commands, codes)
     flown = int(counts[0, 0])
     states = np.concatenate([start, states[~np.isnan(states[:, 0])]])
     times: Floats = np.arange(len(states), dtype=np.float64) * (dt / SUBSTEPS)

@@ -1,0 +1,115 @@
+"""Two-body motion with J2: the truth that CWH approximates, integrated by DOP853.
+
+The target moves in an Earth-centred inertial frame (z along the Earth's axis) under point-mass gravity and J2; the
+chaser's position relative to it, rho, has rho'' = g(r + rho) - g(r) + u. LVLH follows the target's true motion: x
+radial, z along the orbit's angular momentum.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.integrate import DOP853
+
+from safestart.errors import invalid
+from safestart.scenario import Floats
+
+MU = 3.986004418e14
+"""Gravitational parameter of the Earth, m^3/s^2 (EGM2008)."""
+RADIUS = 6_378_137.0
+"""Equatorial radius, m."""
+J2 = 1.08262668e-3
+
+_RELATIVE, _ABSOLUTE = 1e-12, 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class Orbit:
+    """The target's orbit at t = 0: circular speed at ``radius`` m, ``inclination`` and argument of latitude in rad."""
+
+    radius: float
+    inclination: float = math.radians(98.0)
+    latitude: float = 0.0
+
+    @classmethod
+    def of(cls, mean_motion: float, inclination: float = math.radians(98.0)) -> Orbit:
+        """Circular orbit of a mean motion (rad/s); raises ``InvalidInput`` where that lies inside the Earth or is 0."""
+        if not mean_motion > 0.0:
+            raise invalid("mean_motion", "more than 0 rad/s for two-body motion", mean_motion)
+        radius = (MU / mean_motion**2) ** (1.0 / 3.0)
+        if radius < RADIUS:
+            raise invalid("mean_motion", "an orbit above the Earth's surface", mean_motion)
+        return cls(radius, inclination)
+
+    def state(self) -> Floats:
+        """Inertial position and velocity (6,)."""
+        cu, su = math.cos(self.latitude), math.sin(self.latitude)
+        ci, si = math.cos(self.inclination), math.sin(self.inclination)
+        out = np.array([cu, su * ci, su * si]), np.array([-su, cu * ci, cu * si])
+        return np.concatenate([self.radius * out[0], math.sqrt(MU / self.radius) * out[1]])
+
+
+def gravity(position: Floats) -> Floats:
+    """Acceleration (3,) at an inertial position (3,), m: point mass and J2."""
+    x, y, z = position
+    r2 = x * x + y * y + z * z
+    r = math.sqrt(r2)
+    point = -MU / (r2 * r)
+    bulge = 1.5 * J2 * RADIUS * RADIUS / r2
+    ratio = 5.0 * z * z / r2
+    across = point * (1.0 + bulge * (1.0 - ratio))
+    return np.array([across * x, across * y, point * (1.0 + bulge * (3.0 - ratio)) * z])
+
+
+def axes(target: Floats) -> tuple[Floats, Floats]:
+    """LVLH axes as rows (3, 3), inertial, and their angular velocity (3,) in LVLH, of a target state (6,)."""
+    r, v = target[:3], target[3:]
+    h = np.cross(r, v)
+    size, momentum = math.sqrt(r @ r), math.sqrt(h @ h)
+    x, z = r / size, h / momentum
+    rows = np.array([x, np.cross(z, x), z])
+    # Along x the axes turn because a force out of the plane tilts the orbit.
+    return rows, np.array([size * float(gravity(r) @ z) / momentum, 0.0, momentum / (size * size)])
+
+
+class RelativeMotion:
+    """A chaser near a target from an LVLH state (6,), m and m/s, on."""
+
+    def __init__(self, orbit: Orbit, state: Floats) -> None:
+        target = orbit.state()
+        rows, omega = axes(target)
+        position = rows.T @ state[:3]
+        velocity = rows.T @ (state[3:] + np.cross(omega, state[:3]))
+        self._all = np.concatenate([target, position, velocity])
+
+    def fly(self, thrust: Floats, times: Floats) -> Floats:
+        """LVLH states (T, 6) at ``times``, the first of which is now, with ``thrust`` (3,) held in LVLH axes."""
+
+        def rates(_: float, y: Floats) -> Floats:
+            here = gravity(y[:3])
+            rows, _omega = axes(y[:6])
+            pull = gravity(y[:3] + y[6:9]) - here + rows.T @ thrust
+            return np.concatenate([y[3:6], here, y[9:12], pull])
+
+        solver = DOP853(
+            rates, float(times[0]), self._all, float(times[-1]), rtol=_RELATIVE, atol=_ABSOLUTE, max_step=2.0
+        )
+        out = [self._all]
+        while solver.status == "running":
+            solver.step()
+            dense = solver.dense_output()
+            while len(out) < len(times) and times[len(out)] <= solver.t:
+                out.append(solver.y if times[len(out)] == solver.t else dense(times[len(out)]))
+        if solver.status != "finished":
+            return np.full((len(times), 6), np.nan)
+        self._all = solver.y
+        return np.array([_seen(y) for y in out])
+
+
+def _seen(y: Floats) -> Floats:
+    """LVLH state (6,) of the chaser."""
+    rows, omega = axes(y[:6])
+    position = rows @ y[6:9]
+    return np.concatenate([position, rows @ y[9:12] - np.cross(omega, position)])
