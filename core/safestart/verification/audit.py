@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from safestart.scenario import Floats
-from safestart.verification.passive import Clock, cell_positions, flow_steps, make_bins
+from safestart.scenario import Bools, Floats
+from safestart.verification.clock import Clock
+from safestart.verification.flights import simulate
+from safestart.verification.model import Dynamics
+from safestart.verification.passive import cell_positions, flow_steps, make_bins
 from safestart.verification.question import Question
-from safestart.verification.reach import PROOF, Mutation, Reach
+from safestart.verification.reach import Reach
 from safestart.verification.simulate import active, crossing_times, drifted
 from safestart.verification.tube import Tube
-
-PLANE = np.stack([np.cos(np.arange(16) * np.pi / 8), np.sin(np.arange(16) * np.pi / 8)], axis=1)
-"""Directions (16, 2) in which positions are compared."""
 
 
 def random_starts(question: Question, count: int, seed: int) -> Floats:
@@ -41,24 +41,61 @@ def excess(tube: Tube, states: Floats, times: Floats, rows: Floats) -> Floats:
     return result
 
 
+def outside(points: Floats, gens: Floats, box: Floats) -> Floats:
+    """How far (N,) ``points`` (N, 2) leave the zonotopes ``gens`` (N, m, 2) with ``box`` (N, 2) around the origin, m.
+
+    The normals of the generators and the axes are all the normals that such a polygon has: nothing slips by.
+    """
+    normals = np.concatenate(
+        [np.stack([-gens[..., 1], gens[..., 0]], axis=-1), np.broadcast_to(np.eye(2), (len(gens), 2, 2))],
+        axis=1,
+    )
+    length = np.hypot(normals[..., 0], normals[..., 1])
+    unit = normals / np.where(length > 0.0, length, 1.0)[..., None]
+    reach = np.abs(unit @ gens.transpose(0, 2, 1)).sum(axis=2) + np.einsum("nkj,nj->nk", np.abs(unit), box)
+    away = np.abs(np.einsum("nkj,nj->nk", unit, points)) - reach
+    result: Floats = np.where(length > 0.0, away, -np.inf).max(axis=1)
+    return result
+
+
+def _powered(question: Question, starts: Floats, crossing: Floats, times: Floats) -> tuple[Floats, Floats]:
+    """States (N, T, 4) at ``times`` with the engines on, and the crossings (N, 1), near ``crossing`` (N, 1)."""
+    system = question.system
+    if system.dynamics is Dynamics.LINEAR:
+        return active(system, starts[:, None, :], crossing, times), crossing
+    states, entries = simulate(system, starts, np.full(len(starts), np.inf), times)
+    return states, entries[:, None]
+
+
+def _drifted(question: Question, starts: Floats, aborts: Floats, after: Floats) -> tuple[Floats, Floats]:
+    """Positions (N, 2) so long ``after`` the abort, and the crossings (N,), inf where the abort came first."""
+    system = question.system
+    if system.dynamics is Dynamics.LINEAR:
+        crossing = crossing_times(system, starts, float(aborts.max()) + 1.0)
+        return drifted(system.dynamics, active(system, starts, crossing, aborts), after), crossing
+    states, crossing = simulate(system, starts, aborts, (aborts + after)[:, None])
+    return states[:, 0, :2], crossing
+
+
 def powered_excess(question: Question, reach: Reach, count: int, seed: int, times_each: int = 40) -> float:
     """Largest excess of ``count`` simulated powered flights, each at ``times_each`` random times."""
     starts = random_starts(question, count, seed)
     end = question.horizon if question.window is None else question.window[1]
-    crossing = crossing_times(starts, end)[:, None]
     random = np.random.default_rng(seed + 1)
     half = times_each // 2
     # Half of the times in the transient that follows the crossing.
+    # Of the linear motion: near enough to choose the times.
+    crossing = crossing_times(question.system, starts, end)[:, None]
     soon = np.where(np.isfinite(crossing), crossing, 0.0) + random.uniform(0.0, 1.5, (count, half))
     times = np.minimum(np.concatenate([random.uniform(0.0, end, (count, half)), soon], axis=1), end)
-    states = active(starts[:, None, :], crossing, times)
+    states, crossing = _powered(question, starts, crossing, times)
     far = times <= crossing
     rows = rows_of(seed)
     worst = np.where(far, excess(reach.far, states, times, rows), -np.inf).max(axis=1)
     since = np.where(far, -1.0, times - crossing)
     # A start is in the branch of the face that it crossed: in one of them, at all times.
     per_branch = [
-        np.maximum(*(excess(tube, states, since, rows).max(axis=1) for tube in branch.tubes()))
+        np.max([excess(tube, states, since, rows).max(axis=1) for tube in branch.tubes], axis=0)
         for branch in reach.branches
     ]
     if per_branch:
@@ -67,38 +104,40 @@ def powered_excess(question: Question, reach: Reach, count: int, seed: int, time
 
 
 def drift_excess(
-    question: Question, reach: Reach, count: int, seed: int, level: int, mutation: Mutation = PROOF
+    question: Question, reach: Reach, count: int, seed: int, level: int, drift_level: int = 4
 ) -> float:
-    """Largest excess of ``count`` simulated drifts over their cells: bins of ``level``, coarsest drift pieces."""
+    """Largest excess of ``count`` simulated drifts over their cells: bins of ``level``, pieces of ``drift_level``."""
     assert question.window is not None
     random = np.random.default_rng(seed)
     starts = random_starts(question, count, seed + 1)
     aborts = random.uniform(*question.window, count)
-    crossing = crossing_times(starts, question.window[1] + 1.0)
-    states = active(starts, crossing, aborts)
     after = random.uniform(0.0, question.horizon - aborts)
-    places = drifted(states, after)
-    steps, drift_level = flow_steps(question.horizon), 4
-    (branch,) = reach.branches  # One face only: a drift does not tell which face its start crossed.
-    clock = Clock(branch.crossing.time, branch.crossing.time_gens, branch.crossing.time_radius)
-    worst = -np.inf
-    for tube, tube_clock, own in (
-        (reach.far, Clock(0.0, np.zeros(0), 0.0), aborts),
-        (branch.early, clock, aborts - crossing),
-        (branch.late, clock, aborts - crossing),
-    ):
-        mine = (own >= tube.start) & (own < tube.time(tube.steps))
-        mine &= (aborts <= crossing) == (tube is reach.far)
+    places, crossing = _drifted(question, starts, aborts, after)
+    steps = flow_steps(question.horizon)
+
+    def strays(tube: Tube, clock: Clock, own: Floats, on: Bools) -> Floats:
+        """Excess (N,) over the cells of one tube; -inf for drifts that do not start from it."""
+        out = np.full(count, -np.inf)
+        mine = on & (own >= tube.start) & (own < tube.time(tube.steps))
         if not mine.any():
-            continue
+            return out
         segment = ((own[mine] - tube.start) / tube.step).astype(int)
         blocks, pick = np.unique(segment >> level, return_inverse=True)
-        bins = make_bins(tube, tube_clock, level, blocks, mutation.bins)
+        bins = make_bins(tube, clock, level, blocks)
         pieces = (after[mine] / (0.5 * (1 << drift_level))).astype(int)
         centre, gens, box = cell_positions(bins, pick, drift_level, pieces, steps)
-        away = places[mine] - centre
-        reachable = np.abs(gens @ PLANE.T).sum(axis=1) + box @ np.abs(PLANE.T)
-        worst = max(worst, float((away @ PLANE.T - reachable).max()))
+        apart = outside(places[mine] - centre, gens, box)
         clocks = np.abs(aborts[mine] - bins.time[pick]) - np.abs(bins.time_gens[pick]).sum(axis=1)
-        worst = max(worst, float(clocks.max()))
-    return worst
+        out[mine] = np.maximum(apart, clocks)
+        return out
+
+    far = aborts <= crossing
+    worst = strays(reach.far, Clock(0.0, np.zeros(0), 0.0), aborts, far)
+    per_branch = [
+        np.max([strays(tube, branch.clock, aborts - crossing, ~far) for tube in branch.tubes], axis=0)
+        for branch in reach.branches
+    ]
+    if per_branch:
+        # A start is in the branch of the face that it crossed: in one of them.
+        worst = np.maximum(worst, np.min(per_branch, axis=0))
+    return float(worst.max())

@@ -40,7 +40,7 @@ def critical_abort(
     context = context or Context()
     whole = replace(question, window=(first, last))
     tubes = reach(whole)
-    reason = tubes.entry.reason or requirements.stays_in_mode_2(tubes)
+    reason = tubes.entry.reason or requirements.stays_in_mode_2(tubes, question.system.guard)
     example = _example(whole, tubes, first, last)
     end = last if example is None else example.abort
     proved = None if reason else _proved(whole, tubes, first, end, context)

@@ -1,25 +1,24 @@
-"""Counter-examples: the closest drift that a seeded search finds, and the replay that decides whether it counts.
+"""Counter-examples: the closest drift that a seeded search finds, and the extremes of simulated powered flights.
 
-The search proves nothing; a counter-example is believed only after :func:`replay`, which flies it again with matrix
-exponentials of another library.
+The search proves nothing and flies the linear motion; a counter-example is believed only after
+:func:`safestart.verification.replay.replay`.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
-from scipy.linalg import expm
 
-from safestart.scenario import Bools, Floats
-from safestart.verification.model import FACE_LIMITS, FACES, Mode, gain, matrix
+from safestart.scenario import Floats
+from safestart.verification.model import Mode, System, gain
 from safestart.verification.question import Question
 from safestart.verification.simulate import active, crossing_times, drifted
 
 _SAMPLES, _ZOOMS, _SHRINK, _BEST = 150, 6, 0.4, 3
 _AFTER_STEP = 1.0
 _TURNS = 3
-_REPLAY_STEP, _NEWTONS = 0.05, 6
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,15 +32,17 @@ class Drifting:
     euclidean: float
 
 
-def approaches(starts: Floats, aborts: Floats, horizon: float, crossings: Floats) -> tuple[Floats, Floats]:
+def approaches(
+    system: System, starts: Floats, aborts: Floats, horizon: float, crossings: Floats
+) -> tuple[Floats, Floats]:
     """Least max-norm distance (N,) of each drift from the target, m, and the time after the abort (N,), min."""
-    passive = active(starts, crossings, aborts)
+    passive = active(system, starts, crossings, aborts)
     left = horizon - aborts
     grid = np.arange(0.0, float(left.max()) + _AFTER_STEP, _AFTER_STEP)
     after = np.minimum(grid, left[:, None])
     width = _AFTER_STEP
     for turn in range(_TURNS + 1):
-        distance = np.abs(drifted(passive[:, None, :], after)).max(axis=-1)
+        distance = np.abs(drifted(system.dynamics, passive[:, None, :], after)).max(axis=-1)
         best = distance.argmin(axis=1)[:, None]
         at = np.take_along_axis(after, best, axis=1)
         if turn < _TURNS:
@@ -62,6 +63,7 @@ def closest(
     ``bracket``: see :func:`crossing_times`. The search ends early below ``enough`` metres.
     """
     centre, gens = question.set()
+    system = question.system
     random = np.random.default_rng(seed)
     free = len(gens) + 1
     low_time, high_time = window
@@ -69,9 +71,9 @@ def closest(
     def record(points: Floats) -> list[tuple[float, Floats, Drifting]]:
         starts = centre + points[:, :-1] @ gens
         aborts = low_time + 0.5 * (points[:, -1] + 1.0) * (high_time - low_time)
-        crossings = crossing_times(starts, float(aborts.max()) + 1.0, bracket)
-        distance, after = approaches(starts, aborts, question.horizon, crossings)
-        euclidean = np.hypot(*drifted(active(starts, crossings, aborts), after).T)
+        crossings = crossing_times(system, starts, float(aborts.max()) + 1.0, bracket)
+        distance, after = approaches(system, starts, aborts, question.horizon, crossings)
+        euclidean = np.hypot(*drifted(system.dynamics, active(system, starts, crossings, aborts), after).T)
         out = []
         for k in np.argsort(distance)[:_BEST]:
             flown = Drifting(
@@ -97,33 +99,6 @@ def closest(
     return found[0][2]
 
 
-def replay(start: Floats, abort: float, time: float) -> Floats:
-    """State (4,) at ``time`` of the flight from ``start`` whose engines fail at ``abort`` (min); inf: never.
-
-    By matrix exponentials alone; the crossing by a scan of 0.05 min and Newton's method.
-    """
-    powered, far = min(time, abort), matrix(Mode.FAR)
-    states = np.asarray(start, dtype=np.float64)[None, :]
-    power = np.asarray(expm(far * _REPLAY_STEP))
-    while len(states) * _REPLAY_STEP < powered + _REPLAY_STEP:
-        states, power = np.concatenate([states, states @ power.T]), power @ power
-    entered: Bools = np.all(states[:, :2] @ FACES.T < FACE_LIMITS, axis=1)
-    k = int(np.argmax(entered))
-    crossing = np.inf
-    if entered[k]:
-        since = 0.5 * _REPLAY_STEP
-        for _ in range(_NEWTONS):
-            state = expm(far * since) @ states[k - 1]
-            heights = FACES @ state[:2] - FACE_LIMITS
-            rate = float(FACES[heights.argmax()] @ state[2:])
-            since = float(np.clip(since - heights.max() / rate if rate < 0.0 else since, 0.0, _REPLAY_STEP))
-        crossing = (k - 1) * _REPLAY_STEP + since
-    state = expm(far * min(powered, crossing)) @ np.asarray(start, dtype=np.float64)
-    if crossing < powered:
-        state = expm(matrix(Mode.NEAR) * (powered - crossing)) @ state
-    return np.asarray(expm(matrix(Mode.PASSIVE) * (time - powered)) @ state)
-
-
 @dataclass(frozen=True, slots=True)
 class Powered:
     """Extremes of the powered flights that were simulated: value, start and time per requirement."""
@@ -143,17 +118,20 @@ def powered_extremes(
     centre, gens = question.set()
     end = question.horizon if question.window is None else question.window[1]
     axes = [np.linspace(-1.0, 1.0, side)] * len(gens)
-    points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(gens))
+    points = np.array(list(product(*axes))).reshape(side ** len(gens), len(gens))
     starts = centre + points @ gens
-    crossings = crossing_times(starts, end, bracket)
+    system = question.system
+    crossings = crossing_times(system, starts, end, bracket)
     finite = np.where(np.isfinite(crossings), crossings, end)
     steady = np.broadcast_to(
         np.arange(0.0, end + step, step), (len(starts), int(np.ceil((end + step) / step)))
     )
     times = np.minimum(np.concatenate([steady, finite[:, None] + np.linspace(1e-9, 1.0, 60)], axis=1), end)
-    states = active(starts[:, None, :], crossings[:, None], times)
+    states = active(system, starts[:, None, :], crossings[:, None], times)
     near = times > crossings[:, None]
-    force = np.where(near, *(np.abs(states @ gain(m).T).max(axis=-1) for m in (Mode.NEAR, Mode.FAR)))
+    force = np.where(
+        near, *(np.abs(states @ gain(system.motion(m)).T).max(axis=-1) for m in (Mode.NEAR, Mode.FAR))
+    )
     vx, vy = states[..., 2], states[..., 3]
     octagon = np.maximum(np.maximum(abs(vx), abs(vy)), np.maximum(abs(vx + vy), abs(vx - vy)) / np.sqrt(2.0))
     sight = np.maximum(np.abs(states[..., 1]) + np.tan(np.pi / 6.0) * states[..., 0], -100.0 - states[..., 0])

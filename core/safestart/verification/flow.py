@@ -14,8 +14,9 @@ from typing import Any
 import flint
 import numpy as np
 
+from safestart.precision import precise
 from safestart.scenario import Floats
-from safestart.verification.model import Mode, exact_matrix
+from safestart.verification.model import Motion, exact_matrix
 from safestart.verification.rounding import UP
 
 _BITS = 200
@@ -38,8 +39,8 @@ def _ball(value: Fraction) -> Any:
     return flint.arb(flint.fmpq(value.numerator, value.denominator))
 
 
-def _balls(mode: Mode) -> Any:
-    return flint.arb_mat([[_ball(entry) for entry in row] for row in exact_matrix(mode)])
+def _balls(motion: Motion) -> Any:
+    return flint.arb_mat([[_ball(entry) for entry in row] for row in exact_matrix(motion)])
 
 
 def _doubles(balls: Any) -> list[float]:
@@ -54,12 +55,10 @@ def _doubles(balls: Any) -> list[float]:
 
 
 @cache
-def _nodes(mode: Mode, start: Fraction, step: Fraction, chunk: int) -> tuple[Floats, Floats]:
+def _nodes(motion: Motion, start: Fraction, step: Fraction, chunk: int) -> tuple[Floats, Floats]:
     """Chunk of ``_CHUNK`` nodes of phi and psi."""
-    before = flint.ctx.prec
-    flint.ctx.prec = _BITS
-    try:
-        a = _balls(mode)
+    with precise(_BITS):
+        a = _balls(motion)
         square = a * a
         one = (a * _ball(step)).exp()
         here = (a * _ball(start + step * chunk * _CHUNK)).exp()
@@ -68,43 +67,35 @@ def _nodes(mode: Mode, start: Fraction, step: Fraction, chunk: int) -> tuple[Flo
             phi.append(_doubles(here))
             psi.append(_doubles(square * here))
             here = here * one
-    finally:
-        flint.ctx.prec = before
     return np.array(phi).reshape(-1, 4, 4), np.array(psi).reshape(-1, 4, 4)
 
 
 @cache
-def _table(mode: Mode, start: Fraction, step: Fraction, chunks: int) -> FlowTable:
-    parts = [_nodes(mode, start, step, k) for k in range(chunks)]
+def _table(motion: Motion, start: Fraction, step: Fraction, chunks: int) -> FlowTable:
+    parts = [_nodes(motion, start, step, k) for k in range(chunks)]
     phi = np.concatenate([p for p, _ in parts])
     return FlowTable(float(start), float(step), phi, np.concatenate([q for _, q in parts]))
 
 
-def flow_table(mode: Mode, start: Fraction, step: Fraction, steps: int) -> FlowTable:
+def flow_table(motion: Motion, start: Fraction, step: Fraction, steps: int) -> FlowTable:
     """Table of ``steps`` + 1 nodes; computed once per process in chunks of 256 nodes, then a view."""
-    whole = _table(mode, start, step, steps // _CHUNK + 1)
+    whole = _table(motion, start, step, steps // _CHUNK + 1)
     return FlowTable(whole.start, whole.step, whole.phi[: steps + 1], whole.psi[: steps + 1])
 
 
-def flow_at(mode: Mode, time: float) -> tuple[Floats, Floats]:
+def flow_at(motion: Motion, time: float) -> tuple[Floats, Floats]:
     """phi and psi, each (4, 4), at one time (min), for exactly this double."""
-    before = flint.ctx.prec
-    flint.ctx.prec = _BITS
-    try:
-        a = _balls(mode)
+    with precise(_BITS):
+        a = _balls(motion)
         phi = (a * _ball(Fraction(time))).exp()
         return np.array(_doubles(phi)).reshape(4, 4), np.array(_doubles(a * a * phi)).reshape(4, 4)
-    finally:
-        flint.ctx.prec = before
 
 
 @cache
-def growth(mode: Mode, width: Fraction) -> Floats:
+def growth(motion: Motion, width: Fraction) -> Floats:
     """Entrywise bound (4, 4) on |e^{A s}| over 0 <= s <= ``width`` minutes: exponentials of 48 time balls."""
-    before = flint.ctx.prec
-    flint.ctx.prec = _BITS
-    try:
-        a, most = _balls(mode), np.zeros((4, 4))
+    with precise(_BITS):
+        a, most = _balls(motion), np.zeros((4, 4))
         for k in range(_PIECES):
             middle = width * (2 * k + 1) / (2 * _PIECES)
             # A hair wider than half a piece, so that the pieces overlap whatever the rounding of the radius.
@@ -112,6 +103,4 @@ def growth(mode: Mode, width: Fraction) -> Floats:
             phi = (a * flint.arb(_ball(middle).mid(), radius)).exp()
             upper = [[float(phi[i, j].abs_upper()) for j in range(4)] for i in range(4)]
             most = np.maximum(most, np.array(upper))
-    finally:
-        flint.ctx.prec = before
     return most * UP

@@ -1,12 +1,13 @@
-"""The published rendezvous model (paper 003 and the competition files made from it): numbers, exactly as printed.
+"""The switched rendezvous (paper 003 and the competition files made from it): its numbers, exactly as printed.
 
-Units: m, min, kg. One newton is 3600 kg m/min^2, 1 m/min is 1/60 m/s. Coefficients are kept as decimal fractions,
-so that the proofs are about the printed numbers and not about their nearest doubles.
+Units: m, min, kg. One newton is 3600 kg m/min^2, 1 m/min is 1/60 m/s. Coefficients are kept as fractions, so that
+the proofs are about the printed numbers and not about their nearest doubles.
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
 from functools import cache
@@ -14,6 +15,8 @@ from functools import cache
 import numpy as np
 
 from safestart.scenario import Floats
+from safestart.verification.gains import Design, bryson_gain, published_gain
+from safestart.verification.guard import Guard
 
 MASS = 500
 """Chaser mass, kg."""
@@ -27,27 +30,16 @@ MAX_THRUST = 10.0 * NEWTON
 MAX_SPEED = 3.0
 """Speed limit in mode 2, m/min (5 cm/s)."""
 
-GAP_GUARD, GAP_DIAGONAL = 100.0, 141.1
-"""Guard octagon of mode 1 -> 2: |x|, |y| <= 100 m and |x +- y| <= 141.1 m (100 sqrt 2, rounded as published)."""
-
 LOS_SLOPE = math.tan(math.radians(30.0))
 """Half-opening of the line-of-sight cone |y| <= -x tan 30 degrees, which is cut at x >= -100 m."""
 
-TWO_N = Fraction("0.00876276")
-"""2n of the published linear model, rad/min (its n implies an orbit of 42 125 km, not the paper's 42 164 km)."""
+MU, RADIUS = 3.986e14 * 3600.0, 42_164e3
+"""Earth's gravitational parameter (m^3/min^2) and the target's orbit radius (m) of the nonlinear model."""
 
-_THREE_N2 = Fraction("5.75894721132e-5")
-
-_GAINS = {
-    1: (
-        ("28.828677676943", "-0.100479948259883", "1449.97541985328", "-0.00462447231887482"),
-        ("0.0870156786852279", "33.2561992450513", "-0.00462447231887482", "1451.50134643428"),
-    ),
-    2: (
-        ("288.028766271474", "-0.131243039715836", "9614.98979543236", "3.41199965400404e-7"),
-        ("0.131243040368934", "287.999970095943", "3.41199965400404e-7", "9614.98829796995"),
-    ),
-}
+_LINEAR = Fraction("5.75894721132e-5"), Fraction("0.00876276")
+_N2 = Fraction("3.986e14") * 3600 / Fraction(42_164_000) ** 3
+_ROOT_SCALE = 10**60
+_NONLINEAR = 3 * _N2, 2 * Fraction(math.isqrt(int(_N2 * _ROOT_SCALE**2)), _ROOT_SCALE)
 
 
 class Mode(StrEnum):
@@ -58,44 +50,85 @@ class Mode(StrEnum):
     PASSIVE = "passive"
 
 
+class Dynamics(StrEnum):
+    """Relative motion: Clohessy-Wiltshire-Hill with the published coefficients, or Kepler's (eq. 1)."""
+
+    LINEAR = "linear"
+    NONLINEAR = "nonlinear"
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """The linear part of one mode; ``design`` None: published gains. Key of every table of matrix exponentials."""
+
+    mode: Mode
+    dynamics: Dynamics = Dynamics.LINEAR
+    design: Design | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class System:
+    """What flies: relative ``dynamics``, gains (``design``, None: the published ones) and ``guard``."""
+
+    dynamics: Dynamics = Dynamics.LINEAR
+    design: Design | None = None
+    guard: Guard = Guard.OCTAGON
+
+    def motion(self, mode: Mode) -> Motion:
+        """Linear part of the motion in ``mode``; for nonlinear dynamics the linearisation at the target."""
+        return Motion(mode, self.dynamics, None if mode is Mode.PASSIVE else self.design)
+
+
+PUBLISHED = System()
+"""Linear motion, published gains, octagon: the model of the competition."""
+
+
+def coefficients(dynamics: Dynamics) -> tuple[Fraction, Fraction]:
+    """3 n^2 (1/min^2) and 2 n (1/min).
+
+    The published linear n implies an orbit of 42 125 km, not the paper's 42 164 km: both are kept as they are.
+    The nonlinear 2 n is rounded at 60 digits, which the remainder's own rounding covers.
+    """
+    return _LINEAR if dynamics is Dynamics.LINEAR else _NONLINEAR
+
+
 @cache
-def exact_matrix(mode: Mode) -> tuple[tuple[Fraction, ...], ...]:
-    """System matrix of a mode as fractions, 4 x 4: A of the passive motion (eq. 2), minus B K in modes 1 and 2."""
+def exact_gain(motion: Motion) -> tuple[tuple[Fraction, ...], ...]:
+    """K (2, 4) of u = -K x as fractions, kg/min^2 and kg/min; zero in the passive mode."""
+    if motion.mode is Mode.PASSIVE:
+        return ((Fraction(0),) * 4,) * 2
+    near = motion.mode is Mode.NEAR
+    if motion.design is None:
+        return published_gain(near)
+    limits = motion.design.near if near else motion.design.far
+    drift = matrix(Motion(Mode.PASSIVE, motion.dynamics))
+    gain = bryson_gain(limits, tuple(tuple(float(v) for v in row) for row in drift), float(MASS))
+    return tuple(tuple(Fraction(float(entry)) for entry in row) for row in gain)
+
+
+@cache
+def exact_matrix(motion: Motion) -> tuple[tuple[Fraction, ...], ...]:
+    """Matrix of the linear part as fractions, 4 x 4: A of the passive motion (eq. 2), minus B K in modes 1 and 2."""
+    three_n2, two_n = coefficients(motion.dynamics)
     rows = [
         [Fraction(0), Fraction(0), Fraction(1), Fraction(0)],
         [Fraction(0), Fraction(0), Fraction(0), Fraction(1)],
-        [_THREE_N2, Fraction(0), Fraction(0), TWO_N],
-        [Fraction(0), Fraction(0), -TWO_N, Fraction(0)],
+        [three_n2, Fraction(0), Fraction(0), two_n],
+        [Fraction(0), Fraction(0), -two_n, Fraction(0)],
     ]
-    if mode is not Mode.PASSIVE:
-        for row, line in zip(rows[2:], _GAINS[1 if mode is Mode.FAR else 2], strict=True):
-            for j, entry in enumerate(line):
-                row[j] -= Fraction(entry) / MASS
+    for row, line in zip(rows[2:], exact_gain(motion), strict=True):
+        for j, entry in enumerate(line):
+            row[j] -= entry / MASS
     return tuple(tuple(row) for row in rows)
 
 
 @cache
-def matrix(mode: Mode) -> Floats:
+def matrix(motion: Motion) -> Floats:
     """The same matrix (4, 4) in doubles, each entry correctly rounded."""
-    return np.array([[float(entry) for entry in row] for row in exact_matrix(mode)])
+    return np.array([[float(entry) for entry in row] for row in exact_matrix(motion)])
 
 
 @cache
-def gain(mode: Mode) -> Floats:
-    """K (2, 4) of u = -K x, kg/min^2 and kg/min; zero in the passive mode."""
-    if mode is Mode.PASSIVE:
-        return np.zeros((2, 4))
-    return np.array([[float(entry) for entry in line] for line in _GAINS[1 if mode is Mode.FAR else 2]])
-
-
-def octagon(half: float, diagonal: float) -> tuple[Floats, Floats]:
-    """Rows (8, 2) and limits (8,) of |a|, |b| <= half, |a +- b| <= diagonal."""
-    rows = np.array([[1, 0], [-1, 0], [0, 1], [0, -1], [1, 1], [-1, -1], [1, -1], [-1, 1]], dtype=np.float64)
-    return rows, np.array([half] * 4 + [diagonal] * 4)
-
-
-FACES, FACE_LIMITS = octagon(GAP_GUARD, GAP_DIAGONAL)
-"""Guard octagon: rows (8, 2) on the position, limits (8,) in metres."""
-
-FACE_NAMES = ("x=100", "x=-100", "y=100", "y=-100", "x+y=141.1", "x+y=-141.1", "x-y=141.1", "x-y=-141.1")
-"""Names of the faces, in the order of :data:`FACES`."""
+def gain(motion: Motion) -> Floats:
+    """K (2, 4) in doubles, each entry correctly rounded."""
+    return np.array([[float(entry) for entry in line] for line in exact_gain(motion)])

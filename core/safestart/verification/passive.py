@@ -16,8 +16,11 @@ from numpy.typing import NDArray
 
 from safestart.progress import Context
 from safestart.scenario import Floats
+from safestart.verification import interpolation
+from safestart.verification.clock import Clock
 from safestart.verification.flow import flow_table, growth
-from safestart.verification.model import Mode
+from safestart.verification.model import Mode, Motion
+from safestart.verification.nonlinear import deviation, influence, is_nonlinear
 from safestart.verification.rounding import SLACK, UP
 from safestart.verification.separation import planar_clearance, timed_clearance
 from safestart.verification.tube import Tube
@@ -38,18 +41,13 @@ Cells = NDArray[np.intp]
 
 
 @dataclass(frozen=True, slots=True)
-class Clock:
-    """Abort time of a node of a tube: its own time plus ``offset`` + ``gens`` (g,) . xi +- ``radius`` (min)."""
-
-    offset: float
-    gens: Floats
-    radius: float
-
-
-@dataclass(frozen=True, slots=True)
 class Bins:
-    """Passive starts of bins: ``centre`` (B, 4), ``gens`` (B, m, 4), clocks ``time`` (B,), ``time_gens`` (B, m)."""
+    """Passive starts of bins: ``centre`` (B, 4), ``gens`` (B, m, 4), clocks ``time`` (B,), ``time_gens`` (B, m).
 
+    ``motion`` is the passive one.
+    """
+
+    motion: Motion
     centre: Floats
     gens: Floats
     time: Floats
@@ -67,6 +65,8 @@ class Bins:
 class Drift:
     """Outcome: ``clearance`` is a proved max-norm distance (m) from the target's centre; ``open`` cells remain.
 
+    ``gave_up``: some of these are not of the finest grid, and were left because they were too many.
+
     Rows of ``open``: (first, last) abort time, (first, last) time after the abort, min. ``cells`` were tried.
     Rows of ``leaves``: bin level, drift level, bin, piece, and 1 where the cell is proved apart, else 0.
     """
@@ -75,36 +75,41 @@ class Drift:
     open: Floats
     cells: int
     leaves: Cells = field(default_factory=lambda: np.zeros((0, 5), dtype=np.intp))
+    gave_up: bool = False
 
 
-def make_bins(tube: Tube, clock: Clock, level: int, blocks: Cells, span: bool = True) -> Bins:
-    """Bins ``blocks`` (B,) of 2^level segments of ``tube``.
+def sweep(low: tuple[Floats, Floats], high: tuple[Floats, Floats], bend: Floats) -> tuple[Floats, Floats]:
+    """What the motion along a bin adds to the mean of its ends (centres (B, 4), generators (B, g, 4)).
 
-    ``span`` False keeps the middle of each bin alone: unsound, for the mutation tests.
+    One generator (B, 4) for the centre, and a box (B, 4) for the generators and for ``bend``.
     """
+    return 0.5 * (high[0] - low[0]), UP * (0.5 * np.abs(high[1] - low[1]).sum(axis=1) + bend)
+
+
+def make_bins(tube: Tube, clock: Clock, level: int, blocks: Cells) -> Bins:
+    """Bins ``blocks`` (B,) of 2^level segments of ``tube``."""
     width = 1 << level
     i = blocks * width
     j = np.minimum(i + width, tube.steps)
-    length = (j - i) * tube.step
+    length = np.asarray((j - i) * tube.step, dtype=np.float64)
     low, high = tube.centre[i], tube.centre[j]
     first, last = tube.gens[i], tube.gens[j]
     second = np.stack([tube.second[a:b].max(axis=0) for a, b in zip(i, j, strict=True)])
-    bend = tube.curvature * UP * (length**2 / 8.0)[:, None] * second
-    noise = np.maximum(tube.noise[i], tube.noise[j])
-    extra = 0.5 * np.abs(last - first).sum(axis=1)
-    move = 0.5 * (high - low)
-    if not span:
-        bend, extra, move = 0.0 * bend, 0.0 * extra, 0.0 * move
-    box = UP * (extra + bend) + 2.0 * noise
+    bend = interpolation.chord_error(length[:, None], second)
+    move, extra = sweep((low, first), (high, last), bend)
+    centre, spread = 0.5 * (low + high), 0.5 * (first + last)
+    rounded = SLACK * (np.abs(centre) + np.abs(spread).sum(axis=1) + np.abs(move))
+    # The deviation held in the noise grows along the tube, so that its end covers the bin.
+    box = UP * (extra + np.maximum(tube.noise[i], tube.noise[j]) + rounded)
     count, known = len(blocks), first.shape[1]
-    gens = np.concatenate([0.5 * (first + last), move[:, None, :], box[:, None, :] * np.eye(4)], axis=1)
+    gens = np.concatenate([spread, move[:, None, :], box[:, None, :] * np.eye(4)], axis=1)
     time_gens = np.zeros((count, known + 6))
     time_gens[:, : len(clock.gens)] = clock.gens
     time_gens[:, known] = 0.5 * length
     time_gens[:, -1] = clock.radius
     gens = np.concatenate([gens, np.zeros((count, 1, 4))], axis=1)
     time: Floats = clock.offset + tube.start + 0.5 * tube.step * (i + j).astype(np.float64)
-    return Bins(0.5 * (low + high), gens, time, time_gens)
+    return Bins(Motion(Mode.PASSIVE, tube.motion.dynamics), centre, gens, time, time_gens)
 
 
 def cell_positions(
@@ -112,7 +117,7 @@ def cell_positions(
 ) -> tuple[Floats, Floats, Floats]:
     """Positions of cells: centre (N, 2), generators (N, m + 1, 2), box (N, 2)."""
     width = 1 << level
-    table = flow_table(Mode.PASSIVE, Fraction(0), DRIFT_STEP, steps)
+    table = flow_table(bins.motion, Fraction(0), DRIFT_STEP, steps)
     i = blocks * width
     j = i + width
     both = np.concatenate([bins.centre[:, None, :], bins.gens], axis=1)[pick]
@@ -121,13 +126,28 @@ def cell_positions(
     size = np.abs(both).sum(axis=1)
     second = np.abs(np.matmul(both, table.psi[i].transpose(0, 2, 1))).sum(axis=1)
     step = DRIFT_STEP * width
-    box = float(step) ** 2 / 8.0 * (second @ growth(Mode.PASSIVE, step)[:2].T)
+    box = interpolation.chord_error(float(step), second @ growth(bins.motion, step)[:2].T)
     box += 0.5 * np.abs(last[:, 1:] - first[:, 1:]).sum(axis=1)
     noise = np.maximum(np.abs(table.phi[i, :2]), np.abs(table.phi[j, :2]))
     box = UP * box + SLACK * np.matmul(noise, size[:, :, None])[:, :, 0]
+    if is_nonlinear(bins.motion):
+        box += UP * drift_deviation(bins, steps)[pick, i >> DRIFT_LEVELS]
     middle = 0.5 * (first + last)
     sweep = 0.5 * (last[:, :1] - first[:, :1])
     return middle[:, 0], np.concatenate([middle[:, 1:], sweep], axis=1), box
+
+
+def drift_deviation(bins: Bins, steps: int) -> Floats:
+    """Deviation (B, p, 2) of the position from the linear drift, up to the end of each coarsest piece, m."""
+    width = 1 << DRIFT_LEVELS
+    piece = DRIFT_STEP * width
+    starts = np.abs(flow_table(bins.motion, Fraction(0), piece, steps // width).phi[:-1])
+    size = np.abs(bins.centre) + np.abs(bins.gens).sum(axis=1)
+    places = UP * np.matmul(growth(bins.motion, piece)[:2], starts) @ size.T
+    radius = UP * np.hypot(places[:, 0], places[:, 1]).T
+    per_unit = influence(bins.motion, Fraction(0), DRIFT_STEP, steps)[width::width]
+    result: Floats = deviation(per_unit, radius)[..., :2]
+    return result
 
 
 def prove_drift(
@@ -138,7 +158,6 @@ def prove_drift(
     box: float,
     level: int,
     context: Context,
-    span: bool = True,
 ) -> Drift:
     """Prove every drift from ``tube``, aborted inside ``window``, apart from the box up to ``horizon`` (min).
 
@@ -158,7 +177,7 @@ def prove_drift(
     while len(cells):
         context.step(tried, tried + len(cells), "drift cells")
         unique, pick = np.unique(cells[:, 0], return_inverse=True)
-        bins = make_bins(tube, clock, level, unique, span)
+        bins = make_bins(tube, clock, level, unique)
         start = np.maximum(bins.earliest, window[0])
         after = (cells[:, 1] << drift_level) * float(DRIFT_STEP)
         spread = np.abs(bins.time_gens).sum(axis=1)
@@ -184,7 +203,8 @@ def prove_drift(
         cells, pick = cells[fail], pick[fail]
         if last_level or 4 * len(cells) > MAX_CELLS:
             leaves.append(_leaves(cells, level, drift_level, 0))
-            return Drift(least, _rows(bins, pick, cells, drift_level), tried, np.concatenate(leaves))
+            still = _rows(bins, pick, cells, drift_level)
+            return Drift(least, still, tried, np.concatenate(leaves), bool(len(cells)) and not last_level)
         down, after_down = int(level > 0), int(drift_level > 0)
         cells = _split(cells, down, after_down)
         level, drift_level = level - down, drift_level - after_down

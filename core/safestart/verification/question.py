@@ -11,7 +11,8 @@ import numpy as np
 
 from safestart.errors import invalid
 from safestart.scenario import Floats, number
-from safestart.verification.model import FACE_LIMITS, FACES
+from safestart.verification.guard import supports
+from safestart.verification.model import PUBLISHED, System
 
 MAX_HORIZON = 720.0
 """Longest horizon, min."""
@@ -29,8 +30,8 @@ class Verdict(StrEnum):
 class Question:
     """Initial set ``centre`` +- ``half`` (x, y, vx, vy in m and m/min), ``horizon`` (min), abort ``window`` (min).
 
-    ``window`` None: the engines never fail. ``box`` is the half-width (m) of the target's box. All starts are in
-    mode 1, so the initial set lies outside the guard octagon. Raises ``InvalidInput``.
+    ``window`` None: the engines never fail. ``box`` is the half-width (m) of the target's box; ``system`` says what
+    flies. All starts are in mode 1, so the initial set lies outside the guard. Raises ``InvalidInput``.
     """
 
     centre: tuple[float, float, float, float] = (-900.0, -400.0, 0.0, 0.0)
@@ -38,6 +39,7 @@ class Question:
     horizon: float = 300.0
     window: tuple[float, float] | None = None
     box: float = 0.1
+    system: System = PUBLISHED
 
     def __post_init__(self) -> None:
         for name, value, size, most in zip(
@@ -50,9 +52,13 @@ class Question:
         if self.window is not None:
             first = number("window[0]", self.window[0], 0.0, self.horizon)
             number("window[1]", self.window[1], first, self.horizon)
-        reach = np.abs(FACES) @ np.array(self.half[:2])
-        if not (FACES @ np.array(self.centre[:2]) - reach > FACE_LIMITS).any():
-            raise invalid("centre", "an initial set wholly beyond one face of the guard octagon", self.centre)
+        rows, limits = supports(self.system.guard)
+        reach = np.abs(rows) @ np.array(self.half[:2])
+        if not (rows @ np.array(self.centre[:2]) - reach > limits).any():
+            guard = self.system.guard.value
+            raise invalid(
+                "centre", f"an initial set wholly beyond one face of the guard {guard}", self.centre
+            )
 
     def set(self) -> tuple[Floats, Floats]:
         """Centre (4,) and generators (g, 4), one per component that varies."""

@@ -2,46 +2,39 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from fractions import Fraction
 
-from safestart.verification.crossing import Crossing, Entry, find_entry
-from safestart.verification.model import Mode
+from safestart.verification.clock import Clock
+from safestart.verification.crossing import Crossing
+from safestart.verification.entry import Entry, find_entry
+from safestart.verification.model import Mode, Motion
 from safestart.verification.question import Question
 from safestart.verification.tube import Tube, propagate
 
 FAR_STEP = Fraction(1, 5)
-EARLY_STEP, EARLY_STEPS = Fraction(1, 40), 64
-"""Mode 2 starts with a transient of 3 seconds; after 1.6 min only the slow motion is left."""
-LATE_START, LATE_STEP = EARLY_STEP * EARLY_STEPS, Fraction(1, 4)
+PHASES = (
+    (Fraction(0), Fraction(1, 160)),
+    (Fraction(2, 5), Fraction(1, 40)),
+    (Fraction(8, 5), Fraction(1, 4)),
+)
+"""Mode 2, start and step (min): a transient of 3 seconds; what is left of it; the slow motion, to the end."""
 _FIRST_TRY = 160.0
 _BEYOND = 60.0
 
 
 @dataclass(frozen=True, slots=True)
-class Mutation:
-    """What the mutation tests leave out (``curvature`` and ``remainder`` are scales); the default is the proof."""
-
-    curvature: float = 1.0
-    remainder: float = 1.0
-    bins: bool = True
-
-
-PROOF = Mutation()
-"""Nothing left out."""
-
-
-@dataclass(frozen=True, slots=True)
 class Branch:
-    """Mode 2 after one crossing: time since the crossing in the tubes ``early`` and ``late``."""
+    """Mode 2 after one crossing: ``tubes``, one after the other, over the time since the crossing."""
 
     crossing: Crossing
-    early: Tube
-    late: Tube
+    tubes: tuple[Tube, ...]
 
-    def tubes(self) -> tuple[Tube, Tube]:
-        """Both, in order."""
-        return self.early, self.late
+    @property
+    def clock(self) -> Clock:
+        """Abort time of a state of mode 2: the time since the crossing plus this."""
+        return Clock(self.crossing.time, self.crossing.time_gens, self.crossing.time_radius)
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,15 +46,16 @@ class Reach:
     branches: tuple[Branch, ...]
 
 
-def reach(question: Question, mutation: Mutation = PROOF) -> Reach:
+def reach(question: Question) -> Reach:
     """Reach tubes until the engines fail for good or the horizon ends; see ``Entry.reason`` where that failed."""
     centre, gens = question.set()
+    system = question.system
+    far, near = system.motion(Mode.FAR), system.motion(Mode.NEAR)
     end = question.horizon if question.window is None else question.window[1]
     entry, tube = Entry(0.0, 0.0, ()), None
     for length in (min(_FIRST_TRY, question.horizon + _BEYOND), question.horizon + _BEYOND):
-        steps = int(length / FAR_STEP)
-        tube = propagate(Mode.FAR, centre, gens, Fraction(0), FAR_STEP, steps, mutation.curvature)
-        entry = find_entry(tube, centre, gens, question.horizon, mutation.remainder)
+        tube = propagate(far, centre, gens, Fraction(0), FAR_STEP, int(length / FAR_STEP))
+        entry = find_entry(tube, centre, gens, question.horizon, system.guard)
         if entry.branches:
             break
     assert tube is not None
@@ -70,13 +64,17 @@ def reach(question: Question, mutation: Mutation = PROOF) -> Reach:
         left = end - crossing.first
         if left <= 0.0:
             continue
-        late_steps = max(0, int((left - float(LATE_START)) / float(LATE_STEP)) + 1)
-        state = crossing.centre, crossing.gens
-        branches.append(
-            Branch(
-                crossing,
-                propagate(Mode.NEAR, *state, Fraction(0), EARLY_STEP, EARLY_STEPS, mutation.curvature),
-                propagate(Mode.NEAR, *state, LATE_START, LATE_STEP, late_steps, mutation.curvature),
-            )
-        )
+        branches.append(Branch(crossing, _near_tubes(near, crossing, left)))
     return Reach(tube.until(min(entry.last, end)), entry, tuple(branches))
+
+
+def _near_tubes(motion: Motion, crossing: Crossing, length: float) -> tuple[Tube, ...]:
+    """Mode 2 for ``length`` minutes at least."""
+    ends = [start for start, _ in PHASES[1:]] + [Fraction(max(length, float(PHASES[-1][0])))]
+    tubes: list[Tube] = []
+    past = 0.0
+    for (start, step), end in zip(PHASES, ends, strict=True):
+        steps = math.ceil((end - start) / step) + (end == ends[-1])
+        tubes.append(propagate(motion, crossing.centre, crossing.gens, start, step, steps, past))
+        past = max(past, float(tubes[-1].radius().max()))
+    return tuple(tubes)

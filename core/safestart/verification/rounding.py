@@ -1,12 +1,22 @@
 """One inflation for all round-off of double arithmetic in this package, and why it is enough.
 
-A sum of products evaluated in doubles, in any order, with at most n roundings on the way from an input to the
-result, is wrong by at most gamma_n times the sum of the absolute values of its terms, gamma_n = n u / (1 - n u) and
-u = 2^-53 (the classical running-error bound). No set here is propagated step by step: every set at a time t is one
-product of a matrix exponential, known to one rounding per entry (:mod:`safestart.verification.flow`), with the
-initial centre and generators, so that n stays below 60. ``SLACK`` = 2^-46 = 128 u covers it twice.
+Lemma (running-error bound): a sum of products evaluated in doubles, in any order, with at most n roundings on the way
+from an input to the result, is wrong by at most gamma_n times the sum of the absolute values of its terms, gamma_n =
+n u / (1 - n u), u = 2^-53; underflow is out of reach (all magnitudes of interest are above 1e-200).
 
-Underflow is out of reach (all magnitudes of interest are above 1e-200).
+No set is propagated step by step, and every stage adds its own inflation before the next one begins, taking the doubles
+that it got as exact. The longest way of each stage, with g <= 12 generators of a tube and m <= 20 of a cell:
+
+    node of a tube          entry of e^{At} 1, product 1, sum of four 3                                      5
+    support of a node       product 1, sum of four 3, sum over g + 1 sets 12, noise 2                       18
+    crossing                node 5, rates and falls 8, quotient 1, projection 5, shift 2                    21
+    bin                     mean 2, half difference 2, chord 4, box 4                                       12
+    cell                    node 5, mean 2, chord 4, box 5                                                  16
+    clearance               normal 0 (plane) or 3 (space), products 3, sum over m + 3 sets 23, quotient 1   30
+
+Each is below 32, so gamma is below 33 u = 2^-47.9: ``SLACK`` = 2^-46 = 128 u covers it almost four times, which is more
+than the roundings of the inflation itself. The tests compare node, cell and clearance with exact arithmetic and find a
+share of less than a tenth of the inflation used; the crossing they compare with a first-order projection only.
 """
 
 from __future__ import annotations

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from safestart.progress import Context
 from safestart.verification.cases import CASES, HALF_WIDTHS, HORIZON
+from safestart.verification.model import PUBLISHED, Dynamics, System
 from safestart.verification.published import PAPER_S, published_row
 from safestart.verification.question import Question
 from safestart.verification.verify import verify
@@ -17,25 +19,27 @@ PAPER_JOB = Question(horizon=240.0, window=(120.0, 125.0))
 """The job that paper 003 times: aborts in [120, 125] min, 4 hours."""
 
 
-def warm() -> None:
-    """Compute the tables of matrix exponentials once per process; they depend on the model alone."""
-    verify(Question(window=(0.0, HORIZON), box=50.0))
+def warm(system: System = PUBLISHED) -> None:
+    """Compute the tables of matrix exponentials once per process; they depend on the system alone."""
+    verify(Question(window=(0.0, HORIZON), box=50.0, system=system))
 
 
-def paper_row() -> dict[str, Any]:
+def paper_row(system: System = PUBLISHED) -> dict[str, Any]:
     """The paper's own job with its published times."""
-    return _row("paper 003", PAPER_JOB) | {"published": {"verdict": "SAFE", "tools_s": PAPER_S}}
+    return _row("paper 003", replace(PAPER_JOB, system=system)) | {
+        "published": {"verdict": "SAFE", "tools_s": PAPER_S}
+    }
 
 
-def competition_rows(context: Context | None = None) -> list[dict[str, Any]]:
+def competition_rows(context: Context | None = None, system: System = PUBLISHED) -> list[dict[str, Any]]:
     """22 rows: verdict per requirement, margins, proved distance, counter-example, seconds, published figures."""
     context = context or Context()
     rows: list[dict[str, Any]] = []
     for case, window in CASES.items():
         for half_width in HALF_WIDTHS:
             context.step(len(rows), len(CASES) * len(HALF_WIDTHS), f"{case}, {half_width:g} m")
-            row = _row(case, Question(horizon=HORIZON, window=window, box=half_width))
-            rows.append(row | {"published": published_row(case)})
+            row = _row(case, Question(horizon=HORIZON, window=window, box=half_width, system=system))
+            rows.append(row | {"published": published_row(case, system.dynamics is Dynamics.NONLINEAR)})
     return rows
 
 

@@ -1,8 +1,8 @@
-"""Exact flights of single starts: the independent side of every proof, and the replay of every counter-example.
+"""Exact flights of single starts in the linear motion: the independent side of every proof, and of every search.
 
 Modes 1 and 2 by their eigenvectors, the drift by its closed form; the crossing by bisection. No sets and no tables of
 :mod:`safestart.verification.flow` are used. A first entry shorter than the scan step (0.1 min) would be missed, so
-these are simulations, not proofs.
+these are simulations, not proofs. Of a nonlinear system they fly the linearisation.
 """
 
 from __future__ import annotations
@@ -13,29 +13,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from safestart.scenario import Bools, Floats
-from safestart.verification.model import FACE_LIMITS, FACES, TWO_N, Mode, matrix
+from safestart.verification.guard import depth, gradient
+from safestart.verification.model import Dynamics, Mode, Motion, System, coefficients, matrix
 
 _SCAN = 0.1
 _BISECTIONS, _NEWTONS = 8, 4
 
 
 @cache
-def _modes(mode: Mode) -> tuple[NDArray[np.complex128], NDArray[np.complex128], NDArray[np.complex128]]:
-    values, vectors = np.linalg.eig(matrix(mode).astype(np.complex128))
+def _modes(motion: Motion) -> tuple[NDArray[np.complex128], NDArray[np.complex128], NDArray[np.complex128]]:
+    values, vectors = np.linalg.eig(matrix(motion).astype(np.complex128))
     return values, vectors, np.linalg.inv(vectors)
 
 
-def flown(mode: Mode, start: Floats, times: Floats) -> Floats:
+def flown(motion: Motion, start: Floats, times: Floats) -> Floats:
     """States (..., 4) of ``start`` (..., 4) after ``times`` (...), which broadcast; modes 1 and 2 only."""
-    values, vectors, inverse = _modes(mode)
+    values, vectors, inverse = _modes(motion)
     parts = np.exp(values * times[..., None]) * (start @ inverse.T)
     result: Floats = (parts @ vectors.T).real
     return result
 
 
-def drifted(start: Floats, times: Floats) -> Floats:
+def drifted(dynamics: Dynamics, start: Floats, times: Floats) -> Floats:
     """Positions (..., 2) of the passive motion of ``start`` (..., 4) after ``times`` (...) minutes; closed form."""
-    n = float(TWO_N) / 2.0
+    n = float(coefficients(dynamics)[1]) / 2.0
     p = n * times
     sine, versine = np.sin(p), 2.0 * np.sin(0.5 * p) ** 2
     x, y, vx, vy = (start[..., k] for k in range(4))
@@ -44,48 +45,44 @@ def drifted(start: Floats, times: Floats) -> Floats:
     return np.stack([radial, along], axis=-1)
 
 
-def _depth(states: Floats) -> Floats:
-    """Largest excess over the octagon's faces (...,), m: negative inside."""
-    result: Floats = (states[..., :2] @ FACES.T - FACE_LIMITS).max(axis=-1)
-    return result
-
-
-def crossing_times(starts: Floats, horizon: float, bracket: tuple[float, float] | None = None) -> Floats:
-    """First entry (N,) of ``starts`` (N, 4) into the guard octagon, min; inf where none up to ``horizon``.
+def crossing_times(
+    system: System, starts: Floats, horizon: float, bracket: tuple[float, float] | None = None
+) -> Floats:
+    """First entry (N,) of ``starts`` (N, 4) into the guard, min; inf where none up to ``horizon``.
 
     ``bracket``: times between which every start is known to enter once, instead of the scan.
     """
+    far = system.motion(Mode.FAR)
     if bracket is None:
-        low, found = _scan(starts, horizon)
+        low, found = _scan(system, starts, horizon)
         high = low + _SCAN
     else:
         low, high = (np.full(len(starts), t) for t in bracket)
         found = np.ones(len(starts), dtype=np.bool_)
     for _ in range(_BISECTIONS):
         middle = 0.5 * (low + high)
-        inside = _depth(flown(Mode.FAR, starts, middle)) < 0.0
+        inside = depth(system.guard, flown(far, starts, middle)[:, :2]) < 0.0
         high, low = np.where(inside, middle, high), np.where(inside, low, middle)
     at = 0.5 * (low + high)
     for _ in range(_NEWTONS):
-        states = flown(Mode.FAR, starts, at)
-        heights = states[:, :2] @ FACES.T - FACE_LIMITS
-        face = heights.argmax(axis=1)
-        rate = np.einsum("nj,nj->n", FACES[face], states[:, 2:])
-        # Where the face is met tangentially Newton is no help, and the bisection stands.
-        step = np.where(rate < 0.0, -heights.max(axis=1) / np.where(rate < 0.0, rate, 1.0), 0.0)
+        states = flown(far, starts, at)
+        rate = np.einsum("nj,nj->n", gradient(system.guard, states[:, :2]), states[:, 2:])
+        # Where the guard is met tangentially Newton is no help, and the bisection stands.
+        height = depth(system.guard, states[:, :2])
+        step = np.where(rate < 0.0, -height / np.where(rate < 0.0, rate, 1.0), 0.0)
         at = np.clip(at + step, low, high)
     return np.where(found, at, np.inf)
 
 
-def _scan(starts: Floats, horizon: float) -> tuple[Floats, Bools]:
+def _scan(system: System, starts: Floats, horizon: float) -> tuple[Floats, Bools]:
     """Last scan time outside (N,), and whether the next one is inside (N,)."""
     low = np.zeros(len(starts))
     waiting, states = np.arange(len(starts)), starts
     found: Bools = np.zeros(len(starts), dtype=np.bool_)
-    one = flown(Mode.FAR, np.eye(4), np.full(4, _SCAN))
+    one = flown(system.motion(Mode.FAR), np.eye(4), np.full(4, _SCAN))
     for k in range(1, int(np.ceil(horizon / _SCAN)) + 1):
         states = states @ one
-        inside = _depth(states) < 0.0
+        inside = depth(system.guard, states[:, :2]) < 0.0
         if inside.any():
             found[waiting[inside]] = True
             low[waiting[inside]] = (k - 1) * _SCAN
@@ -95,9 +92,10 @@ def _scan(starts: Floats, horizon: float) -> tuple[Floats, Bools]:
     return low, found
 
 
-def active(starts: Floats, crossings: Floats, times: Floats) -> Floats:
+def active(system: System, starts: Floats, crossings: Floats, times: Floats) -> Floats:
     """States (..., 4) at ``times`` (...) with the engines on, given the crossing times; all broadcast together."""
     until = np.minimum(times, crossings)
-    states = flown(Mode.FAR, starts, until)
+    states = flown(system.motion(Mode.FAR), starts, until)
     since = np.where(np.isfinite(crossings), np.maximum(times - until, 0.0), 0.0)
-    return np.where((since > 0.0)[..., None], flown(Mode.NEAR, states, since), states)
+    after = flown(system.motion(Mode.NEAR), states, since)
+    return np.where((since > 0.0)[..., None], after, states)

@@ -3,7 +3,8 @@
 A set is {c + sum_j xi_j g_j : |xi_j| <= 1}; the xi_j keep their meaning along the tube. Between two nodes a solution
 is the linear interpolation of its end points plus an error of at most h^2/8 sup |z''| per component, and z'' = A^2 z
 is itself a solution, so sup |z''| <= E_h |A^2 z_k| with E_h an entrywise bound on |e^{As}|, 0 <= s <= h. Taking A^2 z_k
-as a set of its own keeps the cancellation that a norm of A^2 would lose (mode 2 is stiff).
+as a set of its own keeps the cancellation that a norm of A^2 would lose (mode 2 is stiff). What nonlinear dynamics add
+is a box around this linear motion.
 """
 
 from __future__ import annotations
@@ -15,8 +16,10 @@ from fractions import Fraction
 import numpy as np
 
 from safestart.scenario import Floats
+from safestart.verification import interpolation
 from safestart.verification.flow import flow_table, growth
-from safestart.verification.model import Mode
+from safestart.verification.model import Motion
+from safestart.verification.nonlinear import deviation, influence, is_nonlinear
 from safestart.verification.rounding import SLACK, UP
 
 
@@ -24,18 +27,17 @@ from safestart.verification.rounding import SLACK, UP
 class Tube:
     """Nodes t_k = start + k step (min), k = 0..n, of the set of one mode.
 
-    ``centre`` (n+1, 4), ``gens`` (n+1, g, 4), ``noise`` (n+1, 4): round-off at the nodes; ``second`` (n, 4): bound on
-    |z''| between nodes k and k+1. ``curvature`` scales what is made of it: 1, but for the mutation tests.
+    ``centre`` (n+1, 4), ``gens`` (n+1, g, 4); ``noise`` (n+1, 4): round-off at the nodes, and the deviation from the
+    linear motion at any time up to them; ``second`` (n, 4): bound on |z''| of the linear motion between nodes.
     """
 
-    mode: Mode
+    motion: Motion
     start: float
     step: float
     centre: Floats
     gens: Floats
     noise: Floats
     second: Floats
-    curvature: float
 
     @property
     def steps(self) -> int:
@@ -45,8 +47,7 @@ class Tube:
     @property
     def bend(self) -> Floats:
         """What is added to the hull of nodes k and k+1, (n, 4)."""
-        result: Floats = self.curvature * UP * self.step**2 / 8.0 * self.second
-        return result
+        return interpolation.chord_error(self.step, self.second)
 
     def until(self, time: float) -> Tube:
         """The tube up to ``time`` (min) at least: a view of its first nodes."""
@@ -66,47 +67,61 @@ class Tube:
 
     def upper(self, rows: Floats) -> Floats:
         """Upper bounds (n, r) of ``rows`` (r, 4) times the state, over each segment; rounded outwards."""
-        middle = self.centre @ rows.T
-        spread = np.abs(self.gens @ rows.T).sum(axis=1)
         size = np.abs(self.centre) + np.abs(self.gens).sum(axis=1)
-        node = middle + spread + (self.noise + SLACK * size) @ np.abs(rows.T)
-        result: Floats = np.maximum(node[:-1], node[1:]) + UP * (self.bend @ np.abs(rows.T))
+        noise = (self.noise + SLACK * size) @ np.abs(rows.T)
+        node = self.centre @ rows.T + np.abs(self.gens @ rows.T).sum(axis=1)
+        between = np.maximum(noise[:-1], noise[1:]) + UP * (self.bend @ np.abs(rows.T))
+        result: Floats = np.maximum(node[:-1], node[1:]) + UP * between
         return result
 
     def node_upper(self, rows: Floats, node: int) -> Floats:
         """Upper bounds (r,) of ``rows`` times the state at one node."""
         size = np.abs(self.centre[node]) + np.abs(self.gens[node]).sum(axis=0)
         noise = (self.noise[node] + SLACK * size) @ np.abs(rows.T)
-        result: Floats = rows @ self.centre[node] + np.abs(self.gens[node] @ rows.T).sum(axis=0) + noise
+        result: Floats = rows @ self.centre[node] + np.abs(self.gens[node] @ rows.T).sum(axis=0) + UP * noise
+        return result
+
+    def radius(self) -> Floats:
+        """Bounds (n,) on the distance from the target over each segment, m."""
+        bounds = np.abs(np.stack([self.upper(_PLACES), self.upper(-_PLACES)])).max(axis=0)
+        result: Floats = UP * np.hypot(bounds[:, 0], bounds[:, 1])
         return result
 
 
+_PLACES = np.eye(2, 4)
+
+
 def propagate(
-    mode: Mode,
+    motion: Motion,
     centre: Floats,
     gens: Floats,
     start: Fraction,
     step: Fraction,
     steps: int,
-    curvature: float = 1.0,
+    past: float = 0.0,
 ) -> Tube:
     """Tube of ``centre`` (4,) and ``gens`` (g, 4), given at time 0 of the mode, over ``steps`` steps from ``start``.
 
-    ``curvature`` scales the interpolation bound; anything below 1 is unsound and serves the mutation tests.
+    ``past`` (m): distance from the target that is not exceeded before ``start``; nonlinear motion needs it.
     """
-    table = flow_table(mode, start, step, steps)
+    table = flow_table(motion, start, step, steps)
     size = np.abs(centre) + np.abs(gens).sum(axis=0)
-    bounds = growth(mode, step)
+    bounds = growth(motion, step)
     speed = np.abs(table.psi @ centre) + np.abs(np.matmul(gens, table.psi.transpose(0, 2, 1))).sum(axis=1)
     speed += SLACK * (np.abs(table.psi) @ size)
     second = UP * (speed[:-1] @ bounds.T)
-    return Tube(
-        mode,
+    tube = Tube(
+        motion,
         float(start),
         float(step),
         table.phi @ centre,
         np.matmul(gens, table.phi.transpose(0, 2, 1)),
         SLACK * (np.abs(table.phi) @ size),
         second,
-        curvature,
     )
+    if not is_nonlinear(motion):
+        return tube
+    # At node k the segments before it count; at node 0 the start.
+    reached = np.concatenate([[max(past, float(np.hypot(*size[:2])))], np.maximum(past, tube.radius())])
+    strays = deviation(influence(motion, start, step, steps), reached)
+    return replace(tube, noise=UP * (tube.noise + strays))

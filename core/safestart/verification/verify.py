@@ -10,17 +10,20 @@ import numpy as np
 
 from safestart.progress import Context
 from safestart.verification import requirements
-from safestart.verification.falsify import Drifting, Powered, closest, powered_extremes, replay
-from safestart.verification.model import MAX_SPEED, MAX_THRUST, Mode, gain
-from safestart.verification.passive import Clock, Drift, prove_drift
+from safestart.verification.clock import Clock
+from safestart.verification.falsify import Drifting, Powered, closest, powered_extremes
+from safestart.verification.model import MAX_SPEED, MAX_THRUST, Mode, System, gain
+from safestart.verification.passive import Drift, prove_drift
 from safestart.verification.question import Finding, Question, Verdict
-from safestart.verification.reach import PROOF, Mutation, Reach, reach
+from safestart.verification.reach import Reach, reach
+from safestart.verification.replay import replay
 from safestart.verification.tube import Tube
 
 FAR_LEVEL, NEAR_LEVEL = 4, 5
 """Coarsest bins: 2^4 segments of mode 1 (3.2 min), 2^5 of mode 2 (0.8 and 8 min)."""
 
-_TOLERANCE = 1e-9
+_TOLERANCE = 1e-5
+"""How deep (m) a replayed contact must be, and how late (min) it may be: ten times the error of a replay."""
 _HINT_MIN = 0.5
 _DEEP = 0.8
 """A counter-example this far inside the box (times its half-width) ends the search."""
@@ -36,27 +39,23 @@ class Verification:
     run_s: float
 
 
-def verify(
-    question: Question, context: Context | None = None, seed: int = 0, mutation: Mutation = PROOF
-) -> Verification:
+def verify(question: Question, context: Context | None = None, seed: int = 0) -> Verification:
     """Prove or refute every requirement; ``seed`` feeds the search for counter-examples only."""
     start = time.perf_counter()
     context = context or Context()
-    tubes = reach(question, mutation)
-    reason = tubes.entry.reason or requirements.stays_in_mode_2(tubes)
-    findings = {"separation": _separation(question, tubes, reason, seed, context, mutation)}
+    tubes = reach(question)
+    reason = tubes.entry.reason or requirements.stays_in_mode_2(tubes, question.system.guard)
+    findings = {"separation": _separation(question, tubes, reason, seed, context)}
     findings |= _powered(question, tubes, reason)
     return Verification(question, findings, tubes, time.perf_counter() - start)
 
 
-def _separation(
-    question: Question, tubes: Reach, reason: str, seed: int, context: Context, mutation: Mutation
-) -> Finding:
+def _separation(question: Question, tubes: Reach, reason: str, seed: int, context: Context) -> Finding:
     if question.window is None:
         return Finding(Verdict.SAFE, limit=question.box, reason="no failure is asked for, so nothing drifts")
     if reason:
         return _searched(question, tubes, question.window, seed, reason, None)
-    drift = prove_separation(question, tubes, context, mutation)
+    drift = prove_separation(question, tubes, context)
     if not len(drift.open):
         bound = drift.clearance if np.isfinite(drift.clearance) else None
         margin = None if bound is None else bound - question.box
@@ -70,21 +69,18 @@ def _separation(
     return _searched(question, tubes, hint, seed, text, drift)
 
 
-def prove_separation(
-    question: Question, tubes: Reach, context: Context | None = None, mutation: Mutation = PROOF
-) -> Drift:
+def prove_separation(question: Question, tubes: Reach, context: Context | None = None) -> Drift:
     """Passive safety of every start in the window; the drift that is left ``open`` is not proved."""
     assert question.window is not None
     context = context or Context()
     done: list[Drift] = []
     for tube, clock, level in drift_sources(tubes):
-        done.append(
-            prove_drift(
-                tube, clock, question.window, question.horizon, question.box, level, context, mutation.bins
-            )
-        )
+        done.append(prove_drift(tube, clock, question.window, question.horizon, question.box, level, context))
     return Drift(
-        min(d.clearance for d in done), np.concatenate([d.open for d in done]), sum(d.cells for d in done)
+        min(d.clearance for d in done),
+        np.concatenate([d.open for d in done]),
+        sum(d.cells for d in done),
+        gave_up=any(d.gave_up for d in done),
     )
 
 
@@ -92,9 +88,7 @@ def drift_sources(tubes: Reach) -> list[tuple[Tube, Clock, int]]:
     """Tubes that passive starts come from, with the clock of their abort times and the level of the coarsest bins."""
     sources = [(tubes.far, Clock(0.0, np.zeros(0), 0.0), FAR_LEVEL)]
     for branch in tubes.branches:
-        crossing = branch.crossing
-        clock = Clock(crossing.time, crossing.time_gens, crossing.time_radius)
-        sources += [(tube, clock, NEAR_LEVEL) for tube in branch.tubes()]
+        sources += [(tube, branch.clock, NEAR_LEVEL) for tube in branch.tubes]
     return sources
 
 
@@ -117,7 +111,7 @@ def _searched(
 
 def collides(question: Question, found: Drifting) -> bool:
     """Whether the replay of a counter-example is inside the box by more than round-off, within the horizon."""
-    state = replay(np.array(found.start), found.abort, found.time)
+    state = replay(question.system, np.array(found.start), found.abort, found.time)
     inside = bool(np.abs(state[:2]).max() < question.box - _TOLERANCE)
     return inside and found.time <= question.horizon + _TOLERANCE
 
@@ -137,7 +131,7 @@ def _powered(question: Question, tubes: Reach, reason: str) -> dict[str, Finding
     extremes = powered_extremes(question, bracket(tubes))
     sources = {"thrust": "thrust", "los": "los", "velocity": "speed_octagon", "velocity_disc": "speed"}
     for name in doubtful:
-        proved[name] = _refuted(name, proved[name], extremes[sources[name]])
+        proved[name] = _refuted(question.system, name, proved[name], extremes[sources[name]])
     return proved
 
 
@@ -147,21 +141,24 @@ def bracket(tubes: Reach) -> tuple[float, float] | None:
     return (entry.first, entry.last) if entry.branches else None
 
 
-def _refuted(name: str, finding: Finding, flown: Powered) -> Finding:
+def _refuted(system: System, name: str, finding: Finding, flown: Powered) -> Finding:
     limit = {"thrust": MAX_THRUST, "los": 0.0}.get(name, MAX_SPEED)
-    if flown.value > limit + 1e-6 * max(1.0, limit) and violates(name, flown, limit):
+    if flown.value > limit + 1e-6 * max(1.0, limit) and violates(system, name, flown, limit):
         example = {"start": list(flown.start), "time_min": flown.time, "value": flown.value}
         return replace(finding, verdict=Verdict.UNSAFE, margin=None, reason="", counter_example=example)
     reason = finding.reason or "the bound exceeds the limit, and no simulated flight does"
     return replace(finding, reason=reason, margin=None)
 
 
-def violates(name: str, flown: Powered, limit: float) -> bool:
+def violates(system: System, name: str, flown: Powered, limit: float) -> bool:
     """Whether the replay of a powered flight breaks the limit at its time as well."""
-    state = replay(np.array(flown.start), np.inf, flown.time)
+    state = replay(system, np.array(flown.start), np.inf, flown.time)
     x, y, vx, vy = state
     if name == "thrust":
-        return max(float(np.abs(gain(mode) @ state).max()) for mode in (Mode.FAR, Mode.NEAR)) > limit
+        return (
+            max(float(np.abs(gain(system.motion(mode)) @ state).max()) for mode in (Mode.FAR, Mode.NEAR))
+            > limit
+        )
     if name == "los":
         return bool(max(abs(y) + np.tan(np.pi / 6.0) * x, -100.0 - x) > limit)
     if name == "velocity":
