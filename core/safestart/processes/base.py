@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from importlib import import_module
 from typing import Any
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from safestart.artifact import Artifact as Artifact
+from safestart.processes.sharding import Sharding, load
 from safestart.progress import Context
 from safestart.validation import validation_error
 
@@ -35,8 +35,11 @@ Runner = Callable[[Any, Context], ProcessOutput]
 class ProcessSpec:
     """Description of a process; light to import, so that the service can offer what it cannot run.
 
-    ``run`` names the function as ``module:function``; it is imported only where the process executes.
+    ``run`` names the function as ``module:function``; it is imported only where the process executes. A process that
+    is cut into shards has ``sharding`` instead.
     ``light`` processes may run synchronously inside the service; all others are async-execute only.
+    ``replay_tolerance`` is how far a replay on another machine or with other versions may be off, relative to
+    max(1, |value|); on the same ones it is the same bit for bit.
     ``instant`` names a function (inputs) -> document that the service answers with at submission.
     """
 
@@ -45,10 +48,12 @@ class ProcessSpec:
     description: str
     inputs: type[WireModel]
     outputs: type[WireModel]
-    run: str
+    run: str = ""
+    sharding: Sharding | None = None
     light: bool = False
     instant: str | None = None
     version: str = "1.0.0"
+    replay_tolerance: float = 1e-9
     keywords: tuple[str, ...] = ()
     example: dict[str, Any] = field(default_factory=dict)
 
@@ -61,14 +66,11 @@ class ProcessSpec:
 
     def runner(self) -> Runner:
         """Import and return the function that executes this process."""
-        return _load(self.run)
+        if self.sharding is None:
+            return load(self.run)
+        load(self.sharding.shard), load(self.sharding.merge)
+        return self.sharding.run
 
     def instant_answer(self, inputs: WireModel) -> dict[str, Any] | None:
         """The document that is known at once, before any engine has run, or None."""
-        return None if self.instant is None else _load(self.instant)(inputs)
-
-
-def _load(target: str) -> Callable[..., Any]:
-    module, name = target.split(":")
-    function: Callable[..., Any] = getattr(import_module(module), name)
-    return function
+        return None if self.instant is None else load(self.instant)(inputs)

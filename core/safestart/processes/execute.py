@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Any
 
-from safestart.processes.base import Artifact
+from safestart.processes.base import Artifact, ProcessOutput, ProcessSpec, WireModel
 from safestart.processes.registry import process
+from safestart.processes.sharding import Part
 from safestart.progress import Context
 from safestart.provenance import versions
 
@@ -30,7 +32,21 @@ def execute(process_id: str, inputs: Any, context: Context | None = None) -> Exe
     spec = process(process_id)
     parsed = spec.parse(inputs)
     started = datetime.now(UTC)
-    output = spec.runner()(parsed, context or Context())
+    return _finished(spec, parsed, started, spec.runner()(parsed, context or Context()))
+
+
+def merge(
+    process_id: str, inputs: Any, parts: Sequence[Part], started: datetime, context: Context | None = None
+) -> Execution:
+    """The end of a sharded process whose shards have run elsewhere, since ``started``; raises as :func:`execute`."""
+    spec = process(process_id)
+    parsed = spec.parse(inputs)
+    if spec.sharding is None:
+        raise ValueError(f"process {process_id} has no shards")
+    return _finished(spec, parsed, started, spec.sharding.merged(parsed, parts, context or Context()))
+
+
+def _finished(spec: ProcessSpec, parsed: WireModel, started: datetime, output: ProcessOutput) -> Execution:
     dumped = parsed.model_dump(mode="json")
     document = {
         "schema_version": SCHEMA_VERSION,

@@ -38,6 +38,9 @@ LABELS = {
 }
 
 
+NPZ = "application/x-npz"
+
+
 def figure(width: float, height: float) -> Figure:
     """Empty figure in inches, free of global pyplot state (safe in threads)."""
     return Figure(figsize=(width, height), layout="constrained")
@@ -69,4 +72,4 @@ def npz(name: str, arrays: Mapping[str, NDArray[Any]]) -> Artifact:
     """Arrays as a compressed NPZ artifact (numpy stamps entries with a fixed date, so bytes are reproducible)."""
     buffer = io.BytesIO()
     np.savez_compressed(buffer, allow_pickle=False, **dict(arrays))
-    return Artifact(name, "application/x-npz", buffer.getvalue())
+    return Artifact(name, NPZ, buffer.getvalue())

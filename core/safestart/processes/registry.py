@@ -11,10 +11,17 @@ from safestart.processes.base import ProcessSpec
 _SPECS = {
     "go-no-go": "safestart.processes.go_no_go.spec",
     "certificate": "safestart.processes.certificate.spec",
+    "safe-region": "safestart.processes.safe_region.spec",
+    "thrust-map": "safestart.processes.thrust_map.spec",
+    "flight": "safestart.processes.flight.spec",
     "atlas": "safestart.processes.atlas.spec",
     "coverage": "safestart.processes.coverage.spec",
     "benchmark": "safestart.processes.benchmark.spec",
     "passive-safety": "safestart.processes.passive_safety.spec",
+    "safe-abort-map": "safestart.processes.safe_abort_map.spec",
+    "inclusion-chain": "safestart.processes.inclusion_chain.spec",
+    "sweep": "safestart.processes.sweep.spec",
+    "trade-study": "safestart.processes.trade_study.spec",
 }
 
 PROCESS_IDS = tuple(_SPECS)

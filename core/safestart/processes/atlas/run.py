@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from safestart.certificates.atlas import Atlas
+from safestart.certificates.atlas_file import key_of, pack
 from safestart.certificates.closed_form import certify_grid
 from safestart.certificates.question import Question
 from safestart.certificates.survey import build
@@ -14,7 +15,7 @@ from safestart.errors import invalid
 from safestart.processes.atlas.plots import atlas_map
 from safestart.processes.atlas.spec import AtlasInputs
 from safestart.processes.base import Artifact, ProcessOutput
-from safestart.processes.plotting import npz
+from safestart.processes.plotting import NPZ, npz
 from safestart.progress import Context
 from safestart.scenario import Floats
 
@@ -27,7 +28,9 @@ def run(inputs: AtlasInputs, context: Context) -> ProcessOutput:
         raise invalid("horizon_s", f"a whole number of intervals of {inputs.dt_s:g} s", inputs.horizon_s)
     points = grid.points(scenario.corridor)
     context.step(0, 3, "directions")
-    atlas = build(Question(scenario, inputs.dt_s, steps), grid.y_max, inputs.gap)
+    question = Question(scenario, inputs.dt_s, steps)
+    key = key_of(question, grid.y_max, inputs.gap)
+    atlas = build(question, grid.y_max, inputs.gap)
     context.step(1, 3, "cells")
     lower, upper = atlas.bounds(points)
     region = certify_grid(scenario, grid)
@@ -50,20 +53,18 @@ def run(inputs: AtlasInputs, context: Context) -> ProcessOutput:
         "message": atlas.message,
     }
     picture = atlas_map(scenario, grid, atlas)
-    return ProcessOutput(document, (picture, _arrays(atlas, points, lower, upper)))
+    proofs = Artifact("proofs.npz", NPZ, pack(atlas), key)
+    return ProcessOutput(document, (picture, _arrays(atlas, points, lower, upper), proofs))
 
 
 def _arrays(atlas: Atlas, points: Floats, lower: Floats, upper: Floats) -> Artifact:
-    steps = atlas.question.steps
     return npz(
         "atlas.npz",
         {
             "points_m": points,
             "margin_lower_m": lower,
             "margin_upper_m": upper,
-            "witness_start_m": np.array([w.start for w in atlas.rim]).reshape(-1, 2),
-            "witness_thrust_m_s2": np.array([w.thrust for w in atlas.rim]).reshape(-1, steps, 2),
-            "witness_margin_m": np.array([w.margin for w in atlas.rim]),
+            "inner_polygon_m": np.array([w.start for w in atlas.rim]).reshape(-1, 2),
             "half_plane_slope": atlas.slopes,
             "half_plane_level_m": atlas.levels,
         },

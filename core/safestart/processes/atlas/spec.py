@@ -46,7 +46,7 @@ SPEC = ProcessSpec(
     description=(
         "Exact answer for every start at rest in LVLH: can any thrust history keep it in the rotating corridor at all "
         "times of the horizon? Inner polygon of proved GO, outer half-planes of proved NO_GO, a thin strip undecided; "
-        "witnesses and multipliers are in the NPZ artifact."
+        "witnesses and multipliers are in the artifact proofs.npz, from which go-no-go then answers (method auto)."
     ),
     inputs=AtlasInputs,
     outputs=AtlasOutputs,

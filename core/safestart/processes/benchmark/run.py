@@ -17,6 +17,7 @@ from safestart.processes.benchmark.plots import agreement_panels, overlay_map
 from safestart.processes.benchmark.spec import DT_S, BenchmarkInputs
 from safestart.processes.plotting import npz
 from safestart.progress import Context
+from safestart.published import TABLE2, TABLE2_THRUST_M_S2
 from safestart.scenario import Bools
 
 # Shares of the progress bar, roughly the share of the time.
@@ -36,7 +37,14 @@ def problem_of(inputs: BenchmarkInputs) -> Problem:
         inputs.rest,
         inputs.set,
         inputs.seed,
-        {"hamilton_jacobi": {"accuracy": hj.accuracy, "shape": shape, "frame": hj.frame}},
+        {
+            "hamilton_jacobi": {
+                "accuracy": hj.accuracy,
+                "shape": shape,
+                "frame": hj.frame,
+                "solver": hj.solver,
+            }
+        },
     )
 
 
@@ -52,7 +60,11 @@ def run(inputs: BenchmarkInputs, context: Context) -> ProcessOutput:
     if certified is not None and certified.any():
         starts = problem.points()[certified]
         contained = containment_horizon(problem.scenario, starts, problem.rest, DT_S, start=problem.horizon)
-    rows = [_row(result, masks, inside, cell_area, results) for result in results.values()]
+    printed = TABLE2.get(inputs.omega_t_deg_s, {}) if inputs.a_max_m_s2 == TABLE2_THRUST_M_S2 else {}
+    rows = [
+        _row(result, masks, inside, cell_area, results) | {"published": printed.get(name)}
+        for name, result in results.items()
+    ]
     document = {
         "corridor_cells": int(np.count_nonzero(inside)),
         "cell_area_m2": cell_area,

@@ -29,6 +29,10 @@ class HamiltonJacobiInput(WireModel):
         "very_high",
         description="Scheme of hj-reachability; low is the fastest and loses a third of the set at 5 deg/s.",
     )
+    solver: Literal["fused", "hj_reachability"] = Field(
+        "fused",
+        description="Who steps the value: compiled kernels, or hj-reachability (same scheme, 20 to 40 times slower).",
+    )
     nodes_xy: int = Field(41, ge=11, le=61, description="Nodes per position axis.")
     nodes_v: int = Field(15, ge=7, le=31, description="Nodes per velocity axis.")
     frame: Literal["auto", "lvlh", "body"] = Field(
@@ -93,6 +97,14 @@ class Confusion(WireModel):
     mcc: float | None
 
 
+class PublishedRow(WireModel):
+    """What paper 000 prints for this engine in Table 2 (0.10 m/s^2; 1, 3 and 5 deg/s)."""
+
+    iou_vs_hj: float
+    area_ratio: float
+    run_s: float
+
+
 class EngineRow(WireModel):
     """What one engine found; measures that its code or an absent reference forbids are null."""
 
@@ -111,6 +123,9 @@ class EngineRow(WireModel):
     run_s: float
     compile_s: float
     speedup_vs_hj: float | None
+    published: PublishedRow | None = Field(
+        None, description="Table 2 of the paper, where it has this operating point."
+    )
     detail: dict[str, Any]
 
 

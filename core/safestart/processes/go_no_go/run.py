@@ -11,6 +11,7 @@ from safestart.certificates.closed_form import Certificate, certify
 from safestart.certificates.explain import explain
 from safestart.errors import invalid
 from safestart.processes.base import ProcessOutput
+from safestart.processes.go_no_go.asked import refuse_closed_form
 from safestart.processes.go_no_go.spec import GoNoGoInputs
 from safestart.processes.wire import NO_SYNC_LIMIT, finite
 from safestart.progress import Context
@@ -20,10 +21,13 @@ from safestart.scenario import Floats
 def run(inputs: GoNoGoInputs, context: Context) -> ProcessOutput:
     """Answer for every state; planar and spatial states may not be mixed."""
     points = _points(inputs)
+    if inputs.method == "closed_form":
+        refuse_closed_form(inputs)
     certificate = certify(inputs.scenario(), points, inputs.rest)
     limit = certificate.range_limit
     document: dict[str, Any] = {
         "method": inputs.method,
+        "question": inputs.question,
         "rest": inputs.rest.value,
         "r_sync_m": finite(limit),
         "r_sync_reason": None if math.isfinite(limit) else NO_SYNC_LIMIT,
@@ -33,6 +37,8 @@ def run(inputs: GoNoGoInputs, context: Context) -> ProcessOutput:
         "face_margins_m": certificate.face_margin.tolist(),
         "range_margin_m": [finite(value) for value in certificate.range_margin.tolist()],
         **_explain(certificate),
+        "end_s": None,
+        "examples": None,
         "proof": None,
     }
     if inputs.method == "closed_form":
@@ -76,6 +82,6 @@ _PER_STATE = ("verdict", "margin_m", "range_margin_m", "binding", "violated_face
 def single(outputs: dict[str, Any]) -> dict[str, Any]:
     """The outputs of one state, flat: no array around each value, face margins by name."""
     margins = dict(zip(outputs["faces"], outputs["face_margins_m"][0], strict=True))
-    shared = {key: outputs[key] for key in ("r_sync_m", "r_sync_reason", "method", "rest")}
-    proof = None if outputs["proof"] is None else outputs["proof"][0]
-    return {key: outputs[key][0] for key in _PER_STATE} | {"face_margins_m": margins, "proof": proof} | shared
+    shared = {key: outputs[key] for key in ("r_sync_m", "r_sync_reason", "method", "question", "rest")}
+    listed = {key: outputs[key] and outputs[key][0] for key in ("end_s", "examples", "proof")}
+    return {key: outputs[key][0] for key in _PER_STATE} | {"face_margins_m": margins} | listed | shared

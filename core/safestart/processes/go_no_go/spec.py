@@ -7,13 +7,12 @@ from typing import Any, Literal
 from pydantic import Field
 
 from safestart.processes.base import ProcessSpec, WireModel
+from safestart.processes.go_no_go.asked import Asked, Kind, Method
+from safestart.processes.go_no_go.widths import Member
 from safestart.processes.wire import ScenarioInput
 from safestart.scenario import MAX_RANGE, Rest
 
 MAX_STATES = 100_000
-
-
-Method = Literal["closed_form", "exact", "auto"]
 
 
 class StateInput(WireModel):
@@ -28,27 +27,18 @@ class StateInput(WireModel):
     )
 
 
-class GoNoGoInputs(ScenarioInput):
+class GoNoGoInputs(ScenarioInput, Asked):
     """One operating point and up to 100 000 starts."""
 
     states: list[StateInput] = Field(min_length=1, max_length=MAX_STATES, description="Starts at rest.")
     rest: Rest = Field(Rest.LVLH, description="Frame in which the starts are at rest.")
-    method: Method = Field(
-        "closed_form",
-        description="closed_form: the paper's conditions, at once. exact: can any thrust history stay in the corridor "
-        "at all times of horizon_s? One cone program per start, at most 1000 starts. auto: the same verdicts, "
-        "by an atlas where there are many planar starts at rest in LVLH.",
-    )
-    horizon_s: float = Field(
-        60.0, ge=2, le=600, multiple_of=2, description="How long to stay in the corridor (exact, auto), s."
-    )
-    proofs: bool = Field(False, description="Return proof documents (exact, auto); at most 100 starts.")
 
 
 class GoNoGoOutputs(WireModel):
     """Arrays over the states, in their order; margins per face in metres."""
 
     method: Method
+    question: Kind
     rest: Rest
     r_sync_m: float | None = Field(description="Synchronization range limit, m; null when there is none.")
     r_sync_reason: str | None = Field(None, description="Why r_sync_m is null.")
@@ -56,7 +46,7 @@ class GoNoGoOutputs(WireModel):
     verdict: list[Literal["GO", "NO_GO", "UNDECIDED"]]
     margin_m: list[float | None] = Field(
         description="closed_form: smallest margin of each state, m; GO needs it positive. exact, auto: proved bound on "
-        "the distance that can be kept to every face, from below for GO, from above for NO_GO."
+        "the margin (distance to every face; limits in metres, see docs), from below for GO, from above for NO_GO."
     )
     face_margins_m: list[list[float]] = Field(
         description="Closed form: margin after erosion per state and face, m."
@@ -67,6 +57,15 @@ class GoNoGoOutputs(WireModel):
         description="Faces of the corridor that the start itself is outside of."
     )
     reason: list[str] = Field(description="The verdict in a sentence.")
+    end_s: list[float | None] | None = Field(
+        None,
+        description="When the flight of a GO is at rest in the hold ball (synchronize), s; null for the others.",
+    )
+    examples: list[list[Member]] | None = Field(
+        None,
+        description="With half-widths: for each UNDECIDED state the members looked at, one GO and one NO_GO where the "
+        "verdict depends on which member is true.",
+    )
     proof: list[dict[str, Any] | None] | None = Field(
         None, description="Proof documents for `safestart verify`, when asked for; null for UNDECIDED."
     )

@@ -12,15 +12,8 @@ from safestart.processes.passive_safety.outlines import outlines
 from safestart.processes.plotting import figure, png
 from safestart.progress import Context
 from safestart.scenario import Floats
-from safestart.verification.model import (
-    FACE_LIMITS,
-    FACES,
-    LOS_SLOPE,
-    MAX_SPEED,
-    MAX_THRUST,
-    NEWTON,
-    gain,
-)
+from safestart.verification.guard import FACE_LIMITS, FACES, GAP_GUARD, Guard
+from safestart.verification.model import LOS_SLOPE, MAX_SPEED, MAX_THRUST, NEWTON, gain
 from safestart.verification.passive import cell_positions, flow_steps, make_bins, prove_drift
 from safestart.verification.reach import Reach
 from safestart.verification.tube import Tube
@@ -35,10 +28,10 @@ def powered_picture(answer: Verification) -> Artifact:
     drawing = figure(10.4, 8.0)
     (whole, close), (speed, force) = drawing.subplots(2, 2)
     for axes in (whole, close):
-        _frame(axes)
+        _frame(axes, answer.question.system.guard)
         _fill(axes, _nodes(reach.far, slice(0, 2)), _FAR)
         for branch in reach.branches:
-            for tube in branch.tubes():
+            for tube in branch.tubes:
                 _fill(axes, _nodes(tube, slice(0, 2)), _NEAR)
     whole.autoscale_view()
     whole.set_title("positions", fontsize=10)
@@ -46,7 +39,7 @@ def powered_picture(answer: Verification) -> Artifact:
     close.set_ylim(-75, 75)
     close.set_title("positions in mode 2; guard, line-of-sight cone", fontsize=10)
     for branch in reach.branches:
-        for tube in branch.tubes():
+        for tube in branch.tubes:
             _fill(speed, _nodes(tube, slice(2, 4)) / 60.0, _NEAR)
     speed.add_patch(Circle((0, 0), MAX_SPEED / 60.0, fill=False, color="#333333", linestyle=":"))
     speed.autoscale_view()
@@ -55,7 +48,12 @@ def powered_picture(answer: Verification) -> Artifact:
     speed.set_ylabel("vy [m/s]")
     speed.set_title("velocities in mode 2; limit 0.05 m/s", fontsize=10)
     _thrust(force, reach)
-    drawing.suptitle("Reach tubes with the engines on", fontsize=11)
+    system = answer.question.system
+    gains = "published" if system.design is None else "own"
+    drawing.suptitle(
+        f"Reach tubes with the engines on: {system.dynamics.value} dynamics, {gains} gains, {system.guard.value}",
+        fontsize=11,
+    )
     return png("tubes.png", drawing)
 
 
@@ -66,7 +64,7 @@ def drift_picture(answer: Verification) -> Artifact:
     whole, close = drawing.subplots(1, 2)
     cells, middles = _drifts(answer)
     for axes in (whole, close):
-        _frame(axes)
+        _frame(axes, answer.question.system.guard)
         for polygons, colour in cells:
             _fill(axes, polygons, colour, 0.35)
         box = question.box
@@ -95,7 +93,7 @@ def arrays(answer: Verification) -> dict[str, Floats]:
     scale = np.array([1.0, 1.0, 1.0 / 60.0, 1.0 / 60.0])
     out: dict[str, Floats] = {}
     for name, tube in _named(answer.reach):
-        rows = gain(tube.mode)
+        rows = gain(tube.motion)
         out[f"{name}_time_min"] = tube.start + tube.step * np.arange(tube.steps + 1.0)
         out[f"{name}_upper"] = tube.upper(np.eye(4)) * scale
         out[f"{name}_lower"] = -tube.upper(-np.eye(4)) * scale
@@ -106,7 +104,7 @@ def arrays(answer: Verification) -> dict[str, Floats]:
 def _named(reach: Reach) -> list[tuple[str, Tube]]:
     named = [("mode1", reach.far)]
     for k, branch in enumerate(reach.branches):
-        named += [(f"mode2_{k}_early", branch.early), (f"mode2_{k}_late", branch.late)]
+        named += [(f"mode2_{k}_part{j}", tube) for j, tube in enumerate(branch.tubes)]
     return named
 
 
@@ -146,7 +144,7 @@ def _thrust(axes: Axes, reach: Reach) -> None:
     for name, tube in _named(reach):
         near = name != "mode1"
         times = (offset if near else 0.0) + tube.start + tube.step * np.arange(tube.steps)
-        rows = gain(tube.mode)
+        rows = gain(tube.motion)
         for axis, style in ((0, "-"), (1, "--")):
             upper = tube.upper(-rows)[:, axis] / NEWTON
             lower = -tube.upper(rows)[:, axis] / NEWTON
@@ -159,14 +157,15 @@ def _thrust(axes: Axes, reach: Reach) -> None:
     axes.set_title("thrust (Fx, Fy); limit 10 N", fontsize=10)
 
 
-def _frame(axes: Axes) -> None:
-    corners = np.array(
-        [
+def _frame(axes: Axes, guard: Guard) -> None:
+    if guard is Guard.CIRCLE:
+        axes.add_patch(Circle((0, 0), GAP_GUARD, fill=False, edgecolor="#666666", linestyle="--"))
+    else:
+        corners = [
             np.linalg.solve(FACES[[i, j]], FACE_LIMITS[[i, j]])
             for i, j in zip(_RING, _RING[1:] + _RING[:1], strict=True)
         ]
-    )
-    axes.add_patch(Polygon(corners, fill=False, edgecolor="#666666", linestyle="--"))
+        axes.add_patch(Polygon(corners, fill=False, edgecolor="#666666", linestyle="--"))
     axes.add_patch(
         Polygon(
             [(0, 0), (-100, -100 * LOS_SLOPE), (-100, 100 * LOS_SLOPE)], color="#F0E442", alpha=0.35, zorder=0

@@ -10,27 +10,25 @@ from typing import Any
 from safestart.processes.base import ProcessOutput
 from safestart.processes.passive_safety.plots import arrays, drift_picture, powered_picture
 from safestart.processes.passive_safety.spec import PassiveSafetyInputs
+from safestart.processes.passive_safety.system import MINUTE, system_of
 from safestart.processes.plotting import npz
 from safestart.progress import Context
 from safestart.verification.critical import CriticalAbort, critical_abort
-from safestart.verification.model import NEWTON
+from safestart.verification.model import NEWTON, Mode, gain
 from safestart.verification.question import Finding, Question
 from safestart.verification.verify import Verification, verify
-
-_MINUTE = 60.0
 
 _UNITS = {
     "separation": ("m", 1.0),
     "thrust": ("N", 1.0 / NEWTON),
     "los": ("m", 1.0),
-    "velocity": ("m/s", 1.0 / _MINUTE),
-    "velocity_disc": ("m/s", 1.0 / _MINUTE),
+    "velocity": ("m/s", 1.0 / MINUTE),
+    "velocity_disc": ("m/s", 1.0 / MINUTE),
 }
 """Requirement -> unit on the wire, and what one unit of the model is in it."""
 
 NOTES = [
-    "SAFE is a proof for the published linear model; round-off is included, differences between model and spacecraft "
-    "are not.",
+    "SAFE is a proof for the chosen model; round-off is included, differences between model and spacecraft are not.",
     "velocity is the published octagon around the speed limit, velocity_disc the true disc.",
 ]
 
@@ -39,11 +37,12 @@ def question_of(inputs: PassiveSafetyInputs) -> Question:
     """The first question in the model's units (m, min), without a window."""
     c, h = inputs.centre, inputs.half_widths
     return Question(
-        (c.x_m, c.y_m, c.vx_m_s * _MINUTE, c.vy_m_s * _MINUTE),
-        (h.x_m, h.y_m, h.vx_m_s * _MINUTE, h.vy_m_s * _MINUTE),
+        (c.x_m, c.y_m, c.vx_m_s * MINUTE, c.vy_m_s * MINUTE),
+        (h.x_m, h.y_m, h.vx_m_s * MINUTE, h.vy_m_s * MINUTE),
         inputs.horizon_min,
         None,
         inputs.box_half_width_m,
+        system_of(inputs),
     )
 
 
@@ -68,6 +67,7 @@ def run(inputs: PassiveSafetyInputs, context: Context) -> ProcessOutput:
     context.step(total - 1.0, total, "pictures")
     entry = answers[0].reach.entry
     document = {
+        "gains": {mode.value: gain(base.system.motion(mode)).tolist() for mode in (Mode.FAR, Mode.NEAR)},
         "crossing_first_min": entry.first if math.isfinite(entry.first) else None,
         "crossing_last_min": entry.last if math.isfinite(entry.last) else None,
         "crossed_faces": [branch.name for branch in entry.branches],
@@ -116,8 +116,8 @@ def _example(example: Mapping[str, Any], scale: float) -> dict[str, Any]:
     return {
         "x_m": x,
         "y_m": y,
-        "vx_m_s": vx / _MINUTE,
-        "vy_m_s": vy / _MINUTE,
+        "vx_m_s": vx / MINUTE,
+        "vy_m_s": vy / MINUTE,
         "abort_min": example["abort_min"] if drift else None,
         "time_min": example["contact_min" if drift else "time_min"],
         "value": scale * example["distance_m" if drift else "value"],

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from safestart.processes.base import ProcessSpec, WireModel
+from safestart.processes.passive_safety.rendezvous import RendezvousInputs
 from safestart.processes.wire import Seed
 
 Minutes = Annotated[float, Field(ge=0.0, le=600.0)]
@@ -32,8 +33,8 @@ class SpreadInput(WireModel):
     vy_m_s: float = Field(0.0, ge=0, le=0.1, description="Half-width in vy, m/s.")
 
 
-class PassiveSafetyInputs(WireModel):
-    """Starts, horizon, abort windows and the target's box."""
+class PassiveSafetyInputs(RendezvousInputs):
+    """Starts, horizon, abort windows, the target's box, and what flies."""
 
     centre: StartInput = Field(default_factory=lambda: StartInput.model_validate({}))
     half_widths: SpreadInput = Field(default_factory=lambda: SpreadInput.model_validate({}))
@@ -46,7 +47,6 @@ class PassiveSafetyInputs(WireModel):
         description="Windows [first, last] of the time of failure, min, each verified apart; empty: no failure.",
     )
     box_half_width_m: float = Field(0.1, gt=0, le=100, description="Half-width of the target's box, m.")
-    model: Literal["linear"] = Field("linear", description="Relative dynamics: Clohessy-Wiltshire-Hill.")
     critical_abort: bool = Field(
         True, description="Also bracket the critical abort time, between 0 and the horizon."
     )
@@ -114,6 +114,9 @@ class CriticalOutput(WireModel):
 class PassiveSafetyOutputs(WireModel):
     """Per window the findings; the crossing into mode 2; the critical abort time."""
 
+    gains: dict[str, list[list[float]]] = Field(
+        description="K (2 x 4) of mode1 and mode2: force = -K state, kg m/min^2 from m and m/min."
+    )
     crossing_first_min: float | None
     crossing_last_min: float | None
     crossed_faces: list[str]
@@ -126,9 +129,10 @@ SPEC = ProcessSpec(
     id="passive-safety",
     title="Passive safety of the switched rendezvous, proved",
     description=(
-        "Reach tubes of the switched LQR rendezvous of paper 003 (linear model): thrust, line of sight, speed, and "
-        "separation after an engine failure at any time of a window. SAFE is proved, UNSAFE comes with a flight to "
-        "replay, UNKNOWN with a reason. Brackets the critical abort time."
+        "Reach tubes of the switched LQR rendezvous of paper 003 (linear or nonlinear dynamics, published or own "
+        "gains, octagon or circle as guard): thrust, line of sight, speed, and separation after an engine failure at "
+        "any time of a window. SAFE is proved, UNSAFE comes with a flight to replay, UNKNOWN with a reason. Brackets "
+        "the critical abort time."
     ),
     inputs=PassiveSafetyInputs,
     outputs=PassiveSafetyOutputs,

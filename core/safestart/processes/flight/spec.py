@@ -1,0 +1,62 @@
+"""flight: fly the best thrust history from one start, and show how close it comes to every face."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from safestart.processes.base import ProcessSpec, WireModel
+from safestart.processes.go_no_go.asked import Kind
+from safestart.processes.go_no_go.spec import StateInput
+from safestart.processes.wire import ScenarioInput
+from safestart.scenario import Rest
+
+
+class FlightInputs(ScenarioInput):
+    """One operating point and one start at rest."""
+
+    start: StateInput
+    rest: Rest = Field(Rest.LVLH, description="Frame in which the start is at rest.")
+    question: Kind = Field(
+        "stay",
+        description="stay: in the corridor for horizon_s. synchronize: also at rest in the hold ball at the end, "
+        "within within_s; where that is no GO, the best attempt to stay is flown.",
+    )
+    horizon_s: float = Field(
+        60.0, ge=2, le=600, multiple_of=2, description="How long to stay in the corridor, s."
+    )
+    within_s: float = Field(200.0, ge=2, le=600, multiple_of=2, description="Latest end of synchronize, s.")
+
+
+class FlightOutputs(WireModel):
+    """Curves over ``time_s`` (K,), four per interval of 2 s; vectors as rows (x, y) or (x, y, z), m and m/s^2."""
+
+    verdict: Literal["GO", "NO_GO", "UNDECIDED"] = Field(description="Of the exact question.")
+    margin_m: float | None = Field(description="Proved bound: from below for GO, from above for NO_GO.")
+    time_s: list[float]
+    body_m: list[list[float]] = Field(description="Position in the target's body frame.")
+    lvlh_m: list[list[float]] = Field(description="Position in LVLH.")
+    thrust_m_s2: list[list[float]] = Field(description="Acceleration in LVLH, held over each interval.")
+    faces: list[str]
+    distance_m: list[list[float]] = Field(description="Distance to each face over time; negative: outside.")
+    closest_face: str
+    closest_m: float = Field(description="Smallest distance along the curves.")
+    closest_s: float = Field(description="When it is reached.")
+    delta_v_m_s: float
+
+
+SPEC = ProcessSpec(
+    id="flight",
+    title="Best flight from a start",
+    description=(
+        "Flies the thrust history of the largest margin from one start at rest: for a GO the witness of its proof, for "
+        "a NO_GO the attempt that fails by least. Positions in both frames, thrust, distance to every face."
+    ),
+    inputs=FlightInputs,
+    outputs=FlightOutputs,
+    run="safestart.processes.flight.run:run",
+    light=True,
+    keywords=("exact", "trajectory"),
+    example={"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "start": {"x_m": 5, "y_m": 40}},
+)

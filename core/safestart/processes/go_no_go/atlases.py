@@ -1,0 +1,56 @@
+"""Atlases for go-no-go: in memory, on the shelf by content key, or built when enough starts ask for it."""
+
+from __future__ import annotations
+
+import threading
+from collections import OrderedDict
+
+from safestart.certificates.atlas import Atlas
+from safestart.certificates.atlas_file import key_of, pack, unpack
+from safestart.certificates.question import Question
+from safestart.certificates.survey import TOLERANCE
+from safestart.errors import InvalidInput
+from safestart.scenario import MAX_RANGE
+from safestart.shelf import Shelf
+
+CUTS_M = (50.0, 150.0, 500.0, 1500.0, 5000.0, MAX_RANGE)
+"""Far ends an atlas may have: few, so that questions about different starts find the same one."""
+_IN_MEMORY = 64
+
+_kept: OrderedDict[str, Atlas] = OrderedDict()
+_lock = threading.Lock()
+
+
+def atlas_for(question: Question, farthest: float, shelf: Shelf, *, make: bool) -> Atlas | None:
+    """The atlas that reaches ``farthest`` metres along y; None when there is none and ``make`` is False."""
+    cut = next(
+        (c for c in CUTS_M if c >= farthest and c > question.scenario.corridor.hold_radius), CUTS_M[-1]
+    )
+    key = key_of(question, cut, TOLERANCE)
+    with _lock:
+        if key in _kept:
+            _kept.move_to_end(key)
+            return _kept[key]
+    atlas = _from(shelf, key)
+    if atlas is None and make:
+        from safestart.certificates.survey import build
+
+        atlas = build(question, cut)
+        shelf.keep(key, pack(atlas))
+    if atlas is not None:
+        with _lock:
+            _kept[key] = atlas
+            while len(_kept) > _IN_MEMORY:
+                _kept.popitem(last=False)
+    return atlas
+
+
+def _from(shelf: Shelf, key: str) -> Atlas | None:
+    data = shelf.find(key)
+    if data is None:
+        return None
+    try:
+        return unpack(data)
+    except InvalidInput:
+        # What cannot be read is computed again.
+        return None

@@ -1,0 +1,22 @@
+"""From the wire to the verifier's system: metres and minutes."""
+
+from __future__ import annotations
+
+from safestart.processes.passive_safety.rendezvous import BrysonInput, RendezvousInputs
+from safestart.verification.gains import Bryson, Design
+from safestart.verification.guard import Guard
+from safestart.verification.model import NEWTON, Dynamics, System
+
+MINUTE = 60.0
+
+
+def system_of(inputs: RendezvousInputs) -> System:
+    """What flies."""
+    design = Design(_limits(inputs.mode_1), _limits(inputs.mode_2)) if inputs.gains == "bryson" else None
+    return System(Dynamics(inputs.model), design, Guard(inputs.guard))
+
+
+def _limits(given: BrysonInput) -> Bryson:
+    return Bryson(
+        (given.x_m, given.y_m), (given.vx_m_s * MINUTE, given.vy_m_s * MINUTE), given.thrust_n * NEWTON
+    )

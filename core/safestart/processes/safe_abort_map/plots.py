@@ -1,0 +1,103 @@
+"""Picture and arrays of a safe-abort map."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import BoundaryNorm
+from matplotlib.patches import Circle, Polygon
+
+from safestart.processes.base import Artifact
+from safestart.processes.plotting import figure, png
+from safestart.processes.safe_abort_map.spec import SafeAbortMapInputs
+from safestart.scenario import Floats
+from safestart.verification.guard import GAP_GUARD
+from safestart.verification.model import LOS_SLOPE
+
+_STEPS = 12
+
+
+def arrays(document: dict[str, Any]) -> dict[str, Floats]:
+    """Starts (N,) in m and both limits (N,) in min, NaN where there is none."""
+    names = ("x_m", "y_m", "safe_abort_until_min", "all_proved_until_min")
+    return {name: np.array(document[name], dtype=np.float64) for name in names}
+
+
+def map_picture(inputs: SafeAbortMapInputs, document: dict[str, Any]) -> Artifact:
+    """Passive safety alone, and with every requirement: colour is the time up to which it is proved."""
+    values = arrays(document)
+    cells = _cells(inputs)
+    drawing = figure(11.0, 5.4)
+    axes: tuple[Axes, Axes] = drawing.subplots(1, 2, sharex=True, sharey=True)
+    levels = np.linspace(0.0, inputs.last_abort_min, _STEPS + 1)
+    colours = mpl.colormaps["viridis"].resampled(_STEPS).with_extremes(bad="#D9D9D9")
+    panels = (
+        ("safe_abort_until_min", "drift proved apart from the target"),
+        ("all_proved_until_min", "and thrust, line of sight, speed proved until then"),
+    )
+    for place, (name, title) in zip(axes, panels, strict=True):
+        shown = PolyCollection(
+            list(cells),
+            array=np.ma.masked_invalid(values[name]),
+            cmap=colours,
+            norm=BoundaryNorm(levels, _STEPS),
+        )
+        shown.set_edgecolor("face")
+        shown.set_linewidth(0.3)
+        place.add_collection(shown, autolim=True)
+        _target(place)
+        place.autoscale_view()
+        place.set_aspect("equal")
+        place.set_xlabel("x radial [m]")
+        place.set_title(title, fontsize=10)
+    axes[0].set_ylabel("y along-track [m]")
+    bar = drawing.colorbar(shown, ax=list(axes), shrink=0.85, ticks=levels[::2])
+    bar.set_label("every abort until then is proved safe [min]")
+    what = f"{inputs.model} dynamics, {inputs.gains} gains, guard {inputs.guard}"
+    drawing.suptitle(
+        f"Safe-abort map, box of half-width {inputs.box_half_width_m:g} m, each start +-{inputs.half_width_m:g} m "
+        f"({what}; grey: no start)",
+        fontsize=11,
+    )
+    return png("map.png", drawing)
+
+
+def _cells(inputs: SafeAbortMapInputs) -> Floats:
+    """Corners (N, k, 2) of the patch of each start, in the order of the starts."""
+    if inputs.starts == "grid":
+        grid = inputs.grid
+        x, y = (
+            np.linspace(grid.x_from_m, grid.x_to_m, grid.nx),
+            np.linspace(grid.y_from_m, grid.y_to_m, grid.ny),
+        )
+        half = np.array([x[1] - x[0], y[1] - y[0]]) / 2.0
+        places = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 1, 2)
+        corners: Floats = places + half * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+        return corners
+    arc = inputs.arc
+    angles, radii = (
+        np.linspace(arc.from_deg, arc.to_deg, arc.angles),
+        np.linspace(arc.inner_m, arc.outer_m, arc.rings),
+    )
+    wide = (arc.to_deg - arc.from_deg) / max(1, arc.angles - 1) / 2.0
+    deep = (
+        (arc.outer_m - arc.inner_m) / (arc.rings - 1) / 2.0
+        if arc.rings > 1
+        else max(10.0, inputs.half_width_m)
+    )
+    radius, angle = (grid.ravel()[:, None] for grid in np.meshgrid(radii, angles, indexing="ij"))
+    around = np.radians(angle + np.array([-wide, wide, wide, -wide]))
+    out = radius + np.array([-deep, -deep, deep, deep])
+    result: Floats = np.stack([out * np.cos(around), out * np.sin(around)], axis=-1)
+    return result
+
+
+def _target(axes: Axes) -> None:
+    axes.add_patch(Circle((0, 0), GAP_GUARD, fill=False, edgecolor="#666666", linestyle="--"))
+    cone = [(0, 0), (-GAP_GUARD, -GAP_GUARD * LOS_SLOPE), (-GAP_GUARD, GAP_GUARD * LOS_SLOPE)]
+    axes.add_patch(Polygon(cone, color="#F0E442", alpha=0.5))
+    axes.plot(0.0, 0.0, marker="s", color="#333333", markersize=3)

@@ -1,0 +1,1 @@
+"""The safe-region process: the exact region of starts between its proved polygons, at once."""

@@ -1,0 +1,80 @@
+"""Run safe-region: the atlas of the operating point, cut to the corridor shown."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from safestart.certificates.question import Question
+from safestart.corridor import corridor_of
+from safestart.errors import invalid
+from safestart.processes.base import ProcessOutput
+from safestart.processes.go_no_go.atlases import atlas_for
+from safestart.processes.safe_region.spec import SafeRegionInputs
+from safestart.progress import Context
+from safestart.scenario import Floats
+
+_DT_S = 2.0
+
+
+def run(inputs: SafeRegionInputs, context: Context) -> ProcessOutput:
+    """Find or build the atlas and clip its two polygons."""
+    scenario = inputs.scenario()
+    shape = scenario.corridor
+    if inputs.y_max_m <= shape.hold_radius:
+        raise invalid("y_max_m", f"more than corridor.r_h_m, {shape.hold_radius:g}", inputs.y_max_m)
+    question = Question(scenario, _DT_S, round(inputs.horizon_s / _DT_S))
+    atlas = atlas_for(question, inputs.y_max_m, context.shelf, make=True)
+    assert atlas is not None  # made where there was none
+    corridor = corridor_of(shape)
+    half = shape.x0 + shape.c_x * (inputs.y_max_m - shape.hold_radius)
+    box = np.array(
+        [
+            [-half, shape.hold_radius],
+            [half, shape.hold_radius],
+            [half, inputs.y_max_m],
+            [-half, inputs.y_max_m],
+        ]
+    )
+    outer = box
+    for normal, offset in zip(corridor.normals, corridor.offsets, strict=True):
+        outer = clip(outer, -normal, float(offset))
+    for slope, level in zip(atlas.slopes, atlas.levels, strict=True):
+        outer = clip(outer, slope, float(level))
+    inner = np.array([witness.start for witness in atlas.rim]).reshape(-1, 2)
+    inner = clip(inner, np.array([0.0, -1.0]), inputs.y_max_m) if len(inner) >= 3 else np.empty((0, 2))
+    context.step(1, 1)
+    return ProcessOutput(
+        {
+            "inner_polygon_m": inner.tolist(),
+            "outer_polygon_m": outer.tolist(),
+            "inner_area_m2": area(inner),
+            "outer_area_m2": area(outer),
+            "deepest_start_m": atlas.deepest.start.tolist(),
+            "deepest_margin_m": atlas.deepest.margin,
+            "message": atlas.message,
+        }
+    )
+
+
+def clip(polygon: Floats, slope: Floats, level: float) -> Floats:
+    """The part of a convex polygon (K, 2) where slope . p + level >= 0."""
+    if len(polygon) == 0:
+        return polygon
+    value = polygon @ slope + level
+    kept: list[Floats] = []
+    for here, there, a, b in zip(
+        polygon, np.roll(polygon, -1, axis=0), value, np.roll(value, -1), strict=True
+    ):
+        if a >= 0.0:
+            kept.append(here)
+        if a * b < 0.0:
+            kept.append(here + (there - here) * (a / (a - b)))
+    return np.array(kept).reshape(-1, 2)
+
+
+def area(polygon: Floats) -> float:
+    """Area of a polygon (K, 2) counter-clockwise; 0 with fewer than three corners."""
+    if len(polygon) < 3:
+        return 0.0
+    x, y = polygon.T
+    return 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))

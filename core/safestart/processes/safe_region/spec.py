@@ -1,0 +1,48 @@
+"""safe-region: where may a chaser at rest start? The exact region between two proved polygons, at once."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from safestart.processes.base import ProcessSpec, WireModel
+from safestart.processes.wire import ScenarioInput
+
+
+class SafeRegionInputs(ScenarioInput):
+    """One operating point, how long to stay, and where the picture ends."""
+
+    horizon_s: float = Field(
+        60.0, ge=2, le=600, multiple_of=2, description="How long to stay in the corridor, s."
+    )
+    y_max_m: float = Field(150.0, gt=0, le=5000, description="Where the corridor is cut, m.")
+
+
+class SafeRegionOutputs(WireModel):
+    """Corners (x, y) in the body frame, m, counter-clockwise; empty where nothing is left."""
+
+    inner_polygon_m: list[list[float]] = Field(description="Every start inside is proved GO.")
+    outer_polygon_m: list[list[float]] = Field(
+        description="Every start of the corridor outside is proved NO_GO."
+    )
+    inner_area_m2: float
+    outer_area_m2: float
+    deepest_start_m: list[float] = Field(description="Start with the largest margin.")
+    deepest_margin_m: float
+    message: str = Field(description="Why the polygons are farther apart than usual; else empty.")
+
+
+SPEC = ProcessSpec(
+    id="safe-region",
+    title="Exact safe-start region",
+    description=(
+        "Outline of the starts at rest in LVLH from which some thrust history stays in the rotating corridor at all "
+        "times: inside the inner polygon proved GO, outside the outer one proved NO_GO. The first answer of an "
+        "operating point takes some tenths of a second, later ones come from the cache. Process atlas gives the proofs."
+    ),
+    inputs=SafeRegionInputs,
+    outputs=SafeRegionOutputs,
+    run="safestart.processes.safe_region.run:run",
+    light=True,
+    keywords=("exact", "safe-start region"),
+    example={"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "horizon_s": 60, "y_max_m": 150},
+)

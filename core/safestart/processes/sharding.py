@@ -1,0 +1,93 @@
+"""A process cut into shards: pure parts that run anywhere in any order, merged in their own order.
+
+The parts depend on the inputs alone, never on how many workers there are, and are merged by index: the result is the
+same for one worker or many, and after a worker was killed. Whoever runs the shards may keep what each gave and
+skip those when the job is resumed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from hashlib import sha256
+from importlib import import_module
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any
+
+from safestart.comparable import canonical
+from safestart.progress import Context
+
+if TYPE_CHECKING:
+    from safestart.processes.base import ProcessOutput, WireModel
+
+MAX_SHARDS = 10_000
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """What one shard gave: a small JSON-able document, and bytes that only the merge reads."""
+
+    document: dict[str, Any]
+    data: bytes = b""
+
+
+@dataclass(frozen=True, slots=True)
+class Sharding:
+    """Four pure functions, each named as ``module:function``.
+
+    ``split`` (inputs) -> parts, JSON-able dictionaries; light to import. ``shard`` (part, context) -> :class:`Part`.
+    ``merge`` (inputs, parts in order, context) -> ``ProcessOutput``. ``summary`` (inputs, documents of the shards that
+    are finished) -> document of what is known so far; light to import, the service answers with it.
+    """
+
+    split: str
+    shard: str
+    merge: str
+    summary: str
+
+    def parts(self, inputs: WireModel) -> list[dict[str, Any]]:
+        """The parts of a job, 1 to ``MAX_SHARDS``."""
+        parts: list[dict[str, Any]] = load(self.split)(inputs)
+        if not 1 <= len(parts) <= MAX_SHARDS:
+            raise ValueError(f"split: required 1 to {MAX_SHARDS} parts, received {len(parts)}")
+        return parts
+
+    def run_part(self, part: dict[str, Any], context: Context) -> Part:
+        """Run one shard."""
+        done: Part = load(self.shard)(part, context)
+        return done
+
+    def merged(self, inputs: WireModel, parts: Sequence[Part], context: Context) -> ProcessOutput:
+        """The result of a job from all of its parts."""
+        output: ProcessOutput = load(self.merge)(inputs, parts, context)
+        return output
+
+    def so_far(self, inputs: WireModel, documents: Iterable[dict[str, Any]]) -> dict[str, Any]:
+        """What the finished shards say already."""
+        document: dict[str, Any] = load(self.summary)(inputs, documents)
+        return document
+
+    def run(self, inputs: WireModel, context: Context) -> ProcessOutput:
+        """Every shard in turn, here, then the merge."""
+        parts = self.parts(inputs)
+        count = len(parts)
+        done = []
+        for index, part in enumerate(parts):
+            label = f"shard {index + 1} of {count}"
+            context.step(index, count + 1, label)
+            done.append(self.run_part(part, context.part(index, 1.0, count + 1, label)))
+        context.step(count, count + 1, "merging")
+        return self.merged(inputs, done, context.part(count, 1.0, count + 1, "merging"))
+
+
+def content(process_id: str, process_version: str, part: dict[str, Any]) -> str:
+    """SHA-256 of what a shard's result depends on: process, versions and part."""
+    text = canonical([process_id, process_version, version("safestart"), part])
+    return sha256(text.encode()).hexdigest()
+
+
+def load(target: str) -> Callable[..., Any]:
+    """Import ``module:function``."""
+    module, name = target.split(":")
+    function: Callable[..., Any] = getattr(import_module(module), name)
+    return function

@@ -1,0 +1,1 @@
+"""The sweep process: certificates against flown controllers over many starts."""

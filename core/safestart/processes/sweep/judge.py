@@ -1,0 +1,50 @@
+"""Certificates of the starts of one scenario."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from safestart.certificates.answer import GUARD, Verdict
+from safestart.certificates.closed_form import certify
+from safestart.certificates.exact import decide
+from safestart.certificates.question import Question
+from safestart.certificates.survey import build
+from safestart.processes.sweep.cases import Cases
+from safestart.processes.sweep.spec import DT_S
+from safestart.scenario import Floats
+
+# From here on an atlas, which costs as much as some hundred answers, is the cheaper way to the same verdicts.
+WORTH_AN_ATLAS = 400
+
+GO, NO_GO, UNDECIDED, UNASKED = 1, 0, -1, -2
+Verdicts = np.ndarray[tuple[int], np.dtype[np.int8]]
+
+
+def closed_form(cases: Cases) -> Verdicts:
+    """GO or NO_GO."""
+    return certify(cases.scenario, cases.points).safe.astype(np.int8)
+
+
+def exact(cases: Cases, steps: int, most: int) -> Verdicts:
+    """Verdict for the first ``most`` starts; the others are UNASKED. What an atlas leaves open is solved singly."""
+    question = Question(cases.scenario, DT_S, steps)
+    out: Verdicts = np.full(len(cases.points), UNASKED, dtype=np.int8)
+    out[:most] = UNDECIDED
+    points = cases.points[:most]
+    if len(points) >= WORTH_AN_ATLAS:
+        atlas = build(question, max(float(points[:, 1].max()), cases.scenario.corridor.hold_radius + 1.0))
+        lower, upper = atlas.bounds(points)
+        out[:most][lower > GUARD] = GO
+        out[:most][upper < -GUARD] = NO_GO
+    for row in np.nonzero(out[:most] == UNDECIDED)[0]:
+        out[row] = of(decide(question, _at_rest(points[row]), verdict_only=True).verdict)
+    return out
+
+
+def of(verdict: Verdict) -> int:
+    """The verdict as a small integer."""
+    return {Verdict.GO: GO, Verdict.NO_GO: NO_GO, Verdict.UNDECIDED: UNDECIDED}[verdict]
+
+
+def _at_rest(point: Floats) -> Floats:
+    return np.array([point[0], point[1], 0.0, 0.0])

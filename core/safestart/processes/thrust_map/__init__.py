@@ -1,0 +1,1 @@
+"""The thrust-map process: what more thrust buys, at once."""

@@ -1,0 +1,58 @@
+"""thrust-map: certified share of the corridor over (tumble rate, thrust), and the thrust a stand-off asks for."""
+
+from __future__ import annotations
+
+from pydantic import Field, model_validator
+
+from safestart.processes.base import ProcessSpec, WireModel
+from safestart.processes.coverage.spec import Rates, Thrusts
+from safestart.processes.wire import CorridorInput
+from safestart.scenario import MAX_MEAN_MOTION, Rest
+
+
+class ThrustMapInputs(WireModel):
+    """Tumble rates, thrust levels, and the distance at which the approach is to start."""
+
+    omega_t_deg_s: Rates = Field([0.5 * k for k in range(1, 21)], description="Tumble rates, deg/s.")
+    a_max_m_s2: Thrusts = Field(
+        [0.01, 0.02, 0.03, 0.05, 0.07, 0.1, 0.15, 0.2, 0.3, 0.5],
+        description="Thrust accelerations, m/s^2.",
+    )
+    stand_off_m: float = Field(40.0, gt=0, le=5000, description="Start on the corridor's axis, m.")
+    y_max_m: float = Field(150.0, gt=0, le=5000, description="Where the corridor is cut, m.")
+    rest: Rest = Field(Rest.LVLH, description="Frame in which the starts are at rest.")
+    mean_motion_rad_s: float = Field(1.1e-3, ge=0, le=MAX_MEAN_MOTION, description="Mean motion, rad/s.")
+    corridor: CorridorInput = Field(default_factory=CorridorInput)
+
+    @model_validator(mode="after")
+    def _inside(self) -> ThrustMapInputs:
+        if self.y_max_m <= self.corridor.r_h_m:
+            raise ValueError("y_max_m: more than corridor.r_h_m")
+        return self
+
+
+class ThrustMapOutputs(WireModel):
+    """``safe_percent[rate][thrust]``; ``required_a_max_m_s2[rate]``."""
+
+    omega_t_deg_s: list[float]
+    a_max_m_s2: list[float]
+    safe_percent: list[list[float]] = Field(description="Certified share of the corridor, percent.")
+    required_a_max_m_s2: list[float | None] = Field(
+        description="Smallest thrust for which the start (0, stand_off_m) is certified; null: none up to 10 m/s^2."
+    )
+
+
+SPEC = ProcessSpec(
+    id="thrust-map",
+    title="What more thrust buys",
+    description=(
+        "Certified share of the corridor for each pair of tumble rate and thrust, and for each tumble rate the "
+        "smallest thrust that certifies a start on the corridor's axis at the wanted stand-off. Closed form."
+    ),
+    inputs=ThrustMapInputs,
+    outputs=ThrustMapOutputs,
+    run="safestart.processes.thrust_map.run:run",
+    light=True,
+    keywords=("certificate", "trade study"),
+    example={"omega_t_deg_s": [1, 3, 5], "a_max_m_s2": [0.05, 0.1, 0.2], "stand_off_m": 40},
+)

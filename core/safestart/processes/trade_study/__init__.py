@@ -1,0 +1,1 @@
+"""The trade-study process: what tumble rate and thrust allow."""

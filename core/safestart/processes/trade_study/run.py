@@ -1,0 +1,70 @@
+"""One operating point of a trade study, and the maps of all."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from safestart.certificates.closed_form import certify
+from safestart.certificates.question import Question
+from safestart.certificates.survey import build
+from safestart.corridor import corridor_of
+from safestart.guidance.flight import fly
+from safestart.guidance.gains import preset
+from safestart.guidance.plan import flight_plan
+from safestart.guidance.trajectory import start_states
+from safestart.guidance.truth import CONTINUOUS, Truth
+from safestart.metrics import ratio
+from safestart.processes.base import ProcessOutput
+from safestart.processes.sharding import Part
+from safestart.processes.sweep.spec import DT_S
+from safestart.processes.trade_study.plots import heat_maps
+from safestart.processes.trade_study.spec import TradeStudyInputs
+from safestart.processes.trade_study.split import area, summary
+from safestart.progress import Context
+from safestart.scenario import Chaser, Rest, Scenario, Target
+
+
+def shard(part: dict[str, Any], context: Context) -> Part:
+    """One operating point."""
+    inputs = TradeStudyInputs.model_validate(part["inputs"])
+    target = Target(math.radians(part["omega"]), inputs.mean_motion_rad_s)
+    shape, grid = inputs.corridor.shape(), inputs.grid.grid()
+    scenario = Scenario(target, Chaser(part["a_max"]), shape)
+    steps = round(inputs.horizon_s / DT_S)
+    points = grid.points(shape)
+    points = points[corridor_of(shape).contains(points)]
+    context.step(0, 2, "flights")
+    flights = fly(
+        flight_plan(scenario, preset(inputs.preset), DT_S, steps),
+        start_states(scenario, points, Rest.LVLH),
+        Truth(CONTINUOUS),
+    )
+    certified = certify(scenario, points).safe
+    context.step(1, 2, "atlas")
+    atlas = build(Question(scenario, DT_S, steps), inputs.grid.y_max_m)
+    impulse = flights.delta_v[flights.safe]
+    return Part(
+        {
+            "omega_t_deg_s": part["omega"],
+            "a_max_m_s2": part["a_max"],
+            "certified_fraction": float(certified.mean()),
+            "exact_inner_m2": float(atlas.inner_area),
+            "exact_outer_m2": float(atlas.outer_area),
+            "exact_fraction": None if atlas.message else float(atlas.inner_area) / area(inputs),
+            "flown_fraction": float(flights.safe.mean()),
+            "certified_flown": ratio(int((certified & flights.safe).sum()), int(certified.sum())),
+            "mean_delta_v_m_s": float(np.mean(impulse)) if len(impulse) else None,
+            "message": atlas.message,
+        }
+    )
+
+
+def merge(inputs: TradeStudyInputs, parts: Sequence[Part], context: Context) -> ProcessOutput:
+    """All points and their heat maps."""
+    document = summary(inputs, [part.document for part in parts])
+    context.step(0, 1, "picture")
+    return ProcessOutput(document, (heat_maps(inputs, document["points"]),))

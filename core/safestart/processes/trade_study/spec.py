@@ -1,0 +1,96 @@
+"""trade-study: safe fraction, exact area, closed-loop success and impulse over tumble rate and thrust."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field, field_validator
+
+from safestart.processes.base import ProcessSpec, WireModel
+from safestart.processes.sharding import Sharding
+from safestart.processes.sweep.spec import DT_S, Rates, Thrusts
+from safestart.processes.wire import CorridorInput, GridInput, Seed
+from safestart.scenario import MAX_MEAN_MOTION
+
+
+class TradeStudyInputs(WireModel):
+    """Every pair of tumble rate and thrust is one operating point."""
+
+    omega_t_deg_s: Rates = Field([1.0, 2.0, 3.0, 4.0, 5.0], description="Tumble rates, deg/s.")
+    a_max_m_s2: Thrusts = Field([0.02, 0.05, 0.10, 0.15, 0.20], description="Thrust accelerations, m/s^2.")
+    grid: GridInput = Field(default_factory=GridInput)
+    horizon_s: float = Field(60.0, gt=0, le=600, description="Flight time, s; a multiple of 2 s.")
+    preset: Literal["tuned", "paper"] = Field("tuned", description="Gains of the filter.")
+    mean_motion_rad_s: float = Field(1.1e-3, ge=0, le=MAX_MEAN_MOTION, description="Mean motion, rad/s.")
+    corridor: CorridorInput = Field(default_factory=CorridorInput)
+    seed: Seed = 0
+
+    @field_validator("omega_t_deg_s", "a_max_m_s2")
+    @classmethod
+    def _ordered(cls, value: list[float]) -> list[float]:
+        if len(set(value)) != len(value):
+            raise ValueError("each value at most once")
+        return sorted(value)
+
+    @field_validator("horizon_s")
+    @classmethod
+    def _whole_steps(cls, value: float) -> float:
+        if abs(value / DT_S - round(value / DT_S)) > 1e-9:
+            raise ValueError(f"a multiple of {DT_S:g} s")
+        return value
+
+    @field_validator("grid")
+    @classmethod
+    def _affordable(cls, value: GridInput) -> GridInput:
+        if value.nx * value.ny > 40_401:
+            raise ValueError("nx * ny at most 40401 (201 x 201)")
+        return value
+
+
+class TradePoint(WireModel):
+    """One operating point; fractions are of the corridor's grid points."""
+
+    omega_t_deg_s: float
+    a_max_m_s2: float
+    certified_fraction: float = Field(description="Closed form.")
+    exact_inner_m2: float = Field(description="Area proved GO: some thrust history stays for horizon_s.")
+    exact_outer_m2: float = Field(description="Area outside of which NO_GO is proved.")
+    exact_fraction: float | None = Field(
+        description="Proved GO share of the corridor's area; null where the atlas stopped early."
+    )
+    flown_fraction: float = Field(description="Flown by the filter without violation, checked at all times.")
+    certified_flown: float | None = Field(
+        description="Share of the certified points that were flown: precision."
+    )
+    mean_delta_v_m_s: float | None = Field(description="Mean impulse of the flights without violation.")
+    message: str
+
+
+class TradeStudyOutputs(WireModel):
+    """Points by thrust, then tumble rate."""
+
+    corridor_points: int
+    corridor_area_m2: float
+    points: list[TradePoint]
+
+
+_HERE = "safestart.processes.trade_study"
+
+SPEC = ProcessSpec(
+    id="trade-study",
+    title="Trade study over tumble rate and thrust",
+    description=(
+        "For every pair of tumble rate and thrust: certified share of the corridor, area proved by the exact answer, "
+        "share flown by the filter, impulse. Starts at rest in LVLH on a grid. Heat maps; a shard per operating point."
+    ),
+    inputs=TradeStudyInputs,
+    outputs=TradeStudyOutputs,
+    sharding=Sharding(
+        split=f"{_HERE}.split:split",
+        shard=f"{_HERE}.run:shard",
+        merge=f"{_HERE}.run:merge",
+        summary=f"{_HERE}.split:summary",
+    ),
+    keywords=("trade study", "closed loop", "coverage"),
+    example={"omega_t_deg_s": [1, 3, 5], "a_max_m_s2": [0.05, 0.1], "grid": {"nx": 21, "ny": 21}},
+)
