@@ -8,19 +8,22 @@ from __future__ import annotations
 
 from typing import Any
 
-from sqlalchemy import func, select, update
+from sqlalchemy import ColumnElement, Select, delete, func, select, update
 from sqlalchemy.orm import Session
 
 from safestart.artifact import Artifact
-from safestart.errors import LeaseLost
 from safestart.store.database import Database
 from safestart.store.dialect import after
 from safestart.store.events import add_event, add_status
-from safestart.store.models import JobRow
+from safestart.store.holding import change, try_change
+from safestart.store.lease import expired
+from safestart.store.models import JobRow, ShardRow
+from safestart.store.poison import TASK_PROCESS, WORKER, add_lost, poison
 from safestart.store.records import Claim, JobStatus
+from safestart.store.tally import Tally, count
 from safestart.store.writing import add_result
 
-_FREE: dict[str, Any] = {"owner": None, "lease_expires_at": None, "eta_s": None}
+_FREE: dict[str, Any] = {"owner": None, "lease_expires_at": None, "lease_s": None, "eta_s": None}
 
 
 class Claims:
@@ -30,7 +33,7 @@ class Claims:
         self._database = database
 
     def claim(self, owner: str, lease_s: float, max_attempts: int = 3) -> Claim | None:
-        """Take the next job, or None: highest priority first, then oldest.
+        """Take the next job, or None: highest priority first, then in turn, then oldest.
 
         A running job whose lease ran out is taken over. One that has used up its attempts ends failed, and
         one whose dismissal was asked for ends dismissed, and the next is tried.
@@ -44,8 +47,11 @@ class Claims:
                 if row.cancel_requested:
                     _end_unheld(session, row, JobStatus.DISMISSED, message="dismissed")
                 elif row.attempts >= max_attempts:
-                    problem = _poison(row.attempts, max_attempts)
-                    _end_unheld(session, row, JobStatus.FAILED, message=problem["detail"], problem=problem)
+                    problem = poison(session, row.id, max_attempts)
+                    if _end_unheld(
+                        session, row, JobStatus.FAILED, message=problem["detail"], problem=problem
+                    ):
+                        count(session, Tally.POISONED)
                 elif (claim := _take(session, row, owner, lease_s)) is not None:
                     return claim
         return None
@@ -53,22 +59,47 @@ class Claims:
     def renew(self, claim: Claim, lease_s: float) -> bool:
         """Extend the lease. True: keep going; False: dismissal was asked for. Raises ``LeaseLost``."""
         with self._database.session(write=True) as session:
-            _change(session, claim, lease_expires_at=after(lease_s))
+            change(session, claim, lease_expires_at=after(lease_s), lease_s=lease_s)
             asked = session.scalar(select(JobRow.cancel_requested).where(JobRow.id == claim.job_id))
             return not asked
 
     def progress(self, claim: Claim, percent: float, message: str, eta_s: float | None) -> None:
         """Write progress (0..100), message and estimated seconds left, and append the event."""
         with self._database.session(write=True) as session:
-            _change(session, claim, progress=percent, message=message, eta_s=eta_s)
+            change(session, claim, progress=percent, message=message, eta_s=eta_s)
             data = {"progress": percent, "message": message, "eta_s": eta_s}
             add_event(session, claim.job_id, "progress", data)
 
     def log(self, claim: Claim, message: str) -> None:
         """Append a log event."""
         with self._database.session(write=True) as session:
-            _change(session, claim)
+            change(session, claim)
             add_event(session, claim.job_id, "log", {"message": message})
+
+    def restarted(self, claim: Claim, max_attempts: int) -> bool:
+        """Count a start after the death of the job's task process; False: it has used up its attempts.
+
+        Its progress begins again.
+        """
+        with self._database.session(write=True) as session:
+            change(session, claim, progress=0.0, eta_s=None)
+            attempts = session.scalar(select(JobRow.attempts).where(JobRow.id == claim.job_id)) or 0
+            left = attempts < max_attempts
+            if left:
+                change(session, claim, attempts=attempts + 1, message=_starting(attempts + 1))
+                add_lost(
+                    session, claim.job_id, TASK_PROCESS, f"its task process died; {_starting(attempts + 1)}"
+                )
+            count(session, Tally.TASK_DEATHS)
+            return left
+
+    def poisoned(self, claim: Claim, max_attempts: int) -> None:
+        """End the job as failed: its task processes died, or its workers were lost, too often."""
+        with self._database.session(write=True) as session:
+            add_lost(session, claim.job_id, TASK_PROCESS, "its task process died; no attempt is left")
+            problem = poison(session, claim.job_id, max_attempts)
+            if _end(session, claim, JobStatus.FAILED, message=problem["detail"], problem=problem):
+                count(session, Tally.POISONED)
 
     def succeed(
         self,
@@ -85,6 +116,7 @@ class Claims:
             values = {"progress": 100.0, "message": "done", "versions": versions}
             if _end(session, claim, JobStatus.SUCCESSFUL, **values):
                 add_result(session, claim.job_id, document, artifacts)
+                session.execute(delete(ShardRow).where(ShardRow.job_id == claim.job_id))
 
     def fail(self, claim: Claim, problem: dict[str, Any]) -> None:
         """End the job as failed with a problem document (dismissed, when that was asked for)."""
@@ -95,7 +127,7 @@ class Claims:
     def dismissed(self, claim: Claim) -> None:
         """End the job as dismissed: its computation has stopped."""
         with self._database.session(write=True) as session:
-            _change(session, claim, cancel_requested=True)
+            change(session, claim, cancel_requested=True)
             _end(session, claim, JobStatus.DISMISSED)
 
     def release(self, claim: Claim, reason: str) -> None:
@@ -109,28 +141,34 @@ class Claims:
                 "started_at": None,
                 **_FREE,
             }
-            if _try_change(session, claim, JobRow.cancel_requested.is_(False), **values):
+            if try_change(session, claim, JobRow.cancel_requested.is_(False), **values):
                 add_status(session, claim.job_id, JobStatus.ACCEPTED, message=reason)
             else:
                 _end(session, claim, JobStatus.DISMISSED)
 
 
+def _first(condition: ColumnElement[bool]) -> Select[JobRow]:
+    return (
+        select(JobRow)
+        .where(condition)
+        .order_by(JobRow.priority.desc(), JobRow.turn, JobRow.seq)
+        .limit(1)
+        .with_for_update(skip_locked=True)  # PostgreSQL: pass over what another worker is taking
+        .execution_options(populate_existing=True)
+    )
+
+
+_WAITS = JobRow.status == JobStatus.ACCEPTED.value
+# The highest priority apart: what is left is then read off the index, in its order. Two queries, as a union could not
+# use the index; made once, as making them takes longer than running them.
+_HIGHEST = select(func.max(JobRow.priority)).where(_WAITS).scalar_subquery()
+_CANDIDATES = (_first(_WAITS & (JobRow.priority == _HIGHEST)), _first(expired()))
+
+
 def _next(session: Session) -> JobRow | None:
     """The job to serve next: the first that waits or whose lease ran out, whichever ranks higher."""
-    waits = JobRow.status == JobStatus.ACCEPTED.value
-    expired = (JobRow.status == JobStatus.RUNNING.value) & (JobRow.lease_expires_at < after())
-    found: list[JobRow] = []
-    for condition in (waits, expired):  # two queries: each can use the queue's index, their union cannot
-        query = (
-            select(JobRow)
-            .where(condition)
-            .order_by(JobRow.priority.desc(), JobRow.seq)
-            .limit(1)
-            .with_for_update(skip_locked=True)  # PostgreSQL: pass over what another worker is taking
-            .execution_options(populate_existing=True)
-        )
-        found += session.scalars(query).all()
-    return min(found, key=lambda row: (-row.priority, row.seq), default=None)
+    found = [row for query in _CANDIDATES for row in session.scalars(query)]
+    return min(found, key=lambda row: (-row.priority, row.turn, row.seq), default=None)
 
 
 def _take(session: Session, row: JobRow, owner: str, lease_s: float) -> Claim | None:
@@ -143,20 +181,34 @@ def _take(session: Session, row: JobRow, owner: str, lease_s: float) -> Claim | 
         "attempts": attempt,
         "progress": 0.0,
         "eta_s": None,
-        "message": "starting" if attempt == 1 else f"starting, attempt {attempt}",
+        "message": _starting(attempt),
         "lease_expires_at": after(lease_s),
+        "lease_s": lease_s,
         "started_at": func.coalesce(JobRow.started_at, after()),
     }
+    lost_by = row.owner
     if not _if_as_seen(session, row, values):
         return None
+    if lost_by is not None:
+        add_lost(
+            session, row.id, WORKER, f"worker {lost_by} was lost: its lease ran out; {_starting(attempt)}"
+        )
     add_status(session, row.id, JobStatus.RUNNING, attempt=attempt)
+    if lost_by is not None:
+        count(session, Tally.LEASE_LOSSES)
     return Claim(row.id, owner, token, row.process_id, row.inputs, attempt, row.timeout_s)
 
 
-def _end_unheld(session: Session, row: JobRow, status: JobStatus, **values: Any) -> None:
+def _starting(attempt: int) -> str:
+    return "starting" if attempt == 1 else f"starting, attempt {attempt}"
+
+
+def _end_unheld(session: Session, row: JobRow, status: JobStatus, **values: Any) -> bool:
     ended = {"status": status.value, "token": row.token + 1, "finished_at": after(), **_FREE, **values}
-    if _if_as_seen(session, row, ended):
-        add_status(session, row.id, status, message=values["message"])
+    if not _if_as_seen(session, row, ended):
+        return False
+    add_status(session, row.id, status, message=values["message"])
+    return True
 
 
 def _if_as_seen(session: Session, row: JobRow, values: dict[str, Any]) -> bool:
@@ -169,54 +221,13 @@ def _if_as_seen(session: Session, row: JobRow, values: dict[str, Any]) -> bool:
     return bool(session.execute(query).rowcount)  # type: ignore[attr-defined]
 
 
-def _try_change(session: Session, claim: Claim, *conditions: Any, **values: Any) -> bool:
-    """Update the claimed job if the claim still holds (and ``conditions`` are met)."""
-    query = (
-        update(JobRow)
-        .where(
-            JobRow.id == claim.job_id,
-            JobRow.status == JobStatus.RUNNING.value,
-            JobRow.owner == claim.owner,
-            JobRow.token == claim.token,
-            *conditions,
-        )
-        .values(updated_at=after(), **values)
-        .execution_options(synchronize_session=False)
-    )
-    return bool(session.execute(query).rowcount)  # type: ignore[attr-defined]
-
-
-def _change(session: Session, claim: Claim, **values: Any) -> None:
-    """Update the claimed job; raises ``LeaseLost``."""
-    if not _try_change(session, claim, **values):
-        raise LeaseLost(
-            f"job {claim.job_id} is no longer held by {claim.owner}, claim {claim.token}; nothing written",
-            required="a claim that still holds",
-            received=claim.token,
-        )
-
-
 def _end(session: Session, claim: Claim, status: JobStatus, **values: Any) -> bool:
     """End the claimed job as ``status``; as dismissed when that was asked for, and then return False."""
     ended = {"finished_at": after(), **_FREE}
-    if _try_change(
-        session, claim, JobRow.cancel_requested.is_(False), status=status.value, **ended, **values
-    ):
+    if try_change(session, claim, JobRow.cancel_requested.is_(False), status=status.value, **ended, **values):
         more = {"message": values["message"]} if status is JobStatus.FAILED else {}
         add_status(session, claim.job_id, status, **more)
         return True
-    _change(session, claim, status=JobStatus.DISMISSED.value, message="dismissed", **ended)
+    change(session, claim, status=JobStatus.DISMISSED.value, message="dismissed", **ended)
     add_status(session, claim.job_id, JobStatus.DISMISSED)
     return False
-
-
-def _poison(attempts: int, most: int) -> dict[str, Any]:
-    return {
-        "type": "urn:safestart:problem:poison",
-        "title": "Too many attempts",
-        "status": 500,
-        "detail": (
-            f"the job was started {attempts} times and each time its worker was lost before it ended; "
-            f"at most {most} attempts are made"
-        ),
-    }

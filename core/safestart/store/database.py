@@ -5,19 +5,29 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
-from sqlalchemy import Engine, create_engine, text
+from sqlalchemy import Connection, Engine, create_engine, text
 from sqlalchemy.engine import URL, make_url
-from sqlalchemy.exc import ArgumentError, DBAPIError, SQLAlchemyError
+from sqlalchemy.exc import ArgumentError, DBAPIError, OperationalError, SQLAlchemyError
 from sqlalchemy.orm import Session
 
-from safestart.errors import InvalidInput, Unavailable
+from safestart.errors import Away, InvalidInput, Unavailable
 from safestart.store import schema
 from safestart.store.dialect import BUSY_TIMEOUT_S, prepare
 
 _REQUIRED = (
     "sqlite:///PATH of a file in an existing, writable directory, or postgresql://USER:PASSWORD@HOST/NAME"
 )
+
+
+# A server that is gone without a word is noticed; libpq waits for ever by itself.
+_POSTGRESQL = {
+    "connect_timeout": 10,
+    "tcp_user_timeout": 30_000,
+    "keepalives_idle": 10,
+    "keepalives_interval": 5,
+}
 
 
 class Database:
@@ -43,6 +53,21 @@ class Database:
             session.begin(),
         ):
             yield session
+
+    @property
+    def file(self) -> Path | None:
+        """The file of a SQLite database; None for another."""
+        sqlite = self._url.get_backend_name() == "sqlite"
+        return Path(str(self._url.database)) if sqlite else None
+
+    @contextmanager
+    def snapshot(self) -> Iterator[Connection]:
+        """A connection that sees one moment of the database for as long as it is open; for reading only."""
+        with self._translated(), self._engine.connect() as connection:
+            if connection.dialect.name == "postgresql":
+                connection = connection.execution_options(isolation_level="REPEATABLE READ")
+            with connection.begin():
+                yield connection
 
     def migrate(self) -> None:
         """Bring the schema to this version's; safe when several processes do it at once."""
@@ -71,12 +96,26 @@ class Database:
         reason = " ".join(reason.split())
         if self._url.password:
             reason = reason.replace(str(self._url.password), "***")
-        return Unavailable(
+        kind = Away if self._url.get_backend_name() == "postgresql" and _away(error) else Unavailable
+        return kind(
             f"the database {self.shown} did not do what was asked: {reason}; required: {_REQUIRED}",
             field="database_url",
             required=_REQUIRED,
             received=self.shown,
         )
+
+
+def _away(error: SQLAlchemyError) -> bool:
+    """A PostgreSQL server that cannot be reached, starts or stops; not one that refuses us."""
+    if not isinstance(error, OperationalError):
+        return False
+    state = getattr(error.orig, "sqlstate", None)
+    if state is not None:
+        return str(state)[:2] == "08" or str(state)[:3] in ("57P", "533")
+    said = str(error.orig)
+    return not any(
+        words in said for words in ("authentication failed", "does not exist", "no pg_hba.conf entry")
+    )
 
 
 def _parse(url: str) -> URL:
@@ -114,7 +153,7 @@ def _engine(url: URL) -> Engine:
             url,
             json_serializer=_dumps,
             pool_pre_ping=not sqlite,
-            connect_args={"timeout": BUSY_TIMEOUT_S} if sqlite else {},
+            connect_args={"timeout": BUSY_TIMEOUT_S} if sqlite else _POSTGRESQL,
         )
     except ModuleNotFoundError as error:
         raise Unavailable(

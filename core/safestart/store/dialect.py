@@ -18,6 +18,7 @@ from sqlalchemy.sql.functions import FunctionElement
 from sqlalchemy.types import Float, TypeDecorator
 
 BUSY_TIMEOUT_S = 30.0
+STOPPED_S = 10.0
 _SCHEMA_LOCK = 0x5AFE57A27
 # SQLite keeps times as text; this layout is what SQLAlchemy writes, so that text order is time order.
 _SQLITE_TIME = "'%Y-%m-%d %H:%M:%f000', 'now'"
@@ -53,15 +54,15 @@ class _After(FunctionElement[datetime]):
     name = "safestart_after"
 
 
-def after(seconds: float = 0.0) -> ColumnElement[datetime]:
+def after(seconds: float | ColumnElement[Any] = 0.0) -> ColumnElement[datetime]:
     """The database's clock, ``seconds`` from now (negative: ago)."""
-    return _After(literal(float(seconds), Float()))
+    return _After(literal(float(seconds), Float()) if isinstance(seconds, int | float) else seconds)
 
 
 @compiles(_After, "sqlite")
 def _after_sqlite(element: _After, compiler: Any, **kw: Any) -> str:
     seconds = compiler.process(element.clauses, **kw)
-    return f"strftime({_SQLITE_TIME}, {seconds} || ' seconds')"
+    return f"strftime({_SQLITE_TIME}, ({seconds}) || ' seconds')"
 
 
 @compiles(_After, "postgresql")
@@ -71,11 +72,38 @@ def _after_postgresql(element: _After, compiler: Any, **kw: Any) -> str:
     return f"(clock_timestamp() + make_interval(secs => {seconds}))"
 
 
+class _SecondsBetween(FunctionElement[float]):
+    """Second argument minus first, both times, in seconds."""
+
+    type = Float()
+    inherit_cache = True
+    name = "safestart_seconds_between"
+
+
+def seconds_between(start: Any, end: Any) -> ColumnElement[float]:
+    """Seconds from ``start`` to ``end``; NULL when either is. To the millisecond on SQLite."""
+    return _SecondsBetween(start, end)
+
+
+@compiles(_SecondsBetween, "sqlite")
+def _seconds_between_sqlite(element: _SecondsBetween, compiler: Any, **kw: Any) -> str:
+    start, end = (compiler.process(clause, **kw) for clause in element.clauses)
+    return f"((julianday({end}) - julianday({start})) * 86400.0)"
+
+
+@compiles(_SecondsBetween, "postgresql")
+def _seconds_between_postgresql(element: _SecondsBetween, compiler: Any, **kw: Any) -> str:
+    start, end = (compiler.process(clause, **kw) for clause in element.clauses)
+    return f"extract(epoch from ({end} - {start}))"
+
+
 def prepare(engine: Engine) -> None:
     """Install what a fresh connection and a beginning transaction need on this engine's dialect."""
     if engine.dialect.name == "sqlite":
         event.listen(engine, "connect", _on_sqlite_connect)
         event.listen(engine, "begin", _on_sqlite_begin)
+    else:
+        event.listen(engine, "connect", _on_postgresql_connect)
 
 
 def _on_sqlite_connect(connection: sqlite3.Connection, _record: Any) -> None:
@@ -95,6 +123,13 @@ def _on_sqlite_connect(connection: sqlite3.Connection, _record: Any) -> None:
                 raise
             time.sleep(0.02)
     cursor.close()
+
+
+def _on_postgresql_connect(connection: Any, _record: Any) -> None:
+    # A process that is stopped in the middle of a transaction would keep its rows locked, and others from taking over.
+    with connection.cursor() as cursor:
+        cursor.execute(f"SET idle_in_transaction_session_timeout = {int(STOPPED_S * 1000)}")
+    connection.commit()
 
 
 def _on_sqlite_begin(connection: Connection) -> None:

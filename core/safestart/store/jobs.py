@@ -4,24 +4,30 @@ from __future__ import annotations
 
 import builtins
 from base64 import urlsafe_b64decode, urlsafe_b64encode
-from collections.abc import Sequence
 from datetime import datetime
 
-from sqlalchemy import func, or_, select
+from sqlalchemy import func, select
+from sqlalchemy.orm import Session
 
 from safestart.errors import InvalidInput, invalid
 from safestart.store.claims import Claims
+from safestart.store.conditions import conditions
+from safestart.store.dialect import after
 from safestart.store.events import EventLog
+from safestart.store.filters import EVERY, JobFilter
 from safestart.store.models import JobRow
-from safestart.store.presence import Presence
-from safestart.store.records import Job, JobPage, JobStatus
+from safestart.store.presence import Presence, crew_of
+from safestart.store.queue import Queue, runs
+from safestart.store.records import Job, JobPage, JobStatus, Vitals
+from safestart.store.shards import Shards
 from safestart.store.submissions import Submissions, find
+from safestart.store.tally import tallies
 
 MAX_PAGE = 1000
 _CURSOR = "before:"
 
 
-class JobRepository(Submissions, Claims, EventLog, Presence):
+class JobRepository(Submissions, Claims, Shards, Queue, EventLog, Presence):
     """Everything there is to do with jobs; safe to share between threads."""
 
     def get(self, job_id: str) -> Job:
@@ -31,53 +37,48 @@ class JobRepository(Submissions, Claims, EventLog, Presence):
 
     def list(
         self,
+        wanted: JobFilter = EVERY,
         *,
-        statuses: Sequence[JobStatus] = (),
-        process_ids: Sequence[str] = (),
         limit: int = 50,
         cursor: str | None = None,
     ) -> JobPage:
-        """A page of jobs, newest first, of the given statuses and processes (none given: all).
+        """A page of the jobs that meet ``wanted``, newest first.
 
         Jobs submitted while a client pages never shift its pages. Raises ``InvalidInput`` on a cursor that
         did not come from here.
         """
         if not 1 <= limit <= MAX_PAGE:
             raise invalid("limit", f"an integer in [1, {MAX_PAGE}]", limit)
-        query = select(JobRow).order_by(JobRow.seq.desc()).limit(limit + 1)
+        query = select(JobRow).where(*conditions(wanted)).order_by(JobRow.seq.desc()).limit(limit + 1)
         if cursor is not None:
             query = query.where(JobRow.seq < _decode(cursor))
-        if statuses:
-            query = query.where(JobRow.status.in_([JobStatus(status).value for status in statuses]))
-        if process_ids:
-            query = query.where(JobRow.process_id.in_(process_ids))
         with self._database.session() as session:
             rows: builtins.list[JobRow] = builtins.list(session.scalars(query))
             more = len(rows) > limit
             rows = rows[:limit]
             return JobPage(tuple(row.record() for row in rows), _encode(rows[-1].seq) if more else None)
 
-    def position(self, job_id: str) -> int | None:
-        """Place in the queue, 1 = next; None unless the job waits. Raises ``NotFound``."""
+    def vitals(self) -> Vitals:
+        """What the metrics tell, in one look."""
         with self._database.session() as session:
-            row = find(session, job_id)
-            if row.status != JobStatus.ACCEPTED.value:
-                return None
-            ahead = select(func.count()).where(
-                JobRow.status == JobStatus.ACCEPTED.value,
-                or_(
-                    JobRow.priority > row.priority,
-                    (JobRow.priority == row.priority) & (JobRow.seq < row.seq),
-                ),
-            )
-            return 1 + (session.scalar(ahead) or 0)
+            oldest = session.execute(
+                select(JobRow.created_at, after().label("now"))
+                .where(JobRow.status == JobStatus.ACCEPTED.value)
+                .order_by(JobRow.seq)
+                .limit(1)
+            ).one_or_none()
+            waited = 0.0 if oldest is None else max((oldest.now - oldest.created_at).total_seconds(), 0.0)
+            return Vitals(counts(session), crew_of(session), waited, tallies(session), runs(session))
+
+    def tallies(self) -> dict[str, int]:
+        """Counters of rare events, by name (see ``tally``)."""
+        with self._database.session() as session:
+            return tallies(session)
 
     def counts(self) -> dict[str, int]:
         """Number of jobs by status; every status is there."""
-        query = select(JobRow.status, func.count()).group_by(JobRow.status)
         with self._database.session() as session:
-            found = {status: number for status, number in session.execute(query)}
-        return {status.value: found.get(status.value, 0) for status in JobStatus}
+            return counts(session)
 
     def waiting_since(self) -> datetime | None:
         """When the oldest waiting job was submitted; None when none waits."""
@@ -89,6 +90,13 @@ class JobRepository(Submissions, Claims, EventLog, Presence):
         )
         with self._database.session() as session:
             return session.scalar(query)
+
+
+def counts(session: Session) -> dict[str, int]:
+    """Number of jobs by status, in this transaction."""
+    query = select(JobRow.status, func.count()).group_by(JobRow.status)
+    found = {status: number for status, number in session.execute(query)}
+    return {status.value: found.get(status.value, 0) for status in JobStatus}
 
 
 def _encode(seq: int) -> str:

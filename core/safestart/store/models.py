@@ -5,11 +5,11 @@ from __future__ import annotations
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import JSON, ForeignKey, Index, LargeBinary, MetaData, String, Text
+from sqlalchemy import JSON, BigInteger, ForeignKey, Index, LargeBinary, MetaData, String, Text
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 
 from safestart.store.dialect import UtcTime
-from safestart.store.records import Event, Job, JobStatus
+from safestart.store.records import Event, Job, JobStatus, Shard
 
 
 class Base(DeclarativeBase):
@@ -31,7 +31,11 @@ class Base(DeclarativeBase):
 
 
 class JobRow(Base):
-    """One job. ``seq`` is the order of submission; ``token`` grows with every change of hands (fencing)."""
+    """One job.
+
+    ``seq`` is the order of submission; ``token`` grows with every change of hands (fencing); ``submitter`` is who
+    submitted it ("" where nobody is asked for a name) and ``turn`` its round among the submitters (see ``fairness``).
+    """
 
     __tablename__ = "jobs"
 
@@ -50,9 +54,12 @@ class JobRow(Base):
     attempts: Mapped[int] = mapped_column(default=0)
     cancel_requested: Mapped[bool] = mapped_column(default=False)
     timeout_s: Mapped[float]
+    submitter: Mapped[str] = mapped_column(String(64), default="", server_default="")
+    turn: Mapped[int] = mapped_column(default=0, server_default="0")
     owner: Mapped[str | None] = mapped_column(String(255))
     token: Mapped[int] = mapped_column(default=0)
     lease_expires_at: Mapped[datetime | None]
+    lease_s: Mapped[float | None]
     created_at: Mapped[datetime]
     started_at: Mapped[datetime | None]
     finished_at: Mapped[datetime | None]
@@ -62,7 +69,9 @@ class JobRow(Base):
 
     __table_args__ = (
         # The queue in the order it is served, and the few running rows.
-        Index("ix_jobs_queue", "status", "priority", "seq"),
+        Index("ix_jobs_queue", "status", "priority", "turn", "seq", "process_id"),
+        Index("ix_jobs_submitter", "submitter", "status", "priority", "turn"),
+        Index("ix_jobs_ended", "status", "finished_at"),
         {"sqlite_autoincrement": True},
     )
 
@@ -80,6 +89,8 @@ class JobRow(Base):
             attempts=self.attempts,
             cancel_requested=self.cancel_requested,
             timeout_s=self.timeout_s,
+            priority=self.priority,
+            submitter=self.submitter,
             owner=self.owner,
             lease_expires_at=self.lease_expires_at,
             created_at=self.created_at,
@@ -116,6 +127,23 @@ class ArtifactRow(Base):
     data: Mapped[bytes] = mapped_column(LargeBinary)
 
 
+class ShardRow(Base):
+    """A finished shard of a job that still runs: a worker that takes the job over does not do it again."""
+
+    __tablename__ = "shards"
+
+    job_id: Mapped[str] = mapped_column(ForeignKey("jobs.id"), primary_key=True)
+    number: Mapped[int] = mapped_column(primary_key=True)
+    content: Mapped[str] = mapped_column(String(64))
+    document: Mapped[dict[str, Any]]
+    data: Mapped[bytes] = mapped_column(LargeBinary)
+    created_at: Mapped[datetime]
+
+    def record(self) -> Shard:
+        """The frozen record of this row."""
+        return Shard(number=self.number, content=self.content, document=self.document, data=self.data)
+
+
 class EventRow(Base):
     """One thing that happened to a job.
 
@@ -147,3 +175,26 @@ class WorkerRow(Base):
     capacity: Mapped[int]
     busy: Mapped[int]
     heartbeat_at: Mapped[datetime]
+
+
+class CacheRow(Base):
+    """What was computed before, by content key: may be emptied at any time, nothing refers to it."""
+
+    __tablename__ = "cache"
+
+    seq: Mapped[int] = mapped_column(primary_key=True, autoincrement=True)
+    key: Mapped[str] = mapped_column(String(64), unique=True)
+    sha256: Mapped[str] = mapped_column(String(64))
+    size: Mapped[int]
+    data: Mapped[bytes] = mapped_column(LargeBinary)
+
+    __table_args__ = {"sqlite_autoincrement": True}  # noqa: RUF012 (SQLAlchemy reads it as declared)
+
+
+class TallyRow(Base):
+    """A counter of a rare event."""
+
+    __tablename__ = "tally"
+
+    name: Mapped[str] = mapped_column(String(64), primary_key=True)
+    number: Mapped[int] = mapped_column(BigInteger, default=0)

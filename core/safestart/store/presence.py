@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from sqlalchemy import delete, func, insert, select, update
 from sqlalchemy.exc import IntegrityError
+from sqlalchemy.orm import Session
 
 from safestart.store.database import Database
 from safestart.store.dialect import after
 from safestart.store.models import WorkerRow
+from safestart.store.records import Crew
 
 ALIVE_S = 15.0
 _FORGET_S = 86_400.0
@@ -40,6 +42,24 @@ class Presence:
 
     def workers_alive(self, within_s: float = ALIVE_S) -> int:
         """Number of workers heard of within the last ``within_s`` seconds."""
-        query = select(func.count()).where(WorkerRow.heartbeat_at >= after(-within_s))
+        return self.crew(within_s).workers
+
+    def owners_alive(self, within_s: float = ALIVE_S) -> tuple[str, ...]:
+        """Names of the workers heard of within the last ``within_s`` seconds."""
+        query = select(WorkerRow.owner).where(WorkerRow.heartbeat_at >= after(-within_s))
         with self._database.session() as session:
-            return session.scalar(query) or 0
+            return tuple(session.scalars(query))
+
+    def crew(self, within_s: float = ALIVE_S) -> Crew:
+        """The workers heard of within the last ``within_s`` seconds and the places they have."""
+        with self._database.session() as session:
+            return crew_of(session, within_s)
+
+
+def crew_of(session: Session, within_s: float = ALIVE_S) -> Crew:
+    """The living workers, in this transaction."""
+    query = select(func.count(), func.sum(WorkerRow.capacity), func.sum(WorkerRow.busy)).where(
+        WorkerRow.heartbeat_at >= after(-within_s)
+    )
+    workers, places, busy = session.execute(query).one()
+    return Crew(workers, int(places or 0), int(busy or 0))

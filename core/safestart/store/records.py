@@ -7,6 +7,8 @@ from datetime import datetime
 from enum import StrEnum
 from typing import Any
 
+from safestart.access import Role
+
 
 class JobStatus(StrEnum):
     """Statuses of OGC API - Processes 1.0."""
@@ -29,7 +31,8 @@ class Job:
 
     ``progress`` is 0..100; ``eta_s`` the estimated seconds left while it runs; ``problem`` a problem document
     (RFC 9457 members) when it failed; ``instant`` the answer given at submission; ``versions`` the package
-    versions, git revision and machine that produced the result.
+    versions, git revision and machine that produced the result; ``submitter`` who submitted it, "" where nobody
+    is asked for a name; ``attempts`` how often it was started and neither ended nor given back.
     """
 
     id: str
@@ -43,6 +46,8 @@ class Job:
     attempts: int
     cancel_requested: bool
     timeout_s: float
+    priority: int
+    submitter: str
     owner: str | None
     lease_expires_at: datetime | None
     created_at: datetime
@@ -64,6 +69,54 @@ class Claim:
     inputs: dict[str, Any]
     attempt: int
     timeout_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Shard:
+    """What a finished shard gave; ``content`` identifies what it depends on."""
+
+    number: int
+    content: str
+    document: dict[str, Any]
+    data: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class Wait:
+    """A waiting job: its place (1 = next), and the estimated seconds until it starts and until it ends."""
+
+    position: int
+    starts_in_s: float | None
+    ends_in_s: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Crew:
+    """The workers that live: how many, for how many jobs they have places, and how many of those are taken."""
+
+    workers: int
+    places: int
+    busy: int
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """How long a successful job waited for its first start, and took from there to its end."""
+
+    process_id: str
+    wait_s: float
+    run_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Vitals:
+    """Jobs by status, workers, age of the oldest waiting job, counters by name, the latest successful runs."""
+
+    jobs: dict[str, int]
+    crew: Crew
+    oldest_wait_s: float
+    tallies: dict[str, int]
+    runs: tuple[Run, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,3 +157,40 @@ class Event:
     at: datetime
     kind: str
     data: dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class ApiKey:
+    """An API key without its secret; ``usable``: neither revoked nor expired when it was read."""
+
+    id: str
+    name: str
+    role: Role
+    created_at: datetime
+    expires_at: datetime | None
+    revoked_at: datetime | None
+    last_used_at: datetime | None
+    usable: bool
+
+
+@dataclass(frozen=True, slots=True)
+class AuditEntry:
+    """Who did what: ``action`` to ``subject`` (the id of a job or a key); ``key_id`` None without a key."""
+
+    id: int
+    at: datetime
+    action: str
+    subject: str
+    key_id: str | None
+    actor: str
+    address: str | None
+    request_id: str | None
+    detail: dict[str, Any] | None
+
+
+@dataclass(frozen=True, slots=True)
+class AuditPage:
+    """One page of the audit log, newest first; ``next_before`` leads to the next (None on the last)."""
+
+    entries: tuple[AuditEntry, ...]
+    next_before: int | None

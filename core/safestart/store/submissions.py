@@ -10,11 +10,15 @@ from sqlalchemy import func, or_, select, update
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
+from safestart.access import Caller
 from safestart.comparable import canonical
 from safestart.errors import Conflict, IdempotencyMismatch, InvalidInput, NotFound, QueueFull
+from safestart.store.audit import add_audit
 from safestart.store.database import Database
 from safestart.store.dialect import after
 from safestart.store.events import add_event, add_status
+from safestart.store.fairness import next_turn
+from safestart.store.lease import expired
 from safestart.store.models import JobRow
 from safestart.store.records import Job, JobStatus
 
@@ -42,21 +46,25 @@ class Submissions:
         timeout_s: float,
         idempotency_key: str | None = None,
         priority: int = 0,
+        submitter: str = "",
         max_queued: int | None = None,
+        by: Caller | None = None,
     ) -> Job:
-        """Put a job in the queue.
+        """Put a job in the queue: higher ``priority`` first, among equals in fair turns by ``submitter``.
 
-        The same ``idempotency_key`` with the same process and inputs returns the first job; with others it
-        raises ``IdempotencyMismatch``. Raises ``QueueFull`` when ``max_queued`` jobs wait already, and
+        Who did it (``by``) goes into the audit log.
+        The same ``idempotency_key`` of the same submitter with the same process and inputs returns the first job;
+        with others it raises ``IdempotencyMismatch``. Raises ``QueueFull`` when ``max_queued`` jobs wait already, and
         ``InvalidInput`` when the inputs are not JSON.
         """
-        request = _request_hash(process_id, inputs)
+        request = request_hash(process_id, inputs)
         if idempotency_key is not None and not 1 <= len(idempotency_key) <= 255:
             raise InvalidInput(
                 f"idempotency key: required 1 to 255 characters, received {len(idempotency_key)}",
                 field="Idempotency-Key",
                 required="1 to 255 characters",
             )
+        idempotency_key = _own_key(submitter, idempotency_key)
         with self._database.session(write=True) as session:
             first = _by_key(session, idempotency_key)
             if first is not None:
@@ -68,6 +76,8 @@ class Submissions:
                 process_id=process_id,
                 status=JobStatus.ACCEPTED.value,
                 priority=priority,
+                submitter=submitter,
+                turn=next_turn(session, submitter, priority),
                 inputs=inputs,
                 instant=instant,
                 idempotency_key=idempotency_key,
@@ -86,17 +96,19 @@ class Submissions:
                     raise
                 return _same(first, request)
             add_status(session, row.id, JobStatus.ACCEPTED)
+            if by is not None:
+                add_audit(session, by, "submit", row.id, {"process": process_id})
             return find(session, row.id).record()
 
-    def dismiss(self, job_id: str) -> Job:
+    def dismiss(self, job_id: str, by: Caller | None = None) -> Job:
         """Dismiss a job: at once while it waits; a running one is asked to stop and its worker ends it.
 
-        A running job whose lease ran out has no worker, so it ends at once too. Dismissing twice returns the
-        job; one that ended otherwise raises ``Conflict``.
+        Who did it (``by``) goes into the audit log. A running job whose lease ran out has no worker, so it ends
+        at once too. Dismissing twice returns the job; one that ended otherwise raises ``Conflict``.
         """
         nobody_has_it = or_(
             JobRow.status == JobStatus.ACCEPTED.value,
-            (JobRow.status == JobStatus.RUNNING.value) & (JobRow.lease_expires_at < after()),
+            expired(),
         )
         end = (
             update(JobRow)
@@ -109,6 +121,7 @@ class Submissions:
                 eta_s=None,
                 owner=None,
                 lease_expires_at=None,
+                lease_s=None,
                 finished_at=after(),
                 updated_at=after(),
             )
@@ -125,8 +138,11 @@ class Submissions:
         with self._database.session(write=True) as session:
             if session.execute(end).rowcount:  # type: ignore[attr-defined]
                 add_status(session, job_id, JobStatus.DISMISSED)
-            elif session.execute(ask).rowcount:  # type: ignore[attr-defined]
+                changed = True
+            elif changed := bool(session.execute(ask).rowcount):  # type: ignore[attr-defined]
                 add_event(session, job_id, "log", {"message": "dismissal requested"})
+            if changed and by is not None:
+                add_audit(session, by, "dismiss", job_id)
             job = find(session, job_id).record()
         if job.status in (JobStatus.SUCCESSFUL, JobStatus.FAILED):
             raise Conflict(
@@ -138,12 +154,18 @@ class Submissions:
         return job
 
 
-def _request_hash(process_id: str, inputs: dict[str, Any]) -> str:
+def request_hash(process_id: str, inputs: dict[str, Any]) -> str:
+    """What a repeated request is known by; raises ``InvalidInput`` when the inputs are not JSON."""
     try:
         text = canonical([process_id, inputs])
     except (TypeError, ValueError) as error:
         raise InvalidInput(f"inputs: required a JSON object, received {error}", field="inputs") from None
     return sha256(text.encode()).hexdigest()
+
+
+def _own_key(submitter: str, key: str | None) -> str | None:
+    """The key as it is stored: what two submitters chose alike stays apart."""
+    return key if key is None or not submitter else sha256(f"{submitter} {key}".encode()).hexdigest()
 
 
 def _by_key(session: Session, key: str | None) -> JobRow | None:

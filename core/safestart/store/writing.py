@@ -9,6 +9,7 @@ from sqlalchemy.orm import Session
 
 from safestart.artifact import Artifact
 from safestart.comparable import digest
+from safestart.store.cache import shelve
 from safestart.store.dialect import after
 from safestart.store.models import ArtifactRow, ResultRow
 
@@ -16,7 +17,7 @@ from safestart.store.models import ArtifactRow, ResultRow
 def add_result(
     session: Session, job_id: str, document: dict[str, Any], artifacts: tuple[Artifact, ...]
 ) -> None:
-    """Insert the document with its hash, and each artifact with size and hash."""
+    """Insert the document with its hash, each artifact with size and hash; what has a content key is cached, too."""
     session.execute(
         insert(ResultRow).values(
             job_id=job_id,
@@ -37,3 +38,5 @@ def add_result(
                 data=item.data,
             )
         )
+        if item.key is not None:
+            shelve(session, item.key, item.data)

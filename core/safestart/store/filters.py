@@ -1,0 +1,30 @@
+"""Which jobs a list holds; free of SQLAlchemy, as the service asks with it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+
+from safestart.store.records import JobStatus
+
+
+@dataclass(frozen=True, slots=True)
+class JobFilter:
+    """Conditions that a job meets all of; what is empty or None asks nothing.
+
+    ``created_from`` and ``created_to`` are inclusive. A job's duration, s, runs from its start to its end, or to the
+    present while it runs; one that never started has none and meets no condition on it.
+    """
+
+    statuses: Sequence[JobStatus] = ()
+    process_ids: Sequence[str] = ()
+    submitter: str | None = None
+    created_from: datetime | None = None
+    created_to: datetime | None = None
+    least_s: float | None = None
+    most_s: float | None = None
+
+
+EVERY = JobFilter()
+"""All jobs."""

@@ -1,0 +1,113 @@
+"""The waiting jobs: place in the queue, and an estimate of when each starts and ends."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from statistics import fmean
+
+from sqlalchemy import ColumnElement, func, or_, select
+from sqlalchemy.orm import Session
+
+from safestart.store.database import Database
+from safestart.store.models import JobRow
+from safestart.store.presence import crew_of
+from safestart.store.records import JobStatus, Run, Wait
+from safestart.store.submissions import find
+
+# Run times are taken from this many jobs that ended last.
+RECENT = 200
+_WAITS = JobRow.status == JobStatus.ACCEPTED.value
+
+
+class Queue:
+    """Reading side of the queue."""
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    def position(self, job_id: str) -> int | None:
+        """Place in the queue, 1 = next; None unless the job waits. Raises ``NotFound``."""
+        return self.positions([self._known(job_id)]).get(job_id)
+
+    def positions(self, job_ids: Iterable[str]) -> dict[str, int]:
+        """Places of those of the given jobs that wait."""
+        wanted = list(job_ids)
+        if not wanted:
+            return {}
+        order = (JobRow.priority.desc(), JobRow.turn, JobRow.seq)
+        # Read off the queue's index alone; the ids are looked up for the few that are asked for.
+        queue = (
+            select(JobRow.seq, func.row_number().over(order_by=order).label("position")).where(_WAITS)
+        ).subquery()
+        query = select(JobRow.id, queue.c.position).join(queue, queue.c.seq == JobRow.seq)
+        with self._database.session() as session:
+            return {job: place for job, place in session.execute(query.where(JobRow.id.in_(wanted)))}
+
+    def wait(self, job_id: str) -> Wait | None:
+        """Place of a waiting job and the estimates for it; None unless it waits. Raises ``NotFound``.
+
+        The estimate shares the seconds of work ahead among the places of the living workers, at the mean run time of
+        each process's latest jobs. There is none before a first job has ended, and none without a worker.
+        """
+        with self._database.session() as session:
+            row = find(session, job_id)
+            if row.status != JobStatus.ACCEPTED.value:
+                return None
+            ahead = _by_process(session, _WAITS, _before(row))
+            position = 1 + sum(ahead.values())
+            crew, means = crew_of(session), _mean_run_s(session)
+            if not means or not crew.places:
+                return Wait(position, None, None)
+            other = fmean(means.values())
+            own = means.get(row.process_id, other)
+            if position <= crew.places - crew.busy:
+                return Wait(position, 0.0, own)
+            work = sum(number * means.get(process, other) for process, number in ahead.items())
+            running = select(JobRow.process_id, JobRow.eta_s).where(JobRow.status == JobStatus.RUNNING.value)
+            for process, eta_s in session.execute(running):
+                work += means.get(process, other) / 2 if eta_s is None else eta_s
+            starts = work / crew.places
+            return Wait(position, starts, starts + own)
+
+    def _known(self, job_id: str) -> str:
+        with self._database.session() as session:
+            return find(session, job_id).id
+
+
+def _before(row: JobRow) -> ColumnElement[bool]:
+    """What is served before ``row``."""
+    same_turn = (JobRow.turn == row.turn) & (JobRow.seq < row.seq)
+    same_priority = (JobRow.priority == row.priority) & or_(JobRow.turn < row.turn, same_turn)
+    return or_(JobRow.priority > row.priority, same_priority)
+
+
+def _by_process(session: Session, *conditions: ColumnElement[bool]) -> dict[str, int]:
+    query = select(JobRow.process_id, func.count()).where(*conditions).group_by(JobRow.process_id)
+    return {process: number for process, number in session.execute(query)}
+
+
+def runs(session: Session) -> tuple[Run, ...]:
+    """The successful jobs that ended last."""
+    query = (
+        select(JobRow.process_id, JobRow.created_at, JobRow.started_at, JobRow.finished_at)
+        .where(JobRow.status == JobStatus.SUCCESSFUL.value, JobRow.started_at.is_not(None))
+        .order_by(JobRow.finished_at.desc())
+        .limit(RECENT)
+    )
+    return tuple(
+        Run(
+            process,
+            max((started - created).total_seconds(), 0.0),
+            max((finished - started).total_seconds(), 0.0),
+        )
+        for process, created, started, finished in session.execute(query)
+        if started is not None and finished is not None
+    )
+
+
+def _mean_run_s(session: Session) -> dict[str, float]:
+    """Mean run time of the latest successful jobs, by process."""
+    times: dict[str, list[float]] = {}
+    for run in runs(session):
+        times.setdefault(run.process_id, []).append(run.run_s)
+    return {process: fmean(values) for process, values in times.items()}

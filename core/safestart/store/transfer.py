@@ -1,0 +1,147 @@
+"""Whole jobs in and out of the store, as bundles hold them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import insert, select
+from sqlalchemy.orm import Session
+
+from safestart.artifact import Artifact
+from safestart.bundle import Bundle
+from safestart.comparable import digest
+from safestart.errors import Conflict, InvalidInput, invalid
+from safestart.store.database import Database
+from safestart.store.models import ArtifactRow, EventRow, JobRow, ResultRow
+from safestart.store.records import JobStatus
+from safestart.store.submissions import find, request_hash
+from safestart.store.writing import add_result
+
+_TIMES = ("created_at", "started_at", "finished_at", "updated_at")
+_FACTS = (
+    *("id", "process_id", "status", "inputs", "instant", "attempts", "timeout_s", "priority"),
+    *("message", "problem", "versions"),
+)
+
+
+class Transfer:
+    """Read an ended job with everything that belongs to it; add one that came from elsewhere."""
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    def read(self, job_id: str) -> Bundle:
+        """Everything of an ended job; raises ``NotFound``, and ``Conflict`` while it has not ended.
+
+        Who submitted it and which worker ran it stay here.
+        """
+        with self._database.session() as session:
+            row = find(session, job_id)
+            if not JobStatus(row.status).ended:
+                raise Conflict(
+                    f"job {job_id} is {row.status}; required a job that has ended",
+                    field="jobID",
+                    required="a job that has ended",
+                    received=row.status,
+                )
+            job = {name: getattr(row, name) for name in _FACTS}
+            job |= {name: _iso(getattr(row, name)) for name in _TIMES}
+            stored = session.get(ResultRow, job_id)
+            events = session.scalars(select(EventRow).where(EventRow.job_id == job_id).order_by(EventRow.id))
+            files = session.scalars(
+                select(ArtifactRow).where(ArtifactRow.job_id == job_id).order_by(ArtifactRow.name)
+            )
+            return Bundle(
+                job,
+                None if stored is None else stored.document,
+                [{"at": event.at.isoformat(), "kind": event.kind, "data": event.data} for event in events],
+                tuple(Artifact(file.name, file.media_type, bytes(file.data)) for file in files),
+            )
+
+    def add(self, bundle: Bundle) -> bool:
+        """Add the job under its own id; False when it is here already with the same content.
+
+        Raises ``Conflict`` when another job or another result has its id, ``InvalidInput`` for facts that are none.
+        """
+        values = _values(bundle.job)
+        status = JobStatus(values["status"])
+        if (status is JobStatus.SUCCESSFUL) is (bundle.result is None):
+            raise _wrong(f"a {status.value} job {'without' if bundle.result is None else 'with'} a result")
+        with self._database.session(write=True) as session:
+            if session.scalar(select(JobRow).where(JobRow.id == values["id"])) is not None:
+                _require_same(session, bundle)
+                return False
+            session.execute(insert(JobRow).values(**values))
+            if bundle.result is not None:
+                add_result(session, values["id"], bundle.result, bundle.artifacts)
+            for event in bundle.events:
+                made = {
+                    "at": _time(event.get("at")),
+                    "kind": str(event.get("kind"))[:16],
+                    "data": event.get("data"),
+                }
+                session.execute(insert(EventRow).values(job_id=values["id"], **made))
+            return True
+
+
+def _values(job: dict[str, Any]) -> dict[str, Any]:
+    try:
+        values = {name: job[name] for name in _FACTS} | {name: _time(job[name]) for name in _TIMES}
+        ended = JobStatus(values["status"]).ended
+    except (KeyError, ValueError, TypeError) as error:
+        raise _wrong(f"job.json with {error!r}") from None
+    kinds: dict[str, Callable[[Any], bool]] = {
+        "id": lambda v: isinstance(v, str) and 1 <= len(v) <= 36,
+        "process_id": lambda v: isinstance(v, str) and 1 <= len(v) <= 100,
+        "inputs": lambda v: isinstance(v, dict),
+        "created_at": lambda v: v is not None,
+        "updated_at": lambda v: v is not None,
+    }
+    for name, fits in kinds.items():
+        if not fits(values[name]):
+            raise _wrong(f"{name} {values[name]!r:.60}")
+    if not ended:
+        raise _wrong(f"a job that is {values['status']}")
+    done = 100.0 if values["status"] == JobStatus.SUCCESSFUL.value else 0.0
+    return values | {
+        "progress": done,
+        "cancel_requested": values["status"] == JobStatus.DISMISSED.value,
+        "request_sha256": request_hash(values["process_id"], values["inputs"]),
+    }
+
+
+def _require_same(session: Session, bundle: Bundle) -> None:
+    there = session.get(ResultRow, bundle.job["id"])
+    same = (
+        there is None
+        if bundle.result is None
+        else there is not None and there.sha256 == digest(bundle.result)
+    )
+    if not same:
+        raise Conflict(
+            f"job {bundle.job['id']} is here already and has another result; nothing was imported",
+            field="jobID",
+            required="a job that is not here yet, or the same one",
+            received=bundle.job["id"],
+        )
+
+
+def _iso(time: datetime | None) -> str | None:
+    return None if time is None else time.isoformat()
+
+
+def _time(text: Any) -> datetime | None:
+    if text is None:
+        return None
+    time = datetime.fromisoformat(text)
+    if time.tzinfo is None:
+        raise invalid("bundle", "times with their zone", text)
+    return time
+
+
+def _wrong(what: str) -> InvalidInput:
+    return InvalidInput(
+        f"bundle: required an ended job, received {what}", field="bundle", required="an ended job"
+    )
