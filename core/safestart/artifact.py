@@ -8,11 +8,15 @@ from hashlib import sha256
 
 @dataclass(frozen=True, slots=True)
 class Artifact:
-    """A file that belongs to a result: name, IANA media type, bytes."""
+    """A file that belongs to a result: name, IANA media type, bytes.
+
+    ``key``, when given, is a content key under which later answers may find the bytes (see ``shelf``).
+    """
 
     name: str
     media_type: str
     data: bytes
+    key: str | None = None
 
     @property
     def sha256(self) -> str:

@@ -101,6 +101,10 @@ class Unavailable(SafestartError):
     title = "Unavailable"
 
 
+class Away(Unavailable):
+    """A server that does not answer now and may later: worth waiting for."""
+
+
 class QueueFull(Unavailable):
     """As many jobs wait as the service accepts; try again later."""
 

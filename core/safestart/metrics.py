@@ -31,6 +31,18 @@ def ratio(numerator: float, denominator: float) -> float | None:
     return numerator / denominator if denominator else None
 
 
+def wilson(successes: int, trials: int, z: float = 1.959963984540054) -> tuple[float, float] | None:
+    """Wilson score interval of a share (95 % for the default z); None without trials."""
+    if trials == 0:
+        return None
+    share, square = successes / trials, z * z / trials
+    middle = (share + 0.5 * square) / (1.0 + square)
+    half = z / (1.0 + square) * math.sqrt(share * (1.0 - share) / trials + 0.25 * square / trials)
+    # At the ends rounding could leave the interval a hair short of 0 or 1.
+    low = 0.0 if successes == 0 else max(0.0, middle - half)
+    return low, 1.0 if successes == trials else min(1.0, middle + half)
+
+
 @dataclass(frozen=True, slots=True)
 class ConfusionMatrix:
     """Counts of a prediction against the truth, with the usual rates."""

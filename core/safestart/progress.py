@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from safestart.errors import Cancelled
+from safestart.shelf import EMPTY, Shelf
 
 
 def _silent(done: float, total: float, message: str) -> None:
@@ -20,12 +21,13 @@ def _never() -> bool:
 class Context:
     """Passed to every process and engine.
 
-    ``report(done, total, message)`` receives real work units (cells, time steps); ``cancelled()`` is polled.
-    The default context is silent and is never cancelled.
+    ``report(done, total, message)`` receives real work units (cells, time steps); ``cancelled()`` is polled;
+    ``shelf`` may hold what was computed before. The default context is silent, never cancelled, with an empty shelf.
     """
 
     report: Callable[[float, float, str], None] = field(default=_silent)
     cancelled: Callable[[], bool] = field(default=_never)
+    shelf: Shelf = EMPTY
 
     def step(self, done: float, total: float, message: str = "") -> None:
         """Report progress, and raise ``Cancelled`` if the job was dismissed."""
@@ -40,4 +42,4 @@ class Context:
             text = f"{label}: {message}" if message else label
             self.report(start + share * (done / of if of > 0 else 1.0), total, text)
 
-        return Context(report, self.cancelled)
+        return Context(report, self.cancelled, self.shelf)

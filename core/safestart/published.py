@@ -56,3 +56,43 @@ TABLE2: dict[float, dict[str, Table2Row]] = {
     },
 }
 """Table 2: tumble rate in deg/s -> engine -> published row (a_max 0.10 m/s^2)."""
+
+TABLE3_RANGES_M = (30.0, 50.0, 100.0, 150.0)
+"""Columns of Table 3: r0 in metres."""
+
+TABLE3: dict[float, dict[float, tuple[tuple[int, int], ...]]] = {
+    0.02: {
+        1.0: ((7, 7), (8, 8), (5, 6), (0, 8)),
+        2.0: ((7, 3), (0, 0), (0, 0), (0, 0)),
+        3.0: ((0, 0), (0, 0), (0, 0), (0, 0)),
+        4.0: ((0, 0), (0, 0), (0, 0), (0, 0)),
+        5.0: ((0, 0), (0, 0), (0, 0), (0, 0)),
+    },
+    0.05: {
+        1.0: ((9, 9), (9, 9), (7, 7), (7, 8)),
+        2.0: ((6, 6), (6, 5), (0, 0), (0, 0)),
+        3.0: ((5, 1), (0, 0), (0, 0), (0, 0)),
+        4.0: ((0, 0), (0, 0), (0, 0), (0, 0)),
+        5.0: ((0, 0), (0, 0), (0, 0), (0, 0)),
+    },
+    0.10: {
+        1.0: ((9, 9), (9, 5), (5, 4), (9, 9)),
+        2.0: ((9, 9), (6, 8), (5, 4), (4, 1)),
+        3.0: ((6, 6), (7, 2), (0, 0), (0, 0)),
+        4.0: ((7, 0), (0, 0), (0, 0), (0, 0)),
+    },
+}
+"""Table 3: a_max (m/s^2) -> tumble rate (deg/s) -> (certified, feasible) of nine starts per range."""
+
+TABLE3_CONFUSION = {
+    "tp": 122,
+    "fp": 30,
+    "fn": 12,
+    "tn": 336,
+    "precision": 0.80,
+    "recall": 0.91,
+    "accuracy": 0.92,
+    "f1": 0.85,
+    "mcc": 0.80,
+}
+"""Certified against feasible, over 500 starts, as printed."""

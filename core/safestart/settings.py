@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from functools import cache
 from pathlib import Path
+from typing import Literal
 
 from platformdirs import user_config_path, user_data_path
 from pydantic import Field, ValidationError
@@ -37,9 +38,29 @@ class Settings(BaseSettings):
     poll_s: float = Field(0.2, ge=0.02, le=60, description="How often the worker looks for work, s.")
     job_timeout_s: float = Field(3600.0, ge=1, le=604800, description="Longest run of a job, s.")
     max_attempts: int = Field(3, ge=1, le=100, description="Attempts after which a job counts as poison.")
+    keep_days: float = Field(
+        0.0, ge=0, le=36500, description="Days after which the worker deletes ended jobs; 0: they are kept."
+    )
+    log_format: Literal["text", "json"] = Field(
+        "text", description="Logs as text or as one JSON object a line."
+    )
     max_body_bytes: int = Field(8_000_000, ge=1000, description="Largest request body the service reads.")
     max_states: int = Field(100_000, ge=1, description="Most states in one go-no-go request.")
     max_queued: int = Field(10_000, ge=1, description="Most jobs waiting at once.")
+    allowed_hosts: str = Field(
+        "",
+        description="Host names, separated by commas, under which the service may be asked for, besides localhost "
+        "and IP addresses.",
+    )
+    rate_per_s: float = Field(
+        1000.0, gt=0, description="Requests per second of one API key; bursts of 10 s' worth."
+    )
+    submit_rate_per_s: float = Field(
+        50.0, gt=0, description="Submissions and dismissals per second of one API key; bursts of 10 s' worth."
+    )
+    request_timeout_s: float = Field(
+        60.0, ge=1, le=3600, description="Longest time a request's body may take to arrive, s."
+    )
 
     @classmethod
     def settings_customise_sources(

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from safestart.engines.base import Problem
 from safestart.engines.registry import ENGINE_NAMES, engine
+from safestart.guidance.worlds import CwhWorld
+from safestart.levelset.warm import warm as warm_levelset
 from safestart.progress import Context
 from safestart.scenario import Grid, Scenario
 
-# Its compilation is per grid shape and costs as much as a small solve: nothing to gain ahead of the job.
-_NOT_WORTH_IT = frozenset({"hamilton_jacobi"})
-
 
 def warm() -> None:
-    """Solve one tiny problem with each engine; the compiled kernels stay in this process and in Numba's cache."""
+    """Solve one tiny problem with each engine; the compiled kernels stay in this process and in Numba's cache.
+
+    The level-set solver is compiled per precision; the engine asks for float32 only.
+    """
     problem = Problem(Scenario.of(3.0, 0.1), Grid(3, 3, 60.0), horizon=4.0, dt=2.0)
     for name in ENGINE_NAMES:
-        if name not in _NOT_WORTH_IT:
-            engine(name).solve(problem, Context())
+        engine(name).solve(problem, Context())
+    CwhWorld(problem.scenario, np.array([0.0, 30.0, 0.0, 0.0, 0.0, 0.0]), problem.dt).fly(np.zeros(2))
+    warm_levelset("float64")

@@ -7,7 +7,7 @@ from importlib.metadata import entry_points
 
 import typer
 
-from safestart.cli import bench, demo, go_no_go, reproduce, run, up, verify
+from safestart.cli import bench, demo, go_no_go, keys, records, reproduce, run, up, verify
 from safestart.errors import SafestartError
 
 COMMAND_GROUP = "safestart.commands"
@@ -23,7 +23,7 @@ def build() -> typer.Typer:
         pretty_exceptions_enable=False,
         rich_markup_mode=None,
     )
-    for module in (up, go_no_go, run, reproduce, demo, bench, verify):
+    for module in (up, go_no_go, run, reproduce, demo, bench, verify, records, keys):
         module.register(app)
     for point in sorted(entry_points(group=COMMAND_GROUP), key=lambda p: p.name):
         point.load()(app)

@@ -8,7 +8,7 @@ from typing import Any
 import typer
 
 from safestart import published
-from safestart.cli import passive_safety
+from safestart.cli import chain, passive_safety, table3
 from safestart.cli.console import Json, Justify, number, out, print_json, reporting, seconds, table_of
 from safestart.processes.execute import execute
 
@@ -66,7 +66,9 @@ def register(app: typer.Typer) -> None:
         else:
             show_table2(rows)
 
+    table3.register(group)
     passive_safety.register(group)
+    chain.register(group)
 
     @group.command("all")
     def everything(as_json: Json = False) -> None:
@@ -79,13 +81,17 @@ def register(app: typer.Typer) -> None:
                 {
                     "table1": {"cells": table1_cells()},
                     "table2": {"rows": rows},
+                    "table3": table3.table3_document(),
                     "passive_safety": passive_safety.passive_safety_document(),
+                    "chain": chain.chain_document(list(published.TABLE2)),
                 }
             )
             return
         table1()
         table2()
+        table3.show(table3.table3_document())
         passive_safety.print_passive_safety()
+        chain.show(chain.chain_document(list(published.TABLE2)))
 
 
 def table1_cells() -> list[dict[str, float]]:

@@ -20,7 +20,7 @@ from safestart.errors import Unavailable
 from safestart.progress import Context
 from safestart.settings import settings
 
-_START_LIMIT_S = 90.0
+_START_LIMIT_S = 300.0
 _READY_POLL_S = 0.2
 
 

@@ -15,9 +15,7 @@ def register(app: typer.Typer) -> None:
 
     @app.command("up")
     def up(
-        host: Annotated[
-            str | None, typer.Option(help="Loopback address to bind to; absent: the setting.")
-        ] = None,
+        host: Annotated[str | None, typer.Option(help="Address to bind to; absent: the setting.")] = None,
         port: Annotated[
             int | None, typer.Option(min=0, max=65535, help="Port to bind to; absent: the setting.")
         ] = None,

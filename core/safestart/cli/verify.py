@@ -25,7 +25,7 @@ def register(app: typer.Typer) -> None:
     ) -> None:
         """Check a GO or NO_GO proof. Exit code 0: valid, 1: rejected, 2: unreadable."""
         # Ball arithmetic is loaded here and not with every command.
-        from safestart.certificates.proof import check
+        from safestart.certificates.checker import check
         from safestart.certificates.statement import ProofRejected
 
         document = _load(proof)
@@ -72,11 +72,55 @@ def _load(path: Path) -> Any:
 
 def _statement(document: Any) -> list[str]:
     question, start = document["question"], document["start"]
-    rate = math.degrees(question["tumble_rate_rad_s"])
     horizon = question["dt_s"] * question["steps"]
-    return [
-        f"stay in the corridor at all times of [0, {horizon:g}] s, thrust held over {question['dt_s']:g} s",
-        f"tumble {rate:.6g} deg/s, thrust at most {question['max_acceleration_m_s2']:g} m/s^2, "
-        f"mean motion {question['mean_motion_rad_s']:g} rad/s",
-        f"start (LVLH) {start['position_m']} m, {start['velocity_m_s']} m/s",
+    rate = _range(question["tumble_rate_rad_s"], math.degrees(1.0))
+    thrust, motion = _range(question["max_acceleration_m_s2"]), _range(question["mean_motion_rad_s"])
+    around = [
+        f" +- {start[key]} {unit}" if key in start else f" {unit}"
+        for key, unit in (("position_half_width_m", "m"), ("velocity_half_width_m_s", "m/s"))
     ]
+    span = "all times until the end" if "goal" in question else f"all times of [0, {horizon:g}] s"
+    return [
+        f"stay in the corridor at {span}, thrust held over {question['dt_s']:g} s",
+        *_limits(question, horizon),
+        f"tumble {rate} deg/s, thrust at most {thrust} m/s^2, mean motion {motion} rad/s",
+        f"start (LVLH) {start['position_m']}{around[0]}, {start['velocity_m_s']}{around[1]}",
+        *_witness(document),
+    ]
+
+
+def _limits(question: Any, horizon: float) -> list[str]:
+    """What is asked for beyond the corridor."""
+    goal, speed, keep_out = (question.get(key) for key in ("goal", "speed_limit", "keep_out_m"))
+    out = []
+    if goal is not None:
+        out.append(
+            f"at the end, at some time up to {horizon:g} s (step {question['earliest_step']} at the earliest): within "
+            f"{goal['radius_m']:g} m of {goal['hold_m']} m and at most {goal['rest_m_s']:g} m/s in the body frame"
+        )
+    if speed is not None:
+        out.append(
+            f"at most {speed['most_m_s']:g} m/s in LVLH at all times; 1 m/s counts as {speed['scale_s']:g} m"
+        )
+    if keep_out:
+        out.append(f"keep-out radius {keep_out:g} m: implied by the hold plane")
+    return out
+
+
+def _range(value: Any, factor: float = 1.0) -> str:
+    """A number, or an interval as its middle and half-width."""
+    if not isinstance(value, list):
+        return f"{factor * value:.6g}"
+    low, high = value
+    return f"{factor * (low + high) / 2:.6g} +- {factor * (high - low) / 2:.3g}"
+
+
+def _witness(document: Any) -> list[str]:
+    """What the proof for a family says of the histories."""
+    if "pieces" in document:
+        return ["for no member of these intervals does any history stay"]
+    if document.get("witness") == "per_corner":
+        return [
+            "each corner of the start box has a history that stays for all members, each start between a mixture"
+        ]
+    return ["one history stays for all members"] if "histories" in document else []

@@ -1,0 +1,170 @@
+"""``safestart replay, export, import, backup, restore, purge``: what to do with the record of work."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from safestart.cli.console import Json, err, out, print_json, reporting
+from safestart.errors import InvalidInput, invalid
+
+if TYPE_CHECKING:
+    from safestart.bundle import Bundle
+    from safestart.store.database import Database
+
+DatabaseUrl = Annotated[str, typer.Option("--database-url", help="SQLAlchemy URL; empty: the setting.")]
+_UNITS = {"s": 1.0, "min": 60.0, "h": 3600.0, "d": 86400.0, "w": 604800.0}
+
+
+def register(app: typer.Typer) -> None:
+    """Add the commands."""
+    app.command("replay")(replay)
+    app.command("export")(export)
+    app.command("import")(import_)
+    app.command("backup")(backup)
+    app.command("restore")(restore)
+    app.command("purge")(purge)
+
+
+def replay(
+    job: Annotated[str, typer.Argument(help="Id of a job in the database, or a bundle file.")],
+    database_url: DatabaseUrl = "",
+    as_json: Json = False,
+) -> None:
+    """Run a stored job again here and compare. Exit code 0: as promised, 1: different."""
+    from safestart.replay import replay as run_again
+
+    bundle = _bundle_or_job(job, database_url)
+    if bundle.result is None:
+        raise InvalidInput(
+            f"job {bundle.job['id']} has no result ({bundle.job['status']}); required a successful one"
+        )
+    with reporting(f"replay {bundle.job['process_id']}") as context:
+        found = run_again(bundle.result, {item.name: item.data for item in bundle.artifacts}, context)
+    if as_json:
+        print_json({"job": bundle.job["id"], **found.document()})
+    else:
+        promise = "bit for bit" if found.tolerance is None else f"within {found.tolerance:g}"
+        out.print(f"{found.verdict} (promised: {promise})")
+        for title, lines in (("not as it was", found.environment), ("differs", found.differences)):
+            for line in lines:
+                out.print(f"  {title}: {line}", soft_wrap=True, markup=False)
+    raise typer.Exit(0 if found.kept else 1)
+
+
+def export(
+    job: Annotated[str, typer.Argument(help="Id of a job that has ended.")],
+    output: Annotated[Path | None, typer.Option("--output", help="File; absent: JOB.zip here.")] = None,
+    database_url: DatabaseUrl = "",
+) -> None:
+    """Write a job as one file that opens without a server (unzip it, open index.html)."""
+    from safestart.bundle import pack
+
+    data, seal = pack(_bundle_of(job, database_url))
+    path = output or Path(f"{job}.zip")
+    try:
+        path.write_bytes(data)
+    except OSError as error:
+        raise invalid("--output", "a writable path", f"{path} ({error.strerror})") from None
+    out.print(f"wrote {path} ({len(data)} bytes), seal {seal}", soft_wrap=True)
+
+
+def import_(
+    bundle: Annotated[Path, typer.Argument(help="A bundle that `safestart export` wrote.")],
+    seal: Annotated[str | None, typer.Option(help="The seal that it must have.")] = None,
+    database_url: DatabaseUrl = "",
+) -> None:
+    """Check a bundle and add its job to the database."""
+    from safestart.bundle import unpack
+    from safestart.store.transfer import Transfer
+
+    opened = unpack(_bytes(bundle), seal)
+    with _database(database_url) as database:
+        new = Transfer(database).add(opened)
+    out.print(f"job {opened.job['id']}: {'imported' if new else 'is here already, with the same content'}")
+
+
+def backup(
+    file: Annotated[Path, typer.Argument(help="File to write; it must not be there yet.")],
+    database_url: DatabaseUrl = "",
+) -> None:
+    """Write a consistent copy of the database to one file, while everything runs."""
+    from safestart.store.backup import backup as write
+
+    with _database(database_url) as database:
+        jobs = write(database, file)
+    out.print(f"wrote {file}: {jobs} jobs", soft_wrap=True)
+
+
+def restore(
+    file: Annotated[Path, typer.Argument(help="A file that `safestart backup` wrote.")],
+    database_url: DatabaseUrl = "",
+) -> None:
+    """Fill an empty database from a backup; SQLite or PostgreSQL, whichever it was made from."""
+    from safestart.store.backup import restore as fill
+
+    with _database(database_url) as database:
+        jobs = fill(database, file)
+        out.print(f"restored {jobs} jobs to {database.shown}", soft_wrap=True)
+
+
+def purge(
+    older_than: Annotated[str, typer.Option(help="Age since their end, such as 30d, 12h, 90min.")],
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Only count.")] = False,
+    database_url: DatabaseUrl = "",
+) -> None:
+    """Delete jobs that ended long ago, with their results, artifacts and events."""
+    from safestart.store.retention import Retention
+
+    seconds = age(older_than)
+    with _database(database_url) as database:
+        retention = Retention(database)
+        number = retention.older(seconds) if dry_run else retention.purge(seconds)
+    out.print(f"{number} jobs {'would be deleted' if dry_run else 'deleted'}")
+
+
+def age(text: str) -> float:
+    """Seconds of an age such as ``30d``; raises ``InvalidInput``."""
+    match = re.fullmatch(r"(\d{1,9}(?:\.\d{1,9})?)\s*(s|min|h|d|w)", text.strip())
+    if match is None:
+        raise invalid("--older-than", "a number with s, min, h, d or w, such as 30d", text)
+    return float(match[1]) * _UNITS[match[2]]
+
+
+def _bundle_or_job(job: str, database_url: str) -> Bundle:
+    from safestart.bundle import unpack
+
+    return unpack(_bytes(Path(job))) if Path(job).is_file() else _bundle_of(job, database_url)
+
+
+def _bundle_of(job: str, database_url: str) -> Bundle:
+    from safestart.store.transfer import Transfer
+
+    with _database(database_url) as database:
+        return Transfer(database).read(job)
+
+
+@contextmanager
+def _database(url: str) -> Iterator[Database]:
+    from safestart.settings import settings
+    from safestart.store.database import Database
+
+    database = Database(url or settings().url())
+    try:
+        database.migrate()
+        err.print(f"database {database.shown}", soft_wrap=True, markup=False)
+        yield database
+    finally:
+        database.close()
+
+
+def _bytes(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise invalid("file", "a readable file", f"{path} ({error.strerror})") from None

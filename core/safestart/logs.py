@@ -1,0 +1,64 @@
+"""Logs on stderr: one line per event, as text or as JSON, with the job or the request that it is about.
+
+A call that is about a job says so with ``extra=about(job=...)``; both formats show it.
+"""
+
+from __future__ import annotations
+
+import json
+import logging
+from datetime import UTC, datetime
+from typing import Any, Literal
+
+LogFormat = Literal["text", "json"]
+_SUBJECTS = ("job", "request")
+
+
+def about(**subjects: str) -> dict[str, Any]:
+    """What a log record is about: ``job`` and ``request`` by their ids."""
+    return subjects
+
+
+def configure(form: LogFormat) -> None:
+    """Send warnings of every library and everything of ours to stderr, in this format."""
+    handler = logging.StreamHandler()
+    handler.setFormatter(JsonLines() if form == "json" else TextLines())
+    logging.basicConfig(level=logging.WARNING, handlers=[handler], force=True)
+    logging.getLogger("safestart").setLevel(logging.INFO)
+
+
+class TextLines(logging.Formatter):
+    """``TIME LEVEL LOGGER job=ID MESSAGE``, times in UTC."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        """The record as lines; a stack trace follows its message."""
+        when = datetime.fromtimestamp(record.created, UTC).isoformat(sep=" ", timespec="milliseconds")
+        parts = [when, record.levelname, record.name]
+        parts += [f"{name}={value}" for name, value in _subjects(record).items()]
+        parts.append(record.getMessage())
+        trace = _trace(record)
+        return " ".join(parts) + (f"\n{trace}" if trace else "")
+
+
+class JsonLines(logging.Formatter):
+    """One JSON object per line."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        """The record as one line."""
+        line: dict[str, Any] = {
+            "time": datetime.fromtimestamp(record.created, UTC).isoformat(),
+            "level": record.levelname.lower(),
+            "logger": record.name,
+            **_subjects(record),
+            "message": record.getMessage(),
+        }
+        trace = _trace(record)
+        return json.dumps(line | ({"trace": trace} if trace else {}), default=str)
+
+
+def _subjects(record: logging.LogRecord) -> dict[str, str]:
+    return {name: str(getattr(record, name)) for name in _SUBJECTS if getattr(record, name, None) is not None}
+
+
+def _trace(record: logging.LogRecord) -> str:
+    return logging.Formatter().formatException(record.exc_info) if record.exc_info else ""
