@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager, suppress
-from typing import Any, cast
+from typing import Any, TypeVar, cast
 
 import dask
 from distributed import Client, Future, LocalCluster, Nanny
 from distributed.system import MEMORY_LIMIT
 
 from safestart.errors import InvalidInput, Unavailable
-from safestart.store.records import Claim
 from safestart.warmup import warm
-from safestart_worker.task import Outcome, load, request_stop, run_job
+from safestart_worker.task import load, request_stop
 
 log = logging.getLogger("safestart.worker")
+Answer = TypeVar("Answer")
 
 CONNECT_TIMEOUT_S = 10.0
 # How long a task that polls gets to stop by itself, and how long a replaced process may take to come back.
@@ -58,24 +58,24 @@ class Cluster:
         """Number of tasks that can run at once now."""
         return sum((await self._client.nthreads()).values())
 
-    def submit(self, claim: Claim, key: str) -> Future[Outcome]:
-        """Start the job; Dask runs it again if its process dies, and gives up after allowed-failures deaths."""
+    def submit(
+        self, function: Callable[..., Answer], *arguments: Any, key: str, job: str, priority: int = 0
+    ) -> Future[Answer]:
+        """Start ``function(*arguments, job, topic)`` as a task of the job ``job``.
+
+        Dask runs it again if its process dies, and gives up after allowed-failures deaths.
+        """
         return self._client.submit(
-            run_job,
-            claim.process_id,
-            claim.inputs,
-            key,
-            self._topic,
-            key=key,
-            pure=False,
-            retries=0,
+            function, *arguments, job, self._topic, key=key, pure=False, retries=0, priority=priority
         )
 
-    async def stop(self, future: Future[Outcome], outcome: asyncio.Task[Outcome]) -> None:
-        """End a task: ask it first, then replace its process. Returns when it no longer computes."""
-        addresses = await self._running_at(future.key)
-        for address in addresses:
-            asking = self._client.run(request_stop, future.key, workers=[address], on_error="ignore")
+    async def stop(self, job: str, futures: Sequence[Future[Any]], outcome: asyncio.Task[Any]) -> None:
+        """End a job's tasks: ask first, then replace their processes. Returns when they no longer compute."""
+        keys = {future.key for future in futures}
+        # Every process that has a task of the job, or may get one before the wait is over.
+        addresses = await self._running(keys) if len(keys) == 1 else list(await self._client.nthreads())
+        if addresses:
+            asking = self._client.run(request_stop, job, workers=addresses, on_error="ignore")
             with suppress(
                 TimeoutError, OSError
             ):  # a task that holds the GIL keeps its process from answering
@@ -83,8 +83,9 @@ class Cluster:
         await asyncio.wait({outcome}, timeout=STOP_GRACE_S if addresses else 0)
         if outcome.done():
             return
-        addresses = await self._running_at(future.key)
-        await future.cancel()
+        addresses = await self._running(keys)
+        for future in futures:
+            await future.cancel()
         if self._local is None and addresses:
             await self._client.restart_workers(addresses, timeout=RESTART_TIMEOUT_S, raise_for_error=False)
         for nanny in self._nannies():
@@ -93,11 +94,11 @@ class Cluster:
             if nanny.worker_address in addresses:
                 await nanny.kill(timeout=KILL_TIMEOUT_S)
 
-    async def leave(self, future: Future[Outcome], outcome: asyncio.Task[Outcome]) -> None:
-        """End a task whose job somebody else will run, as far as that goes in a short time."""
+    async def leave(self, job: str, futures: Sequence[Future[Any]], outcome: asyncio.Task[Any]) -> None:
+        """End the tasks of a job that somebody else will run, as far as that goes in a short time."""
         if self._local is None:  # the embedded cluster ends with us
             with suppress(TimeoutError, OSError):
-                await asyncio.wait_for(self.stop(future, outcome), LEAVE_TIMEOUT_S)
+                await asyncio.wait_for(self.stop(job, futures, outcome), LEAVE_TIMEOUT_S)
 
     async def warm_up(self) -> None:
         """Load the processes everywhere; compile in one task process, whose cache on disk serves the others."""
@@ -110,14 +111,16 @@ class Cluster:
     async def close(self) -> None:
         """End the embedded task processes at once, busy ones too: their jobs are back in the queue."""
         logging.getLogger("distributed.nanny").setLevel(logging.ERROR)  # that it must kill is what we ask for
-        await asyncio.gather(*(nanny.close(timeout=KILL_TIMEOUT_S) for nanny in self._nannies()))
+        closing = (nanny.close(timeout=KILL_TIMEOUT_S) for nanny in self._nannies())
+        # One that does not see its process end in time (a loaded machine) leaves it to our own end, which ends it too.
+        await asyncio.gather(*closing, return_exceptions=True)
 
     def _nannies(self) -> list[Nanny]:
         return [] if self._local is None else list(self._local.workers.values())
 
-    async def _running_at(self, key: object) -> list[str]:
+    async def _running(self, wanted: set[Any]) -> list[str]:
         processing = await self._client.processing()
-        return [address for address, keys in processing.items() if key in keys]
+        return [address for address, keys in processing.items() if wanted.intersection(keys)]
 
 
 @asynccontextmanager

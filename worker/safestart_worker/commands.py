@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import asyncio
-import logging
 from typing import Annotated
 
 import typer
 
+from safestart.logs import configure
 from safestart.settings import settings
 
 
@@ -28,8 +28,7 @@ def register(app: typer.Typer) -> None:
 
         configured = settings()
         address = scheduler or configured.scheduler
-        logging.basicConfig(level=logging.WARNING, format="%(asctime)s %(levelname)s %(name)s %(message)s")
-        logging.getLogger("safestart").setLevel(logging.INFO)
+        configure(configured.log_format)
         options = Options(
             database_url=database_url or configured.url(),
             scheduler=address,
@@ -38,5 +37,6 @@ def register(app: typer.Typer) -> None:
             lease_s=configured.lease_s,
             poll_s=configured.poll_s,
             max_attempts=configured.max_attempts,
+            keep_s=configured.keep_days * 86_400.0,
         )
         raise typer.Exit(asyncio.run(work(options)))

@@ -9,11 +9,14 @@ import secrets
 import signal
 import socket
 import time
+from contextlib import suppress
 from dataclasses import dataclass
 
-from safestart.errors import Unavailable
+from safestart.errors import Away, Unavailable
+from safestart.logs import about
 from safestart.store.database import Database
 from safestart.store.jobs import JobRepository
+from safestart.store.retention import Retention
 from safestart_worker.cluster import Cluster, open_cluster
 from safestart_worker.shepherd import Rules, Shepherd
 
@@ -22,6 +25,7 @@ log = logging.getLogger("safestart.worker")
 HEARTBEAT_S = 3.0
 # While the database is away there is nothing to do but ask again.
 AWAY_S = 2.0
+PURGE_S = 3600.0
 # How long jobs wait for the warm-up. On a shared cluster it may itself wait behind the jobs of others.
 WARM_S = 120.0
 WARM_SHARED_S = 10.0
@@ -29,7 +33,10 @@ WARM_SHARED_S = 10.0
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """What a worker is started with. ``processes`` 0: as many as the cluster has threads."""
+    """What a worker is started with.
+
+    ``processes`` 0: as many as the cluster has threads. ``keep_s`` 0: ended jobs are kept for ever.
+    """
 
     database_url: str
     scheduler: str
@@ -37,6 +44,7 @@ class Options:
     lease_s: float
     poll_s: float
     max_attempts: int
+    keep_s: float = 0.0
 
     @property
     def rules(self) -> Rules:
@@ -110,7 +118,7 @@ class Worker:
             error = task.exception()
             if error is not None:
                 # Its lease runs out by itself, and the job is taken up again.
-                log.error("job=%s left to its lease", shepherd.claim.job_id, exc_info=error)
+                log.error("left to its lease", exc_info=error, extra=about(job=shepherd.claim.job_id))
 
     def _on_report(self, data: dict[str, object]) -> None:
         for shepherd in self._herd.values():
@@ -125,7 +133,8 @@ async def work(options: Options) -> int:
         asyncio.get_running_loop().add_signal_handler(number, stopping.set)
     owner = f"{socket.gethostname()}-{os.getpid()}-{secrets.token_hex(3)}"
     database = Database(options.database_url)
-    database.migrate()
+    if not await _migrated(database, stopping):
+        return 0
     jobs = JobRepository(database)
     start = time.monotonic()
     lost = False
@@ -137,12 +146,41 @@ async def work(options: Options) -> int:
         announcing.cancel()
         if not stopping.is_set():
             log.info("takes jobs from %s", database.shown)
+            purging = asyncio.create_task(_purge(Retention(database), options.keep_s))
             await Worker(options, jobs, cluster, owner).run(stopping)
+            purging.cancel()
             lost = not cluster.connected()
         await _say_goodbye(jobs, owner)
         log.info("stopping")
     database.close()
     return 1 if lost else 0
+
+
+async def _migrated(database: Database, stopping: asyncio.Event) -> bool:
+    """Wait for a database that is away; False when told to stop meanwhile. What cannot be mended by waiting raises."""
+    while not stopping.is_set():
+        try:
+            await asyncio.to_thread(database.migrate)
+        except Away as error:
+            log.warning("waits for the database: %s", error.detail)
+            with suppress(TimeoutError):
+                await asyncio.wait_for(stopping.wait(), AWAY_S)
+        else:
+            return True
+    return False
+
+
+async def _purge(retention: Retention, keep_s: float) -> None:
+    """Delete what ended longer ago than it is kept, once an hour."""
+    while keep_s > 0.0:
+        try:
+            number = await asyncio.to_thread(retention.purge, keep_s)
+        except Unavailable as error:
+            log.warning("%s", error.detail)
+        else:
+            if number:
+                log.info("deleted %d jobs that ended more than %g days ago", number, keep_s / 86_400.0)
+        await asyncio.sleep(PURGE_S)
 
 
 async def _announce(jobs: JobRepository, owner: str) -> None:

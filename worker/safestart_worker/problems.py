@@ -49,10 +49,11 @@ def of_timeout(timeout_s: float) -> dict[str, Any]:
 
 
 def of_poison(deaths: int) -> dict[str, Any]:
-    """Problem of a job that took its task processes down with it."""
+    """Problem of a job one of whose tasks took its processes down with it."""
     return _problem(
         "poison",
-        "The job ends its task process",
+        "Too many attempts",
         500,
-        f"{deaths} task processes in a row died while they ran this job (memory limit or crash); not tried again",
+        f"{deaths} task processes in a row died while they ran one shard of this job (memory limit or crash); "
+        "not tried again",
     )

@@ -12,10 +12,10 @@ PERIOD_S = 0.2
 
 
 class Reporter:
-    """Sends the real units done of one task; what comes faster than ``PERIOD_S`` is dropped, the last unit is not."""
+    """Sends the real units done of a task of the job ``key``; what comes faster than ``PERIOD_S`` is dropped."""
 
-    def __init__(self, key: str, topic: str, worker: Worker) -> None:
-        self._key = key
+    def __init__(self, key: str, topic: str, worker: Worker, shard: int | None = None) -> None:
+        self._about = {"key": key} if shard is None else {"key": key, "shard": shard}
         self._topic = topic
         self._worker = worker
         self._start = time.monotonic()
@@ -42,4 +42,4 @@ class Reporter:
         )
 
     def _send(self, data: dict[str, Any]) -> None:
-        self._worker.log_event(self._topic, {"key": self._key, **data})
+        self._worker.log_event(self._topic, {**self._about, **data})

@@ -5,22 +5,25 @@ from __future__ import annotations
 import asyncio
 import logging
 import time
-from collections.abc import Awaitable, Callable
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, TypeVar, cast
+from typing import Any, TypeVar
 from uuid import uuid4
 
-from distributed import Future, KilledWorker
+from distributed import KilledWorker
 from distributed.client import FutureCancelledError
 
-from safestart.errors import LeaseLost, Unavailable
+from safestart.errors import LeaseLost, NotFound, Unavailable
+from safestart.logs import about
+from safestart.processes.registry import process
 from safestart.store.jobs import JobRepository
 from safestart.store.records import Claim
 from safestart_worker import problems
 from safestart_worker.cluster import Cluster
+from safestart_worker.shards import Sharded
 from safestart_worker.task import Outcome
-from safestart_worker.track import Track
+from safestart_worker.work import Journal, Whole, Work
 
 log = logging.getLogger("safestart.worker")
 Answer = TypeVar("Answer")
@@ -54,39 +57,40 @@ class Shepherd:
         self._jobs = jobs
         self._cluster = cluster
         self._rules = rules
-        self._track = Track()
-        self._starts = 0
-        self._notes: list[str] = []
+        self._journal = Journal(claim.job_id)
+        self._work: Work | None = None
+        self._shown = False
 
     def on_report(self, data: dict[str, Any]) -> None:
-        """Take in a report of the task."""
-        if data["kind"] == "started":
-            self._starts += 1
-            if self._starts > 1:
-                self._track.restart()
-                self._notes.append(f"its task process was lost; running again (start {self._starts})")
-            self._say(f"runs in process {data['pid']} at {data['address']}")
-        else:
-            self._track.update(data["done"], data["total"], data["elapsed_s"], data["message"])
+        """Take in a report of one of its tasks."""
+        if self._work is not None:
+            self._work.on_report(data)
 
     async def run(self, stopping: asyncio.Event) -> None:
         """Run the job to its end; when ``stopping`` is set, give it back to the queue."""
         self._say(f"process {self.claim.process_id}, attempt {self.claim.attempt}")
-        future = self._cluster.submit(self.claim, self.key)
-        # The client is asynchronous, and so is its result; Dask's annotations know only the other kind.
-        outcome = asyncio.ensure_future(cast(Awaitable[Outcome], future.result()))
+        work = self._work = self._begin()
+        outcome = asyncio.ensure_future(work.run())
+        # A task that was ended on purpose ends with an error that nobody else looks at.
+        outcome.add_done_callback(lambda task: task.cancelled() or task.exception())
         try:
-            await self._watch(future, outcome, stopping)
+            await self._watch(work, outcome, stopping)
         except LeaseLost as lost:
             self._say(f"dropped: {lost.detail}", logging.WARNING)
-            await self._cluster.stop(future, outcome)
+            await work.stop(outcome)
         finally:
-            outcome.cancel()
-            future.release()
+            work.forget()
 
-    async def _watch(
-        self, future: Future[Outcome], outcome: asyncio.Task[Outcome], stopping: asyncio.Event
-    ) -> None:
+    def _begin(self) -> Work:
+        try:
+            spec = process(self.claim.process_id)
+        except NotFound:
+            spec = None  # the task says so
+        if spec is not None and spec.sharding is not None:
+            return Sharded(self.claim, self.key, self._cluster, self._journal, self._jobs, spec)
+        return Whole(self.claim, self.key, self._cluster, self._journal)
+
+    async def _watch(self, work: Work, outcome: asyncio.Task[Outcome], stopping: asyncio.Event) -> None:
         start = time.monotonic()
         written = renewed = start
         stop = asyncio.ensure_future(stopping.wait())
@@ -98,7 +102,10 @@ class Shepherd:
                     break
                 if stopping.is_set():
                     await self._try(self._give_back)
-                    return await self._cluster.leave(future, outcome)
+                    return await work.leave(outcome)
+                if self._journal.deaths and not await self._count_deaths():
+                    await work.stop(outcome)
+                    return await self._poisoned(work)
                 if now - written >= WRITE_PERIOD_S:
                     written = now
                     await self._write_progress()
@@ -106,36 +113,60 @@ class Shepherd:
                     renewed = now
                     if await self._try(lambda: self._jobs.renew(self.claim, self._rules.lease_s)) is False:
                         self._say("dismissal asked for")
-                        await self._cluster.stop(future, outcome)
+                        await work.stop(outcome)
                         return await self._end("dismissed", lambda: self._jobs.dismissed(self.claim))
                 if now - start > self.claim.timeout_s:
-                    await self._cluster.stop(future, outcome)
+                    await work.stop(outcome)
                     return await self._fail(problems.of_timeout(self.claim.timeout_s))
         finally:
             stop.cancel()
-        return await self._finish(outcome)
+        return await self._finish(work, outcome)
 
-    async def _finish(self, outcome: asyncio.Task[Outcome]) -> None:
+    async def _finish(self, work: Work, outcome: asyncio.Task[Outcome]) -> None:
         try:
             end = outcome.result()
         except KilledWorker:
-            return await self._fail(problems.of_poison(self._rules.max_attempts))
+            await self._count_deaths()
+            return await self._poisoned(work)
+        except LeaseLost:
+            raise
         except (FutureCancelledError, asyncio.CancelledError):
             reason = "the cluster lost the task"
             return await self._end(reason, lambda: self._jobs.release(self.claim, reason))
         except Exception as error:
             incident = uuid4().hex
-            log.exception("job=%s unexpected error %s on the cluster", self.claim.job_id, incident)
+            log.exception("unexpected error %s on the cluster", incident, extra=about(job=self.claim.job_id))
             return await self._fail(problems.of_unexpected(error, incident))
         if end.trace:
             self._say(f"unexpected error {(end.problem or {}).get('id')}\n{end.trace}", logging.ERROR)
         if end.document is None:
             return await self._fail(end.problem or {})
         document = end.document
-        await self._write_progress()
+        if (
+            self._shown or self._journal.notes
+        ):  # a job that was over before it showed anything needs no last step
+            await self._write_progress()
         return await self._end(
             "successful", lambda: self._jobs.succeed(self.claim, document, end.artifacts, end.versions)
         )
+
+    async def _count_deaths(self) -> bool:
+        """Count the deaths of its task processes as attempts; False when none is left."""
+        most = self._rules.max_attempts
+        while self._journal.deaths:
+            left = await self._try(lambda: self._jobs.restarted(self.claim, most))
+            if left is None:  # the database is away: counted when it is back
+                return True
+            self._journal.deaths -= 1
+            if not left:
+                return False
+        return True
+
+    async def _poisoned(self, work: Work) -> None:
+        most = self._rules.max_attempts
+        if not work.whole:
+            return await self._fail(problems.of_poison(most))
+        return await self._end("failed: too many attempts", lambda: self._jobs.poisoned(self.claim, most))
 
     async def _fail(self, problem: dict[str, Any]) -> None:
         await self._end(f"failed: {problem.get('detail')}", lambda: self._jobs.fail(self.claim, problem))
@@ -156,11 +187,12 @@ class Shepherd:
                 return self._say(what)
 
     async def _write_progress(self) -> None:
-        while self._notes:
-            note = self._notes.pop(0)
+        while self._journal.notes:
+            note = self._journal.notes.pop(0)
             await self._try(partial(self._jobs.log, self.claim, note))
-        fresh = self._track.take()
+        fresh = self._journal.track.take()
         if fresh is not None:
+            self._shown = True
             await self._try(partial(self._jobs.progress, self.claim, *fresh))
 
     async def _try(self, call: Callable[[], Answer]) -> Answer | None:
@@ -172,4 +204,4 @@ class Shepherd:
             return None
 
     def _say(self, text: str, level: int = logging.INFO) -> None:
-        log.log(level, "job=%s %s", self.claim.job_id, text)
+        self._journal.say(text, level)

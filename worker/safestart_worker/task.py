@@ -1,4 +1,4 @@
-"""What runs in a task process: one job, from its raw inputs to an outcome that says how it ended.
+"""What runs in a task process: a job, or a shard of one, from raw inputs to an outcome that says how it ended.
 
 Nothing is raised: errors become part of the outcome, so that no exception class and no stack trace has to travel.
 """
@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import threading
 import traceback
+from collections.abc import Callable
 from dataclasses import dataclass
+from datetime import datetime
 from typing import Any
 from uuid import uuid4
 
@@ -15,14 +17,15 @@ from distributed import get_worker
 
 from safestart.artifact import Artifact
 from safestart.errors import SafestartError
-from safestart.processes.execute import execute
+from safestart.processes.execute import Execution, execute, merge
 from safestart.processes.registry import PROCESS_IDS, process
+from safestart.processes.sharding import Part
 from safestart.progress import Context
 from safestart.provenance import versions
 from safestart_worker.problems import of_error, of_unexpected
 from safestart_worker.report import Reporter
 
-# Keys of the tasks of this process that were asked to stop; see request_stop.
+# Keys of the jobs whose tasks in this process were asked to stop; see request_stop.
 _stopping: set[str] = set()
 _lock = threading.Lock()
 
@@ -38,8 +41,17 @@ class Outcome:
     trace: str | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class ShardOutcome:
+    """How a shard ended: what it gave, or a problem."""
+
+    part: Part | None
+    problem: dict[str, Any] | None = None
+    trace: str | None = None
+
+
 def request_stop(key: str) -> None:
-    """Ask the task ``key`` of this process to stop; engines look at every step they report."""
+    """Ask the tasks of the job ``key`` in this process to stop; engines look at every step they report."""
     with _lock:
         _stopping.add(key)
 
@@ -53,11 +65,38 @@ def load() -> None:
 
 def run_job(process_id: str, inputs: dict[str, Any], key: str, topic: str) -> Outcome:
     """Run one job to its outcome."""
+    return _whole(lambda context: execute(process_id, inputs, context), key, topic)
+
+
+def run_merge(
+    process_id: str, inputs: dict[str, Any], parts: list[Part], started: datetime, key: str, topic: str
+) -> Outcome:
+    """Run the end of a sharded job to its outcome."""
+    return _whole(lambda context: merge(process_id, inputs, parts, started, context), key, topic)
+
+
+def run_shard(process_id: str, part: dict[str, Any], number: int, key: str, topic: str) -> ShardOutcome:
+    """Run shard ``number`` of the job ``key``."""
+    reporter = Reporter(key, topic, get_worker(), number)
+    reporter.started()
+    context = Context(reporter.report, lambda: key in _stopping)
+    sharding = process(process_id).sharding
+    assert sharding is not None
+    try:
+        context.step(0.0, 1.0)  # asked to stop before it began
+        return ShardOutcome(sharding.run_part(part, context))
+    except SafestartError as error:
+        return ShardOutcome(None, of_error(error))
+    except Exception as error:
+        return ShardOutcome(None, of_unexpected(error, uuid4().hex), traceback.format_exc())
+
+
+def _whole(run: Callable[[Context], Execution], key: str, topic: str) -> Outcome:
     reporter = Reporter(key, topic, get_worker())
     reporter.started()
     context = Context(reporter.report, lambda: key in _stopping)
     try:
-        execution = execute(process_id, inputs, context)
+        execution = run(context)
     except SafestartError as error:
         return Outcome(None, (), versions(), of_error(error))
     except Exception as error:

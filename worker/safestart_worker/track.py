@@ -12,11 +12,15 @@ _MOST = 99.9
 
 @dataclass(slots=True)
 class Track:
-    """From units done to percent and time left; percent never falls while the same task process runs."""
+    """From units done to percent and time left; percent never falls while the same task process runs.
+
+    ``found`` is the share that was done before the time began: finished shards of an earlier worker.
+    """
 
     percent: float = 0.0
     message: str = ""
     eta_s: float | None = None
+    found: float = 0.0
     _elapsed: float = 0.0
     _fresh: bool = field(default=False)
 
@@ -32,8 +36,8 @@ class Track:
         """
         share = min(max(done / total, 0.0), 1.0) if total > 0 else 0.0
         percent = max(self.percent, min(100.0 * share, _MOST))
-        if share > 0.0:
-            estimate = elapsed_s * (1.0 - share) / share
+        if share > self.found:
+            estimate = elapsed_s * (1.0 - share) / (share - self.found)
             if self.eta_s is not None:
                 expected = max(self.eta_s - (elapsed_s - self._elapsed), 0.0)
                 estimate = expected + _SMOOTHING * (estimate - expected)

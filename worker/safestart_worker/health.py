@@ -1,0 +1,25 @@
+"""``python -m safestart_worker.health``: exit code 0 when a worker of this host was heard of lately."""
+
+from __future__ import annotations
+
+import socket
+import sys
+
+from safestart.errors import SafestartError
+from safestart.settings import settings
+from safestart.store.database import Database
+from safestart.store.jobs import JobRepository
+
+
+def main() -> int:
+    """Ask the database, which has the heartbeats."""
+    try:
+        owners = JobRepository(Database(settings().url())).owners_alive()
+    except SafestartError as error:
+        sys.stderr.write(f"{error.detail}\n")
+        return 1
+    return 0 if any(owner.startswith(f"{socket.gethostname()}-") for owner in owners) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
