@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -18,6 +19,7 @@ from safestart_service import openapi, problems
 from safestart_service.limits import Limits
 from safestart_service.metrics import MetricsMiddleware
 from safestart_service.routes import (
+    admin,
     certificates,
     dashboard,
     events,
@@ -40,24 +42,28 @@ DESCRIPTION = (
 )
 
 log = logging.getLogger("safestart.service")
+# While the database is away there is nothing to do but ask again.
+AWAY_S = 2.0
 
 
 def create_app(settings: Settings | None = None, database: Database | None = None) -> FastAPI:
     """Build the application.
 
-    Without ``database`` it opens and migrates the one of the settings; one that is away at start is reported by
-    ``/readyz``, and the instant answers work all the same. Raises ``InvalidInput`` for a URL that is none.
+    Without ``database`` it opens the one of the settings. It is migrated at start; one that is away then is reported by
+    ``/readyz`` and migrated as soon as it is there, and the instant answers work all the same. Raises
+    ``InvalidInput`` for a URL that is none.
     """
     found = Services(settings or process_settings(), database)
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
-        if database is None:
-            try:
-                found.database.migrate()
-            except Unavailable as error:
-                log.error("%s", error.detail)
-        yield
+        waiting = None
+        if not await _migrated(found):
+            waiting = asyncio.create_task(_keep_migrating(found))
+        async with found.keyring.kept_fresh():
+            yield
+        if waiting is not None:
+            waiting.cancel()
         found.database.close()
 
     app = FastAPI(
@@ -74,10 +80,16 @@ def create_app(settings: Settings | None = None, database: Database | None = Non
     problems.install(app)
     openapi.install(app)
     app.add_middleware(MetricsMiddleware, metrics=found.metrics)
-    app.add_middleware(Limits, max_body_bytes=found.settings.max_body_bytes)
+    app.add_middleware(
+        Limits,
+        max_body_bytes=found.settings.max_body_bytes,
+        access=found.access,
+        timeout_s=found.settings.request_timeout_s,
+    )
     # Routes are tried in order, and an included router costs more than a route: the instant verdict comes first.
     app.router.routes.extend(go_no_go.one.routes)
     groups = (
+        go_no_go.proof,
         go_no_go.many,
         certificates.router,
         processes.router,
@@ -86,6 +98,7 @@ def create_app(settings: Settings | None = None, database: Database | None = Non
         events.router,
         landing.router,
         operations.router,
+        admin.router,
         dashboard.router,
     )
     for group in groups:
@@ -95,3 +108,20 @@ def create_app(settings: Settings | None = None, database: Database | None = Non
     ]
     app.state.route_table = [(route.path_regex, route.methods) for route in routes]
     return app
+
+
+async def _migrated(found: Services) -> bool:
+    try:
+        await asyncio.to_thread(found.database.migrate)
+    except Unavailable as error:
+        log.error("%s", error.detail)
+        return False
+    return True
+
+
+async def _keep_migrating(found: Services) -> None:
+    while True:
+        await asyncio.sleep(AWAY_S)
+        if await _migrated(found):
+            log.info("the database is there")
+            return

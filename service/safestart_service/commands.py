@@ -4,17 +4,22 @@ from __future__ import annotations
 
 import ipaddress
 import socket
-from typing import Annotated
+from contextlib import suppress
+from time import sleep
+from typing import Annotated, Any
 
 import typer
 
-from safestart.errors import InvalidInput, SafestartError, Unavailable
-from safestart.settings import settings
+from safestart.errors import Away, InvalidInput, SafestartError, Unavailable
+from safestart.logs import configure
+from safestart.settings import Settings, settings
 
 REMEDY = (
-    "bind to 127.0.0.1 or ::1 and let a reverse proxy or an SSH tunnel on this machine face the network; the service "
-    "has no API keys yet, so whoever reaches it may use it"
+    "whoever reaches it could use it, as no API keys are in force: make one with `safestart keys create --name NAME "
+    "--role admin`, or bind to 127.0.0.1 or ::1"
 )
+
+AWAY_S = 2.0
 
 
 def register(app: typer.Typer) -> None:
@@ -23,11 +28,13 @@ def register(app: typer.Typer) -> None:
 
 
 def serve(
-    host: Annotated[str | None, typer.Option(help="Loopback address to bind to.")] = None,
+    host: Annotated[
+        str | None, typer.Option(help="Address to bind to; beyond loopback only with API keys.")
+    ] = None,
     port: Annotated[int | None, typer.Option(min=0, max=65535, help="Port; 0: any free one.")] = None,
     database_url: Annotated[str | None, typer.Option(help="SQLAlchemy URL of the database.")] = None,
 ) -> None:
-    """Serve the HTTP API and the dashboard, on this machine only."""
+    """Serve the HTTP API and the dashboard."""
     given = {"host": host, "port": port, "database_url": database_url}
     try:
         _serve({name: value for name, value in given.items() if value is not None})
@@ -38,7 +45,15 @@ def serve(
 
 def _serve(overrides: dict[str, object]) -> None:
     chosen = settings().model_copy(update=overrides)
-    listener = listen(chosen.host, chosen.port)
+    family, address = resolve(chosen.host, chosen.port)
+    while not is_loopback(address):
+        try:
+            require_keys(chosen)
+            break
+        except Away as error:
+            typer.echo(f"safestart: waits for the database: {error.detail}", err=True)
+            sleep(AWAY_S)
+    listener = listen(family, address, chosen.host)
     try:
         # Imported when it is sure that they are needed: a wrong argument is answered at once.
         import uvicorn
@@ -47,11 +62,14 @@ def _serve(overrides: dict[str, object]) -> None:
         from safestart_service.app import create_app
 
         database = Database(chosen.url())
-        database.migrate()
+        configure(chosen.log_format)
+        with suppress(Away):  # the application waits for it, and says so
+            database.migrate()
         config = uvicorn.Config(
             create_app(chosen, database),
             http="httptools",
             access_log=False,
+            log_config=None,
             log_level="warning",
             server_header=False,
             timeout_graceful_shutdown=3,  # event streams never end by themselves
@@ -61,28 +79,53 @@ def _serve(overrides: dict[str, object]) -> None:
         base = f"http://{shown}:{listener.getsockname()[1]}"
         # The socket listens already: what connects from here on is answered as soon as the loop runs.
         typer.echo(f"safestart: {base} (dashboard {base}/dashboard, calls {base}/docs)")
+        if not is_loopback(address):
+            typer.echo("safestart: keys travel as they are over plain HTTP; put TLS in front of it", err=True)
         server.run(sockets=[listener])
     finally:
         listener.close()
 
 
-def listen(host: str, port: int) -> socket.socket:
-    """A listening socket on a loopback address; raises ``InvalidInput`` or ``Unavailable``."""
+def resolve(host: str, port: int) -> tuple[int, Any]:
+    """Family and address to bind to; raises ``InvalidInput``."""
     try:
         family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
     except OSError:
         raise InvalidInput(
-            f"host: required a loopback address, received {host!r}",
+            f"host: required an address of this machine, received {host!r}",
             field="host",
-            required="a loopback address",
+            required="an address of this machine",
         ) from None
-    if not ipaddress.ip_address(address[0].partition("%")[0]).is_loopback:
+    return family, address
+
+
+def is_loopback(address: Any) -> bool:
+    """True when only this machine reaches the address."""
+    return ipaddress.ip_address(address[0].partition("%")[0]).is_loopback
+
+
+def require_keys(chosen: Settings) -> None:
+    """Raise ``InvalidInput`` unless an API key is in force, ``Unavailable`` when the database does not say."""
+    from safestart.store.database import Database
+    from safestart.store.keys import KeyRepository
+
+    database, host = Database(chosen.url()), chosen.host
+    try:
+        database.migrate()
+        found = KeyRepository(database).list()
+    finally:
+        database.close()
+    if not any(key.usable for key in found):
         raise InvalidInput(
             f"host: required a loopback address, received {host}; {REMEDY}",
             field="host",
-            required="a loopback address",
+            required="a loopback address, or API keys",
             received=host,
         )
+
+
+def listen(family: int, address: Any, host: str) -> socket.socket:
+    """A listening socket; raises ``Unavailable``."""
     listener = socket.socket(family, socket.SOCK_STREAM)
     try:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -90,6 +133,7 @@ def listen(host: str, port: int) -> socket.socket:
         listener.listen(2048)
     except OSError as error:
         listener.close()
+        port = address[1]
         raise Unavailable(
             f"port: {host}:{port} cannot be bound ({error.strerror}); another port is chosen with --port, any free one "
             "with --port 0",

@@ -11,6 +11,7 @@ from safestart.errors import NotFound
 from safestart.processes.base import ProcessSpec
 from safestart.processes.registry import process
 from safestart_service.answers import link
+from safestart_service.dialects import common
 from safestart_service.errors import NoSuchProcess
 
 EXECUTE_REL = "http://www.opengis.net/def/rel/ogc/1.0/execute"
@@ -81,7 +82,7 @@ def _properties(
         entries[name] = {
             "title": inlined.pop("title", name),
             "description": inlined.pop("description", ""),
-            "schema": inlined,
+            "schema": common(inlined),
         }
     return entries, frozenset(schema.get("required", ()))
 

@@ -43,6 +43,54 @@ class QueryTooLong(SafestartError):
     title = "Query too long"
 
 
+class Unauthorized(SafestartError):
+    """No key, or none that is in force; all reasons get the same words."""
+
+    status = 401
+    slug = "unauthorized"
+    title = "API key required"
+
+
+class Forbidden(SafestartError):
+    """A key in force whose role is not enough."""
+
+    status = 403
+    slug = "forbidden"
+    title = "Not allowed with this key"
+
+
+class NotAcceptable(SafestartError):
+    """None of the media types that the caller takes is offered."""
+
+    status = 406
+    slug = "not-acceptable"
+    title = "Not acceptable"
+
+
+class RequestTimeout(SafestartError):
+    """A body that did not come in time."""
+
+    status = 408
+    slug = "request-timeout"
+    title = "Request timeout"
+
+
+class Misdirected(SafestartError):
+    """A Host header that names another server: a wrong proxy, or a page that rebinds a name of its own to us."""
+
+    status = 421
+    slug = "misdirected-request"
+    title = "Not this host"
+
+
+class RateLimited(SafestartError):
+    """More requests than one key or one address may send."""
+
+    status = 429
+    slug = "rate-limited"
+    title = "Too many requests"
+
+
 class UnsupportedMediaType(SafestartError):
     """A body whose content type is not JSON."""
 

@@ -24,6 +24,12 @@ class OutputRequest(WireModel):
 class ExecuteRequest(WireModel):
     """What all execution requests share. Each process has its own subclass with typed ``inputs``."""
 
+    priority: int = Field(
+        0,
+        ge=-100,
+        le=100,
+        description="Of a queued job: higher is served first. Above 0 only with an admin key.",
+    )
     outputs: dict[str, OutputRequest] | None = Field(
         None, description="Outputs wanted; absent: all. A stored result always holds all of them."
     )
@@ -61,9 +67,9 @@ def check_states(inputs: WireModel, max_states: int) -> None:
         raise invalid("states", f"at most {max_states} items", len(inputs.states))
 
 
-def run_now(spec: ProcessSpec, inputs: WireModel) -> dict[str, Any]:
+def run_now(spec: ProcessSpec, inputs: WireModel, context: Context) -> dict[str, Any]:
     """Run a light process here; returns its output document."""
-    return spec.runner()(inputs, Context()).document
+    return spec.runner()(inputs, context).document
 
 
 def selected(document: dict[str, Any], request: ExecuteRequest) -> Any:

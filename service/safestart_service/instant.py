@@ -10,8 +10,10 @@ from pydantic import Field
 from safestart.certificates.explain import explain
 from safestart.certificates.point import certify_point, prepare
 from safestart.processes.base import WireModel
+from safestart.processes.go_no_go.asked import Asked, Kind, Method, refuse_closed_form
 from safestart.processes.go_no_go.run import run, single
-from safestart.processes.go_no_go.spec import GoNoGoInputs, Method, StateInput
+from safestart.processes.go_no_go.spec import GoNoGoInputs, StateInput
+from safestart.processes.go_no_go.widths import Member
 from safestart.processes.wire import NO_SYNC_LIMIT, CorridorInput, Thrust, TumbleRate
 from safestart.progress import Context
 from safestart.scenario import MAX_MEAN_MOTION, MAX_RANGE, Rest
@@ -19,7 +21,7 @@ from safestart.scenario import MAX_MEAN_MOTION, MAX_RANGE, Rest
 _SILENT = Context()
 
 
-class GoNoGoQuery(WireModel):
+class GoNoGoQuery(Asked):
     """One operating point and one start, flat."""
 
     omega_t_deg_s: TumbleRate
@@ -40,13 +42,6 @@ class GoNoGoQuery(WireModel):
     x0_m: float = Field(2.5, ge=0, le=1000, description="Corridor: half-width of the port in x, m.")
     z0_m: float = Field(2.5, ge=0, le=1000, description="Corridor: half-width of the port in z, m.")
     r_h_m: float = Field(0.5, ge=0, le=1000, description="Corridor: hold stand-off radius, m.")
-    method: Method = Field(
-        "closed_form", description="closed_form, or exact (auto is the same for one start)."
-    )
-    horizon_s: float = Field(
-        60.0, ge=2, le=600, multiple_of=2, description="How long to stay in the corridor (exact), s."
-    )
-    proofs: bool = Field(False, description="Return the proof document (exact).")
 
     def inputs(self) -> GoNoGoInputs:
         """The same question as inputs of the go-no-go process; validated already, so not again."""
@@ -60,9 +55,7 @@ class GoNoGoQuery(WireModel):
             corridor=corridor,
             states=[StateInput.model_construct(x_m=self.x_m, y_m=self.y_m, z_m=self.z_m)],
             rest=self.rest,
-            method=self.method,
-            horizon_s=self.horizon_s,
-            proofs=self.proofs,
+            **{name: getattr(self, name) for name in Asked.model_fields},
         )
 
 
@@ -85,14 +78,26 @@ class GoNoGoAnswer(WireModel):
     proof: dict[str, Any] | None = Field(
         None, description="Proof document for `safestart verify`, when asked for."
     )
+    proof_url: str | None = Field(
+        None, description="Where the proof document is given alone; null for closed_form and UNDECIDED."
+    )
+    end_s: float | None = Field(
+        None, description="When the flight of a GO is at rest in the hold ball (synchronize), s."
+    )
+    examples: list[Member] | None = Field(
+        None,
+        description="With half-widths, when UNDECIDED: members looked at, if possible one GO and one NO_GO.",
+    )
     method: Method
+    question: Kind
     rest: Rest
 
 
-def flat_answer(query: GoNoGoQuery) -> dict[str, Any]:
+def flat_answer(query: GoNoGoQuery, context: Context = _SILENT) -> dict[str, Any]:
     """The go-no-go document of a single state, without arrays of length one."""
     if query.method != "closed_form":
-        return single(run(query.inputs(), _SILENT).document)
+        return single(run(query.inputs(), context).document)
+    refuse_closed_form(query)
     shape = (query.c_x, query.c_z, query.x0_m, query.z0_m, query.r_h_m)
     z = query.z_m
     prepared = prepare(
@@ -115,7 +120,10 @@ def flat_answer(query: GoNoGoQuery) -> dict[str, Any]:
         "binding": binding,
         "violated_faces": violated,
         "reason": reason,
+        "end_s": None,
+        "examples": None,
         "proof": None,
         "method": "closed_form",
+        "question": "stay",
         "rest": query.rest.value,
     }

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from typing import Any
 
 from safestart.errors import NotFound
-from safestart.store.records import Job, JobStatus
+from safestart.processes.registry import PROCESS_IDS, process
+from safestart.store.records import Crew, Job, JobStatus, Wait
 from safestart_service.answers import link
 from safestart_service.errors import NoSuchJob
 from safestart_service.state import Services
@@ -27,11 +29,21 @@ def known_job(services: Services, job_id: str) -> Job:
         raise NoSuchJob(error.detail, field="jobID", required="the id of a job", received=job_id) from None
 
 
-def status_info(services: Services, job: Job, base: str, workers: int | None = None) -> dict[str, Any]:
-    """statusInfo of a job; ``workers`` spares a query where many jobs are listed."""
-    position = services.jobs.position(job.id) if job.status is JobStatus.ACCEPTED else None
-    if position is not None and workers is None:
-        workers = services.jobs.workers_alive()
+def status_infos(services: Services, jobs: Sequence[Job], base: str) -> list[dict[str, Any]]:
+    """statusInfo of each job of a list, with its place in the queue and without the estimates of waiting ones."""
+    places = services.jobs.positions(job.id for job in jobs if job.status is JobStatus.ACCEPTED)
+    crew = services.jobs.crew()
+    waits = {job_id: Wait(place, None, None) for job_id, place in places.items()}
+    return [_status_info(job, base, waits.get(job.id), crew) for job in jobs]
+
+
+def status_info(services: Services, job: Job, base: str) -> dict[str, Any]:
+    """statusInfo of one job; one that waits has estimates of its start and end."""
+    wait = services.jobs.wait(job.id) if job.status is JobStatus.ACCEPTED else None
+    return _status_info(job, base, wait, services.jobs.crew())
+
+
+def _status_info(job: Job, base: str, wait: Wait | None, crew: Crew) -> dict[str, Any]:
     return {
         "jobID": job.id,
         "processID": job.process_id,
@@ -39,14 +51,18 @@ def status_info(services: Services, job: Job, base: str, workers: int | None = N
         "status": job.status.value,
         "message": job.message,
         "created": job.created_at,
-        "started": job.started_at,
-        "finished": job.finished_at,
+        # The standard's times have no null: they come when there are any.
+        **({} if job.started_at is None else {"started": job.started_at}),
+        **({} if job.finished_at is None else {"finished": job.finished_at}),
         "updated": job.updated_at,
         "progress": int(job.progress),
-        "position": position,
-        "reason": waiting_reason(position, workers),
-        "eta_s": job.eta_s,
+        "position": None if wait is None else wait.position,
+        "reason": waiting_reason(wait, crew),
+        "starts_in_s": None if wait is None else wait.starts_in_s,
+        "eta_s": job.eta_s if wait is None else wait.ends_in_s,
+        "priority": job.priority,
         "attempts": job.attempts,
+        "submitter": job.submitter or None,
         "dismissal_requested": job.cancel_requested,
         "problem": job.problem,
         "links": _links(job, base),
@@ -61,15 +77,24 @@ def job_detail(services: Services, job: Job, base: str) -> dict[str, Any]:
     return {**status_info(services, job, base), "inputs": job.inputs, "instant": instant}
 
 
-def waiting_reason(position: int | None, workers: int | None) -> str | None:
+def waiting_reason(wait: Wait | None, crew: Crew) -> str | None:
     """Why a job waits, in a sentence; None when it does not wait."""
-    if position is None:
+    if wait is None:
         return None
-    ahead = position - 1
-    queue = "next in the queue" if ahead == 0 else f"{ahead} job{'s' if ahead > 1 else ''} ahead"
-    if not workers:
+    ahead = wait.position - 1
+    queue = "next in the queue" if ahead == 0 else f"{_many(ahead, 'job')} ahead"
+    if not crew.workers:
         return f"{NO_WORKER}; {queue}"
-    return f"{queue}; {workers} worker{'s' if workers > 1 else ''} connected"
+    workers = f"{_many(crew.workers, 'worker')} connected"
+    if not crew.places:
+        return f"{queue}; {workers}, still starting"
+    if crew.busy >= crew.places:
+        return f"{queue}; {workers}, {crew.busy} of {_many(crew.places, 'place')} taken"
+    return f"{queue}; {workers}"
+
+
+def _many(number: int, what: str) -> str:
+    return f"{number} {what}{'' if number == 1 else 's'}"
 
 
 def _links(job: Job, base: str) -> list[dict[str, str]]:
@@ -80,9 +105,36 @@ def _links(job: Job, base: str) -> list[dict[str, str]]:
         link(f"{base}/dashboard/jobs/{job.id}", "alternate", "this job as a page", "text/html"),
         link(f"{base}/processes/{job.process_id}", "up", "its process"),
     ]
+    if job.process_id in PROCESS_IDS and process(job.process_id).sharding is not None:
+        links.append(link(f"{here}/partial", "partial", "what the finished shards say already"))
     if job.status is JobStatus.SUCCESSFUL:
         links.append(link(f"{here}/results", RESULTS_REL, "results, with links to the artifacts"))
     return links
+
+
+def partial_document(services: Services, job: Job, base: str) -> dict[str, Any]:
+    """What the finished shards of a job say already; raises ``NotFound`` for a process without shards."""
+    spec = process(job.process_id)
+    if spec.sharding is None:
+        raise NotFound(
+            f"process {spec.id} is not cut into shards, so its jobs have no partial results",
+            field="jobID",
+            required="a job of a process that is cut into shards",
+            received=job.id,
+        )
+    inputs = spec.parse(job.inputs)
+    documents = services.jobs.shard_documents(job.id)
+    total = len(spec.sharding.parts(inputs))
+    # The shards of a successful job are gone: its result replaces them.
+    done = total if job.status is JobStatus.SUCCESSFUL else len(documents)
+    return {
+        "jobID": job.id,
+        "processID": job.process_id,
+        "status": job.status.value,
+        "shards": {"done": done, "total": total},
+        "outputs": spec.sharding.so_far(inputs, documents) if documents else None,
+        "links": _links(job, base),
+    }
 
 
 def result_document(services: Services, job_id: str, base: str) -> dict[str, Any]:

@@ -38,8 +38,10 @@ def query_values(raw: bytes) -> dict[str, str]:
     return values
 
 
-def query_route(model: type[BaseModel], answer: Callable[[Any], Awaitable[Response]]) -> type[APIRoute]:
-    """An ``APIRoute`` class that serves ``answer(model)``; the endpoint it decorates is the documentation."""
+def query_route(
+    model: type[BaseModel], answer: Callable[[Request, Any], Awaitable[Response]]
+) -> type[APIRoute]:
+    """An ``APIRoute`` class that serves ``answer(request, model)``; the endpoint it decorates is the documentation."""
     validate = model.model_validate_strings
 
     class QueryRoute(APIRoute):
@@ -53,7 +55,7 @@ def query_route(model: type[BaseModel], answer: Callable[[Any], Awaitable[Respon
                     query = validate(query_values(request.scope["query_string"]))
                 except ValidationError as error:
                     raise validation_error(error) from None
-                return await answer(query)
+                return await answer(request, query)
 
             return handle
 

@@ -1,11 +1,12 @@
-"""The outermost layer, pure ASGI: request id, security headers, caps on body and query, the last-resort 500.
+"""The outermost layer, pure ASGI: request id, security headers, access, caps on body and query, the last-resort 500.
 
 It sits in front of every answer, the instant ones too, so it does no more per request than it must: headers are
-encoded once, and ``receive`` is wrapped only when a body is announced.
+encoded once and read in one pass, and ``receive`` is wrapped only when a body is announced.
 """
 
 from __future__ import annotations
 
+import asyncio
 import itertools
 import logging
 import re
@@ -15,8 +16,10 @@ from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from safestart.errors import SafestartError
+from safestart.logs import about
 from safestart_service import problems
-from safestart_service.errors import BodyTooLarge, QueryTooLong
+from safestart_service.access import Access, Presented
+from safestart_service.errors import BodyTooLarge, QueryTooLong, RequestTimeout
 
 MAX_QUERY_BYTES = 8192
 CSP = (
@@ -38,9 +41,13 @@ log = logging.getLogger("safestart.service")
 class Limits:
     """ASGI middleware around the whole application."""
 
-    def __init__(self, app: ASGIApp, max_body_bytes: int) -> None:
+    def __init__(
+        self, app: ASGIApp, max_body_bytes: int, access: Access | None = None, timeout_s: float = 60.0
+    ) -> None:
         self.app = app
         self.max_body_bytes = max_body_bytes
+        self.access = access
+        self.timeout_s = timeout_s
         self._prefix = secrets.token_hex(4).encode() + b"-"
         self._numbers = itertools.count(1)
 
@@ -49,7 +56,9 @@ class Limits:
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
-        request_id, length, chunked = self._read_headers(scope)
+        if scope["method"] == "HEAD" and not scope["path"].endswith("/events"):
+            scope = {**scope, "method": "GET"}  # the server sends the head of the answer alone
+        request_id, length, chunked, presented = self._read_headers(scope)
         scope["safestart.request_id"] = request_id.decode("ascii")
         extra = (*SECURITY_HEADERS, (b"x-request-id", request_id))
         started = False
@@ -58,39 +67,48 @@ class Limits:
             nonlocal started
             if message["type"] == "http.response.start":
                 started = True
-                message["headers"].extend(extra)
+                own = any(name == b"content-security-policy" for name, _ in message["headers"])
+                message["headers"].extend(extra[1:] if own else extra)
             await send(message)
 
-        refusal = self._refusal(scope, length)
+        refusal = self._refusal(scope, length, presented)
         if refusal is not None:
-            await _answer(send_with_headers, problems.of_error(refusal, scope["path"], request_id.decode()))
+            problem = problems.of_error(refusal, scope["path"], request_id.decode())
+            await _answer(send_with_headers, problem, problems.headers_of(refusal))
             return
-        if chunked:
-            receive = self._counted(receive)
+        if chunked or length is not None:
+            receive = self._watched(receive)
         try:
             await self.app(scope, receive, send_with_headers)
         except ClientDisconnect:
-            log.info("request %s: the caller left", request_id.decode())
+            log.info("the caller left", extra=about(request=request_id.decode()))
         except Exception:
-            log.exception("request %s: %s %s", request_id.decode(), scope["method"], scope["path"])
+            log.exception("%s %s", scope["method"], scope["path"], extra=about(request=request_id.decode()))
             if started:  # too late for a problem document: let the server cut the connection
                 raise
             await _answer(send_with_headers, problems.unexpected(scope["path"], request_id.decode()))
 
-    def _read_headers(self, scope: Scope) -> tuple[bytes, bytes | None, bool]:
-        """Request id (the caller's if it is harmless), Content-Length, whether the body is chunked."""
-        request_id = length = None
+    def _read_headers(self, scope: Scope) -> tuple[bytes, bytes | None, bool, Presented]:
+        """Request id (the caller's if it is harmless), Content-Length, whether the body is chunked, host and key."""
+        request_id = length = host = authorization = api_key = None
         chunked = False
         for name, value in scope["headers"]:
             if name == b"content-length":
                 length = value
             elif name == b"transfer-encoding":
                 chunked = True
+            elif name == b"host":
+                host = value
+            elif name == b"authorization":
+                authorization = value
+            elif name == b"x-api-key":
+                api_key = value
             elif name == b"x-request-id" and _SAFE_ID.fullmatch(value):
                 request_id = value
-        return request_id or self._prefix + b"%x" % next(self._numbers), length, chunked
+        request_id = request_id or self._prefix + b"%x" % next(self._numbers)
+        return request_id, length, chunked, (host, authorization, api_key)
 
-    def _refusal(self, scope: Scope, length: bytes | None) -> SafestartError | None:
+    def _refusal(self, scope: Scope, length: bytes | None, presented: Presented) -> SafestartError | None:
         if length is not None and (
             not length.isdigit() or len(length) > 15 or int(length) > self.max_body_bytes
         ):
@@ -102,7 +120,7 @@ class Limits:
                 required=f"at most {MAX_QUERY_BYTES} bytes",
                 received=len(scope["query_string"]),
             )
-        return None
+        return None if self.access is None else self.access.refusal(scope, presented)
 
     def _too_large(self, received: str) -> BodyTooLarge:
         required = f"at most {self.max_body_bytes} bytes"
@@ -113,26 +131,43 @@ class Limits:
             received=received,
         )
 
-    def _counted(self, receive: Receive) -> Receive:
-        """A chunked body announces no length: count what comes, and stop reading beyond the cap."""
+    def _watched(self, receive: Receive) -> Receive:
+        """Count what comes, as a chunked body announces no length, and stop reading beyond the cap or too late."""
         total = 0
+        complete = False
+        deadline = asyncio.get_running_loop().time() + self.timeout_s
 
-        async def counting() -> Message:
-            nonlocal total
-            message = await receive()
+        async def watching() -> Message:
+            nonlocal total, complete
+            if complete:
+                return await receive()
+            try:
+                async with asyncio.timeout_at(deadline):
+                    message = await receive()
+            except TimeoutError:
+                raise self._too_slow(total) from None
             if message["type"] == "http.request":
                 total += len(message.get("body", b""))
+                complete = not message.get("more_body", False)
                 if total > self.max_body_bytes:
                     raise self._too_large(f"{total} bytes or more")
             return message
 
-        return counting
+        return watching
+
+    def _too_slow(self, total: int) -> RequestTimeout:
+        required = f"the whole body within {self.timeout_s:g} s"
+        return RequestTimeout(
+            f"body: required {required}, received {total} bytes",
+            field="body",
+            required=required,
+            received=total,
+        )
 
 
-async def _answer(send: Send, problem: dict[str, object]) -> None:
+async def _answer(send: Send, problem: dict[str, object], more: dict[str, str] | None = None) -> None:
     body = problems.encode(problem)
     headers = [(b"content-type", problems.MEDIA_TYPE.encode()), (b"content-length", b"%d" % len(body))]
-    if problem["status"] == 413:
-        headers.append((b"connection", b"close"))  # the rest of the body is not read
+    headers += [(name.lower().encode(), value.encode()) for name, value in (more or {}).items()]
     await send({"type": "http.response.start", "status": problem["status"], "headers": headers})
     await send({"type": "http.response.body", "body": body})

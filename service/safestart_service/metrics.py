@@ -2,33 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from math import ceil
 from time import perf_counter
 
 from prometheus_client import CollectorRegistry, Counter, Histogram, generate_latest
-from prometheus_client.core import GaugeMetricFamily, Metric
+from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Metric
 from prometheus_client.registry import Collector
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from safestart.errors import SafestartError
+from safestart.store.records import Run, Vitals
 
 BUCKETS = (0.0005, 0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 10.0)
 UNROUTED = "(none)"
 
-StoreCounts = Callable[[], tuple[dict[str, int], int]]
+QUANTILES = (0.5, 0.9, 1.0)
+TALLIES = {
+    "lease_losses": "Jobs taken over because the lease of their worker ran out.",
+    "task_deaths": "Task processes that died while they ran a job.",
+    "poisoned": "Jobs that failed because every attempt was lost.",
+}
 
 
 class _StoreCollector(Collector):
     """Asks the store at each scrape; a store that is away shows as ``safestart_store_up 0``."""
 
-    def __init__(self, counts: StoreCounts) -> None:
-        self._counts = counts
+    def __init__(self, vitals: Callable[[], Vitals]) -> None:
+        self._vitals = vitals
 
     def collect(self) -> Iterator[Metric]:
         """Yield the gauges of this scrape."""
         up = GaugeMetricFamily("safestart_store_up", "1 when the database answers.")
         try:
-            counts, workers = self._counts()
+            vitals = self._vitals()
         except SafestartError:
             up.add_metric([], 0)
             yield up
@@ -36,16 +43,45 @@ class _StoreCollector(Collector):
         up.add_metric([], 1)
         yield up
         jobs = GaugeMetricFamily("safestart_jobs", "Jobs by status.", labels=["status"])
-        for status, count in counts.items():
+        for status, count in vitals.jobs.items():
             jobs.add_metric([str(status)], count)
         yield jobs
-        yield GaugeMetricFamily("safestart_workers_alive", "Workers whose heartbeat is fresh.", value=workers)
+        crew = vitals.crew
+        for name, text, value in (
+            ("queue_depth", "Jobs that wait.", vitals.jobs["accepted"]),
+            ("queue_oldest_wait_seconds", "Age of the oldest waiting job.", vitals.oldest_wait_s),
+            ("workers_alive", "Workers whose heartbeat is fresh.", crew.workers),
+            ("places", "Jobs that the living workers can run at once.", crew.places),
+            ("places_taken", "Places in which a job runs.", crew.busy),
+        ):
+            yield GaugeMetricFamily(f"safestart_{name}", text, value=value)
+        for name, text in TALLIES.items():
+            yield CounterMetricFamily(f"safestart_{name}", text, value=vitals.tallies.get(name, 0))
+        yield from _run_times(vitals.runs)
+
+
+def _run_times(runs: Sequence[Run]) -> Iterator[Metric]:
+    """Quantiles over the successful jobs that ended last, by process."""
+    waited = GaugeMetricFamily(
+        "safestart_job_wait_seconds", "Time from submission to start.", labels=["process", "quantile"]
+    )
+    took = GaugeMetricFamily(
+        "safestart_job_run_seconds", "Time from start to end.", labels=["process", "quantile"]
+    )
+    for process in sorted({run.process_id for run in runs}):
+        own = [run for run in runs if run.process_id == process]
+        for family, values in ((waited, [run.wait_s for run in own]), (took, [run.run_s for run in own])):
+            ordered = sorted(values)
+            for share in QUANTILES:
+                family.add_metric([process, str(share)], ordered[ceil(share * len(ordered)) - 1])
+    yield waited
+    yield took
 
 
 class Metrics:
     """One registry per application, so that several live side by side in the tests."""
 
-    def __init__(self, counts: StoreCounts) -> None:
+    def __init__(self, vitals: Callable[[], Vitals]) -> None:
         self.registry = CollectorRegistry(auto_describe=False)
         self._requests = Counter(
             "safestart_http_requests",
@@ -60,7 +96,7 @@ class Metrics:
             buckets=BUCKETS,
             registry=self.registry,
         )
-        self.registry.register(_StoreCollector(counts))
+        self.registry.register(_StoreCollector(vitals))
         # Looking a labelled child up takes longer than updating it, so the children are kept.
         self._children: dict[tuple[str, str, int], tuple[Callable[[], None], Callable[[float], None]]] = {}
 

@@ -9,13 +9,16 @@ from fastapi.openapi.utils import get_openapi
 from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
 
+from safestart.access import Role
 from safestart.processes.registry import PROCESS_IDS, process
 from safestart_service import schemas
+from safestart_service.access import needed_role
 from safestart_service.execute import execute_model
 from safestart_service.instant import GoNoGoAnswer
 from safestart_service.problems import MEDIA_TYPE, Problem
 
 REF = "#/components/schemas/"
+TAG = "For If-None-Match."
 ANSWERS: tuple[type[BaseModel], ...] = (
     Problem,
     GoNoGoAnswer,
@@ -25,21 +28,32 @@ ANSWERS: tuple[type[BaseModel], ...] = (
     schemas.ProcessDescription,
     schemas.JobList,
     schemas.JobDetail,
+    schemas.Partial,
     schemas.Submitted,
     schemas.ResultDocument,
+    schemas.Partial,
     schemas.Health,
     schemas.Readiness,
+    schemas.KeyList,
+    schemas.NewKeyDocument,
+    schemas.KeyDocument,
+    schemas.AuditList,
 )
 _WHY = {
     304: "The caller has this content already (If-None-Match).",
     400: "The body is not JSON.",
+    401: "Keys are in use, and none in force came with the request.",
+    403: "The key's role is not enough.",
     404: "There is nothing of this name.",
+    406: "None of the media types in Accept is offered.",
+    408: "The body did not come in time.",
     409: "The present state of the job does not allow it.",
     413: "The body is too large.",
     414: "The query is too long.",
     415: "The body is not declared as JSON.",
+    421: "The Host header names another server.",
     422: "An input is not what is required; the problem names it.",
-    429: "As many jobs wait as the service accepts.",
+    429: "Too many requests with this key, or as many jobs wait as the service accepts; Retry-After says when.",
     500: "An unexpected error.",
     503: "The database does not answer.",
 }
@@ -85,13 +99,45 @@ def json_body(models: dict[str, type[BaseModel]], examples: dict[str, Any]) -> d
     }
 
 
+_SECURITY_SCHEMES = {
+    "bearer": {"type": "http", "scheme": "bearer", "description": "An API key."},
+    "header": {"type": "apiKey", "in": "header", "name": "X-API-Key", "description": "An API key."},
+}
+_QUEUE_TEXT = " To queue a job: role `submit`."
+_ROLE_TEXT = "Needs a key with role `{role}` once keys are in use."
+
+
+def _add_access(document: dict[str, Any]) -> None:
+    """What the gate asks of each operation, and how it can refuse it."""
+    document["components"]["securitySchemes"] = _SECURITY_SCHEMES
+    for path, operations in document["paths"].items():
+        for method, operation in operations.items():
+            role = needed_role(method.upper(), path)
+            queues = path.endswith("/execution")
+            statuses = {421} | ({408} if "requestBody" in operation else set())
+            if role is None:
+                operation["security"] = []
+            else:
+                operation["security"] = [{name: []} for name in _SECURITY_SCHEMES]
+                statuses |= {401, 429} | ({403} if role is not Role.READ or queues else set())
+                text = operation.get("description", "")
+                needs = _ROLE_TEXT.format(role=role.value) + (_QUEUE_TEXT if queues else "")
+                operation["description"] = f"{text}\n\n{needs}".strip()
+            for status in statuses:
+                problem = content(MEDIA_TYPE, {"$ref": REF + "Problem"}, _WHY[status])
+                operation["responses"].setdefault(str(status), problem)
+            operation["responses"] = dict(sorted(operation["responses"].items()))
+
+
 def build(app: FastAPI) -> dict[str, Any]:
     """The whole document; the caller keeps it."""
     document = get_openapi(
         title=app.title, version=app.version, description=app.description, routes=app.routes
     )
     specs = [process(name) for name in PROCESS_IDS]
-    inputs = [model for spec in specs for model in (spec.inputs, execute_model(spec.id))]
+    inputs = [model for spec in specs for model in (spec.inputs, execute_model(spec.id))] + [
+        schemas.KeyRequest
+    ]
     outputs = [*ANSWERS, *(spec.outputs for spec in specs)]
     components: dict[str, Any] = document.setdefault("components", {}).setdefault("schemas", {})
     for models, mode in ((inputs, "validation"), (outputs, "serialization")):
@@ -99,6 +145,7 @@ def build(app: FastAPI) -> dict[str, Any]:
         for name, schema in found["$defs"].items():
             if components.setdefault(name, schema) != schema:
                 raise AssertionError(f"two different schemas are called {name}")
+    _add_access(document)
     return document
 
 

@@ -1,26 +1,40 @@
-"""Pages rendered on the server: no script, one style sheet of ours, nothing from elsewhere."""
+"""Pages: shells rendered on the server, drawn by small scripts of ours that use the public API, nothing from elsewhere.
+
+A page holds no data of the store, so that it can be given to anyone: what it shows, its script asks for, with a key
+where keys are required.
+"""
 
 from __future__ import annotations
 
-import json
-from datetime import UTC, datetime
 from functools import cache
+from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fastapi import Request
 from fastapi.responses import HTMLResponse, Response
 from starlette.exceptions import HTTPException
 
-from safestart_service.tables import api_operations, split_outputs
+from safestart_service.answers import entity_tag, not_modified
+from safestart_service.tables import api_operations
 
 if TYPE_CHECKING:
     from jinja2 import Environment
 
 _HERE = Path(__file__).parent
-_STATIC = {"safestart.css": "text/css", "safestart.svg": "image/svg+xml"}
-_MAX_INPUTS = 4000
-ACTIVE = ("accepted", "running")
-REFRESH_S = 3
+_TYPES = {".css": "text/css", ".svg": "image/svg+xml", ".js": "text/javascript"}
+_PLOTLY = "plotly.min.js"
+# The three style attributes that plotly.js writes as text, by hash; everything else it styles through the DOM.
+_PLOTLY_STYLES = (
+    "'sha256-ji27qzEtxXZW+7dun6UwjHXJ18e6WAin1VvNtkzIE/o='",
+    "'sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU='",
+    "'sha256-AR/cKIZjWPcPmBUPDA6oti9XBiTbJvz0Cro2J1VzzS8='",
+)
+CSP = (
+    "default-src 'none'; script-src 'self'; connect-src 'self'; img-src 'self' data: blob:; "
+    f"style-src 'self' 'unsafe-hashes' {' '.join(_PLOTLY_STYLES)}; "
+    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
 
 
 @cache
@@ -28,96 +42,47 @@ def _environment() -> Environment:
     # Imported with the first page: the API starts without.
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-    environment = Environment(
+    return Environment(
         loader=FileSystemLoader(_HERE / "templates"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters.update(figure=figure, duration=duration, moment=moment)
-    return environment
 
 
-def _page(template: str, **values: Any) -> HTMLResponse:
+def page(template: str, **values: Any) -> HTMLResponse:
+    """A page; ``here`` is its path, ``root`` the mount path, ``script`` its module, ``plots`` whether it draws."""
     text = _environment().get_template(template).render(**values)
-    return HTMLResponse(text, headers={"Cache-Control": "no-store"})
-
-
-def job_list(
-    jobs: list[dict[str, Any]], counts: dict[str, int], workers: int, next_cursor: str | None, root: str
-) -> Response:
-    """The page of all jobs."""
-    busy = any(counts.get(status) for status in ACTIVE)
-    refresh = REFRESH_S if busy else None
-    return _page(
-        "jobs.html", root=root, jobs=jobs, counts=counts, workers=workers, cursor=next_cursor, refresh=refresh
-    )
-
-
-def job(detail: dict[str, Any], result: dict[str, Any] | None, root: str) -> Response:
-    """The page of one job."""
-    refresh = REFRESH_S if detail["status"] in ACTIVE else None
-    pictures: list[dict[str, Any]] = []
-    if result is not None:
-        pictures = [a for a in result["artifacts"] if a["media_type"] in ("image/png", "image/jpeg")]
-    outputs = split_outputs(result["outputs"]) if result is not None else None
-    return _page(
-        "job.html",
-        root=root,
-        job=detail,
-        result=result,
-        outputs=outputs,
-        pictures=pictures,
-        inputs=_shown_inputs(detail["inputs"]),
-        refresh=refresh,
-    )
-
-
-def _shown_inputs(inputs: dict[str, Any]) -> str:
-    text = json.dumps(inputs, indent=2)
-    return text if len(text) <= _MAX_INPUTS else text[:_MAX_INPUTS] + "\n… the rest is in the JSON document"
+    return HTMLResponse(text, headers={"Cache-Control": "no-store", "Content-Security-Policy": CSP})
 
 
 def docs(description: dict[str, Any], root: str) -> Response:
     """The API description as a page."""
-    return _page(
-        "docs.html", root=root, info=description["info"], groups=api_operations(description), refresh=None
-    )
+    groups = api_operations(description)
+    return page("docs.html", root=root, here="/docs", info=description["info"], groups=groups)
 
 
-def static(name: str) -> Response:
-    """A static file of ours."""
-    if name not in _STATIC:
+@cache
+def _static_file(name: str) -> tuple[bytes, str, str]:
+    """Bytes, media type and entity tag of one of our files, or of plotly.js."""
+    from hashlib import sha256
+
+    path = files("plotly") / "package_data" / name if name == _PLOTLY else _HERE / "static" / name
+    data = path.read_bytes()
+    return data, _TYPES[Path(name).suffix], entity_tag(sha256(data).hexdigest())
+
+
+@cache
+def _names() -> frozenset[str]:
+    return frozenset(path.name for path in (_HERE / "static").iterdir() if path.suffix in _TYPES) | {_PLOTLY}
+
+
+def static(request: Request, name: str) -> Response:
+    """A script, style sheet or picture of the pages."""
+    if name not in _names():
         raise HTTPException(404)
-    data = (_HERE / "static" / name).read_bytes()
-    return Response(data, media_type=_STATIC[name], headers={"Cache-Control": "public, max-age=300"})
-
-
-def figure(value: Any) -> str:
-    """A value for a table cell: numbers to five figures, None as a dash."""
-    if value is None:
-        return "–"
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    if isinstance(value, float):
-        return f"{value:.5g}"
-    if isinstance(value, list):
-        return ", ".join(figure(item) for item in value)
-    return str(value)
-
-
-def duration(seconds: float | None) -> str:
-    """Seconds as people say them."""
-    if seconds is None:
-        return "–"
-    if seconds < 90:
-        return f"{seconds:.0f} s" if seconds >= 10 else f"{seconds:.1f} s"
-    if seconds < 5400:
-        return f"{seconds / 60:.0f} min"
-    return f"{seconds / 3600:.1f} h"
-
-
-def moment(when: datetime | None) -> str:
-    """A time in UTC, to the second."""
-    return "–" if when is None else when.astimezone(UTC).strftime("%Y-%m-%d %H:%M:%S UTC")
+    data, media_type, tag = _static_file(name)
+    # Asked for anew each time, answered by 304: after an upgrade no page runs an old script.
+    headers = {"Cache-Control": "no-cache", "ETag": tag}
+    return not_modified(request, tag) or Response(data, media_type=media_type, headers=headers)

@@ -23,6 +23,7 @@ OGC_PREFIX = "http://www.opengis.net/def/exceptions/ogcapi-processes-1/1.0/"
 OWN_PREFIX = "urn:safestart:problem:"
 OGC_SLUGS = frozenset({"no-such-process", "no-such-job", "result-not-ready"})
 MAX_SHOWN = 200
+CHALLENGE = 'Bearer realm="safestart"'
 
 log = logging.getLogger("safestart.service")
 
@@ -124,6 +125,17 @@ def unexpected(instance: str, request_id: str | None) -> dict[str, Any]:
     )
 
 
+def headers_of(error: SafestartError) -> dict[str, str]:
+    """Header fields that belong to an error's status."""
+    if error.status == 401:
+        return {"WWW-Authenticate": CHALLENGE}
+    if error.status in (408, 413):  # the rest of the body is not read
+        return {"Connection": "close"}
+    if error.status in (429, 503):
+        return {"Retry-After": "1" if error.slug == "rate-limited" else "5"}
+    return {}
+
+
 def _respond(problem: dict[str, Any], headers: dict[str, str] | None = None) -> Response:
     return Response(encode(problem), problem["status"], headers, media_type=MEDIA_TYPE)
 
@@ -134,8 +146,7 @@ def _request_id(request: Request) -> str | None:
 
 async def _on_own(request: Request, error: Exception) -> Response:
     assert isinstance(error, SafestartError)
-    headers = {"Retry-After": "5"} if error.status in (429, 503) else None
-    return _respond(of_error(error, request.scope["path"], _request_id(request)), headers)
+    return _respond(of_error(error, request.scope["path"], _request_id(request)), headers_of(error))
 
 
 def _methods_at(request: Request) -> str:

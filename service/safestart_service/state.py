@@ -6,7 +6,10 @@ from typing import TYPE_CHECKING
 
 from fastapi import FastAPI, Request
 
+from safestart.progress import Context
 from safestart.settings import Settings
+from safestart_service.access import Access
+from safestart_service.keyring import Keyring
 from safestart_service.metrics import Metrics
 
 if TYPE_CHECKING:
@@ -14,21 +17,29 @@ if TYPE_CHECKING:
 
 
 class Services:
-    """Settings, repositories and metrics of one application.
+    """Settings, repositories, metrics and the context of answers at once, of one application.
 
     The store is imported when it is first needed: the instant answers and the API description do without.
     """
 
     def __init__(self, settings: Settings, database: Database | None = None) -> None:
+        from safestart.store.audit import AuditLog
+        from safestart.store.cache import Cache
         from safestart.store.database import Database
         from safestart.store.jobs import JobRepository
+        from safestart.store.keys import KeyRepository
         from safestart.store.results import ResultRepository
 
         self.settings = settings
         self.database = database or Database(settings.url())
         self.jobs = JobRepository(self.database)
         self.results = ResultRepository(self.database)
-        self.metrics = Metrics(lambda: (self.jobs.counts(), self.jobs.workers_alive()))
+        self.keys = KeyRepository(self.database)
+        self.audit = AuditLog(self.database)
+        self.keyring = Keyring(self.keys)
+        self.access = Access(settings, self.keyring)
+        self.context = Context(shelf=Cache(self.database))
+        self.metrics = Metrics(self.jobs.vitals)
 
 
 def services(request: Request) -> Services:

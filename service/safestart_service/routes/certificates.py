@@ -12,6 +12,7 @@ from safestart_service.answers import Json
 from safestart_service.body import parse_body, read_body
 from safestart_service.execute import run_now
 from safestart_service.openapi import answer, json_body, refusals
+from safestart_service.state import services
 
 router = APIRouter(tags=["instant answers"])
 
@@ -25,4 +26,5 @@ router = APIRouter(tags=["instant answers"])
 async def certificates(request: Request) -> Response:
     """Synchronization radius, safe fraction of the corridor, mask and margin of every grid point."""
     body = await read_body(request)
-    return await asyncio.to_thread(lambda: Json(run_now(SPEC, parse_body(CertificateInputs, body))))
+    context = services(request).context
+    return await asyncio.to_thread(lambda: Json(run_now(SPEC, parse_body(CertificateInputs, body), context)))

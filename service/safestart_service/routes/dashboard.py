@@ -1,50 +1,68 @@
-"""The dashboard: jobs as pages."""
+"""The dashboard: its pages and their files. Every figure on them comes from the public API."""
 
 from __future__ import annotations
 
-from typing import Annotated
-
-from fastapi import APIRouter, Query, Request
+from fastapi import APIRouter, Request
 from fastapi.responses import Response
 
-from safestart.store.records import JobStatus
 from safestart_service import pages
-from safestart_service.jobs_view import job_detail, known_job, result_document, status_info
 from safestart_service.openapi import content, refusals
 from safestart_service.routes.jobs import JobId
-from safestart_service.state import services
 
 router = APIRouter(tags=["dashboard"])
-
 _PAGE = content("text/html", {"type": "string"}, "A page.")
 
 
-@router.get("/dashboard", summary="Jobs as a page", responses={200: _PAGE, **refusals(422, 503)})
-def dashboard(
-    request: Request, cursor: Annotated[str | None, Query(max_length=200, description="Next page.")] = None
-) -> Response:
-    """Jobs with status, progress, place in the queue and time left; reloads itself while something runs."""
-    found = services(request)
-    page = found.jobs.list(limit=25, cursor=cursor)
-    workers = found.jobs.workers_alive()
-    root = request.scope.get("root_path", "")
-    jobs = [status_info(found, job, root, workers) for job in page.jobs]
-    return pages.job_list(jobs, found.jobs.counts(), workers, page.next_cursor, root)
+def _root(request: Request) -> str:
+    root: str = request.scope.get("root_path", "")
+    return root
 
 
-@router.get(
-    "/dashboard/jobs/{jobID}", summary="A job as a page", responses={200: _PAGE, **refusals(404, 422, 503)}
-)
-def dashboard_job(request: Request, jobID: JobId) -> Response:
-    """Status, inputs, instant certificate, results and pictures of one job."""
-    found = services(request)
-    job = known_job(found, jobID)
-    root = request.scope.get("root_path", "")
-    result = result_document(found, jobID, root) if job.status is JobStatus.SUCCESSFUL else None
-    return pages.job(job_detail(found, job, root), result, root)
+@router.get("/dashboard", summary="Explore the safe-start region", responses={200: _PAGE, **refusals()})
+async def explore(request: Request) -> Response:
+    """Operating point, regions, one start and its flight."""
+    return pages.page("explore.html", root=_root(request), here="/dashboard", script="explore.js", plots=True)
+
+
+@router.get("/dashboard/trade", summary="Trade study", responses={200: _PAGE, **refusals()})
+async def trade(request: Request) -> Response:
+    """What more thrust buys at each tumble rate."""
+    return pages.page(
+        "trade.html", root=_root(request), here="/dashboard/trade", script="trade.js", plots=True
+    )
+
+
+@router.get("/dashboard/submit", summary="Submit a process", responses={200: _PAGE, **refusals()})
+async def submit(request: Request) -> Response:
+    """A form for each process, made from its schema."""
+    return pages.page(
+        "submit.html", root=_root(request), here="/dashboard/submit", script="submit.js", plots=False
+    )
+
+
+@router.get("/dashboard/jobs", summary="Jobs as a page", responses={200: _PAGE, **refusals()})
+async def jobs(request: Request) -> Response:
+    """Jobs with progress, place in the queue, time left and why they wait."""
+    return pages.page("jobs.html", root=_root(request), here="/dashboard/jobs", script="jobs.js", plots=False)
+
+
+@router.get("/dashboard/jobs/{jobID}", summary="A job as a page", responses={200: _PAGE, **refusals(422)})
+async def job(request: Request, jobID: JobId) -> Response:
+    """Live progress and log, then results, pictures and downloads of one job; unknown ids are told on the page."""
+    return pages.page(
+        "job.html", root=_root(request), here="/dashboard/jobs", script="job.js", plots=True, job=jobID
+    )
+
+
+@router.get("/dashboard/compare", summary="Compare runs", responses={200: _PAGE, **refusals()})
+async def compare(request: Request) -> Response:
+    """Two or more successful benchmarks side by side: `?jobs=ID,ID`."""
+    return pages.page(
+        "compare.html", root=_root(request), here="/dashboard/jobs", script="compare.js", plots=True
+    )
 
 
 @router.get("/static/{name}", include_in_schema=False)
-async def static(name: str) -> Response:
-    """Our style sheet and icon."""
-    return pages.static(name)
+async def static(request: Request, name: str) -> Response:
+    """Scripts, style sheets and icon of the pages."""
+    return pages.static(request, name)

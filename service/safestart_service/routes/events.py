@@ -21,7 +21,7 @@ router = APIRouter(tags=["jobs"])
     "/jobs/{jobID}/events",
     summary="Events of a job",
     responses={
-        200: content("text/event-stream", {"type": "string"}, "status, progress and log events, with ids."),
+        200: content("text/event-stream", {}, "status, progress and log events, with ids."),
         204: {"description": "The job has ended and nothing came after Last-Event-ID: do not reconnect."},
         **refusals(404, 422, 503),
     },

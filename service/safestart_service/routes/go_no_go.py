@@ -8,23 +8,42 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import Response
 
+from safestart.errors import NotFound
 from safestart.processes.go_no_go.spec import SPEC, GoNoGoInputs, GoNoGoOutputs
 from safestart_service.answers import Json
 from safestart_service.body import parse_body, read_body
 from safestart_service.execute import check_states, run_now
 from safestart_service.instant import GoNoGoAnswer, GoNoGoQuery, flat_answer
 from safestart_service.lean import query_route
-from safestart_service.openapi import answer, json_body, refusals
+from safestart_service.openapi import answer, content, json_body, refusals
 from safestart_service.state import services
 
 
-async def _answer(query: GoNoGoQuery) -> Response:
+async def _answer(request: Request, query: GoNoGoQuery) -> Response:
     # The closed form takes microseconds; a cone program would hold up every other request.
-    at_once = query.method == "closed_form"
-    return Json(flat_answer(query) if at_once else await asyncio.to_thread(flat_answer, query))
+    if query.method == "closed_form":
+        return Json(flat_answer(query))
+    document = await asyncio.to_thread(flat_answer, query, services(request).context)
+    if document["verdict"] != "UNDECIDED":
+        document["proof_url"] = f"/go-no-go/proof?{request.url.query}"
+    return Json(document)
+
+
+async def _proof(request: Request, query: GoNoGoQuery) -> Response:
+    asked = query.model_copy(update={"method": "exact" if query.method == "closed_form" else query.method})
+    asked = asked.model_copy(update={"proofs": True})
+    document = await asyncio.to_thread(flat_answer, asked, services(request).context)
+    if document["proof"] is None:
+        raise NotFound(
+            f"there is no proof: {document['reason']}",
+            required="a start that is decided",
+            received="UNDECIDED",
+        )
+    return Json(document["proof"], headers={"Content-Disposition": 'attachment; filename="proof.json"'})
 
 
 one = APIRouter(tags=["instant answers"], route_class=query_route(GoNoGoQuery, _answer))
+proof = APIRouter(tags=["instant answers"], route_class=query_route(GoNoGoQuery, _proof))
 many = APIRouter(tags=["instant answers"])
 
 
@@ -33,13 +52,30 @@ many = APIRouter(tags=["instant answers"])
     summary="Go/no-go for one start",
     responses={200: answer(GoNoGoAnswer, "The verdict and every margin it rests on."), **refusals(422)},
 )
-async def go_no_go_one(query: Annotated[GoNoGoQuery, Query()]) -> Response:
+async def go_no_go_one(request: Request, query: Annotated[GoNoGoQuery, Query()]) -> Response:
     """May a chaser at rest at this point start its approach?
 
     By the paper's closed form, where NO_GO means not certified and GO is no proof, or with ``method=exact`` by a cone
     program that proves either. A start outside the corridor is NO_GO; ``violated_faces`` says where.
     """
-    return await _answer(query)
+    return await _answer(request, query)
+
+
+@proof.get(
+    "/go-no-go/proof",
+    summary="The proof of a go/no-go, alone",
+    responses={
+        200: content("application/json", {"type": "object"}, "The document that `safestart verify` checks."),
+        **refusals(404, 422),
+    },
+)
+async def go_no_go_proof(request: Request, query: Annotated[GoNoGoQuery, Query()]) -> Response:
+    """The proof of the exact answer to the same question, as a file for ``safestart verify``.
+
+    It is computed anew from the question (milliseconds), so the link holds as long as the service does. 404 when the
+    start is UNDECIDED.
+    """
+    return await _proof(request, query)
 
 
 @many.post(
@@ -51,11 +87,11 @@ async def go_no_go_one(query: Annotated[GoNoGoQuery, Query()]) -> Response:
 async def go_no_go_many(request: Request) -> Response:
     """The same question for up to 100 000 starts of one operating point."""
     body = await read_body(request)
-    most = services(request).settings.max_states
+    found = services(request)
 
     def respond() -> Response:
         inputs = parse_body(GoNoGoInputs, body)
-        check_states(inputs, most)
-        return Json(run_now(SPEC, inputs))
+        check_states(inputs, found.settings.max_states)
+        return Json(run_now(SPEC, inputs, found.context))
 
     return await asyncio.to_thread(respond)

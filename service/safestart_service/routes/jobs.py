@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+import asyncio
+from time import monotonic
+from typing import Annotated, Literal
 from urllib.parse import urlencode
 
 from fastapi import APIRouter, Path, Query, Request
@@ -11,14 +13,19 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from safestart.errors import invalid
 from safestart.processes.registry import PROCESS_IDS
+from safestart.store.filters import JobFilter
 from safestart.store.records import JobStatus
-from safestart_service.answers import Json, base_url, link
-from safestart_service.jobs_view import job_detail, known_job, status_info
-from safestart_service.openapi import answer, refusals
-from safestart_service.schemas import JobDetail, JobList
+from safestart_service.access import caller, require_own
+from safestart_service.answers import Json, base_url, link, tagged
+from safestart_service.intervals import interval, without_nul
+from safestart_service.jobs_view import job_detail, known_job, partial_document, status_infos
+from safestart_service.openapi import TAG, answer, refusals
+from safestart_service.schemas import JobDetail, JobList, Partial
 from safestart_service.state import services
 
 router = APIRouter(tags=["jobs"])
+MAX_WAIT_S = 30.0
+POLL_S = 0.25
 JobId = Annotated[str, Path(description="Id of a job.")]
 
 
@@ -28,7 +35,23 @@ class JobQuery(BaseModel):
     model_config = ConfigDict(extra="forbid", populate_by_name=True)
 
     status: list[JobStatus] = Field([], max_length=5, description="Only jobs of these statuses.")
+    type: list[Literal["process"]] = Field([], max_length=5, description="All jobs are processes.")
     processID: list[str] = Field([], max_length=50, description="Only jobs of these processes.")
+    submitter: str | None = Field(
+        None, max_length=64, description="Only jobs submitted with the key of this id."
+    )
+    datetime: str | None = Field(
+        None,
+        max_length=100,
+        description="Only jobs created at this time or in this interval (RFC 3339): FROM/TO, ../TO, FROM/..",
+        examples=["2026-11-22T00:00:00Z/.."],
+    )
+    minDuration: int | None = Field(
+        None, ge=0, le=10**9, description="Only jobs that ran at least so long, s."
+    )
+    maxDuration: int | None = Field(
+        None, ge=0, le=10**9, description="Only jobs that ran at most so long, s."
+    )
     limit: int = Field(50, ge=1, le=200, description="Jobs per page.")
     cursor: str | None = Field(
         None, max_length=200, description="Where to go on: taken from the link `next`."
@@ -36,7 +59,9 @@ class JobQuery(BaseModel):
 
 
 @router.get(
-    "/jobs", summary="List of jobs", responses={200: answer(JobList, "A page of jobs."), **refusals(422, 503)}
+    "/jobs",
+    summary="List of jobs",
+    responses={200: answer(JobList, "A page of jobs.", ETag=TAG), **refusals(304, 422, 503)},
 )
 def jobs(request: Request, query: Annotated[JobQuery, Query()]) -> Response:
     """Jobs, newest first; the link `next` leads to the next page."""
@@ -44,26 +69,72 @@ def jobs(request: Request, query: Annotated[JobQuery, Query()]) -> Response:
         if name not in PROCESS_IDS:
             raise invalid("processID", f"one of {', '.join(PROCESS_IDS)}", name)
     found, base = services(request), base_url(request)
-    page = found.jobs.list(
-        statuses=query.status, process_ids=query.processID, limit=query.limit, cursor=query.cursor
+    start, end = interval("datetime", query.datetime)
+    wanted = JobFilter(
+        statuses=query.status,
+        process_ids=query.processID,
+        submitter=None if query.submitter is None else without_nul(query.submitter),
+        created_from=start,
+        created_to=end,
+        least_s=query.minDuration,
+        most_s=query.maxDuration,
     )
-    workers = found.jobs.workers_alive()
+    page = found.jobs.list(wanted, limit=query.limit, cursor=query.cursor)
     links = [link(f"{base}/jobs", "self", "this list")]
     if page.next_cursor is not None:
         again = query.model_dump(mode="json", exclude_defaults=True) | {"cursor": page.next_cursor}
         links.append(link(f"{base}/jobs?{urlencode(again, doseq=True)}", "next", "next page"))
-    return Json({"jobs": [status_info(found, job, base, workers) for job in page.jobs], "links": links})
+    return tagged(request, {"jobs": status_infos(found, page.jobs, base), "links": links})
 
 
 @router.get(
     "/jobs/{jobID}",
     summary="Status of a job",
-    responses={200: answer(JobDetail, "statusInfo."), **refusals(404, 422, 503)},
+    responses={200: answer(JobDetail, "statusInfo.", ETag=TAG), **refusals(304, 404, 422, 503)},
 )
-def job(request: Request, jobID: JobId) -> Response:
-    """Status with progress, place in the queue and why it waits, estimated time left."""
+async def job(
+    request: Request,
+    jobID: JobId,
+    wait: Annotated[
+        float,
+        Query(ge=0, le=MAX_WAIT_S, description="Answer when the job has ended, or after so many seconds."),
+    ] = 0.0,
+) -> Response:
+    """Status with progress, place in the queue and why it waits, estimated time left.
+
+    With ``wait`` the answer comes when the job has ended, with If-None-Match as soon as anything has changed, and after
+    so many seconds at the latest.
+    """
+    found, base = services(request), base_url(request)
+    until_change = "if-none-match" in request.headers
+    deadline = monotonic() + wait
+
+    def look() -> tuple[bool, Response]:
+        now = known_job(found, jobID)
+        return now.status.ended, tagged(request, job_detail(found, now, base))
+
+    while True:
+        ended, seen = await asyncio.to_thread(look)
+        left = deadline - monotonic()
+        if (
+            ended
+            or left <= 0
+            or (until_change and seen.status_code == 200)
+            or await request.is_disconnected()
+        ):
+            return seen
+        await asyncio.sleep(min(POLL_S, left))
+
+
+@router.get(
+    "/jobs/{jobID}/partial",
+    summary="What the finished shards of a job say already",
+    responses={200: answer(Partial, "Finished shards and their summary."), **refusals(404, 422, 503)},
+)
+def partial(request: Request, jobID: JobId) -> Response:
+    """The result so far of a process that is cut into shards; once the job is successful, ask for its results."""
     found = services(request)
-    return Json(job_detail(found, known_job(found, jobID), base_url(request)))
+    return Json(partial_document(found, known_job(found, jobID), base_url(request)))
 
 
 @router.delete(
@@ -72,7 +143,11 @@ def job(request: Request, jobID: JobId) -> Response:
     responses={200: answer(JobDetail, "statusInfo after the dismissal."), **refusals(404, 409, 422, 503)},
 )
 def dismiss(request: Request, jobID: JobId) -> Response:
-    """Dismiss a waiting job at once; a running one is asked to stop, and stops soon."""
+    """Dismiss a waiting job at once; a running one is asked to stop, and stops soon.
+
+    With keys in use: one's own jobs; with role admin, any.
+    """
     found = services(request)
-    known_job(found, jobID)
-    return Json(job_detail(found, found.jobs.dismiss(jobID), base_url(request)))
+    by = caller(request)
+    require_own(by, known_job(found, jobID).submitter)
+    return Json(job_detail(found, found.jobs.dismiss(jobID, by), base_url(request)))

@@ -6,8 +6,8 @@ from fastapi import APIRouter, Request
 from fastapi.responses import RedirectResponse, Response
 
 from safestart_service import pages
-from safestart_service.answers import Json, base_url, link
-from safestart_service.openapi import answer, content, refusals
+from safestart_service.answers import Json, base_url, link, tagged
+from safestart_service.openapi import TAG, answer, content, refusals
 from safestart_service.schemas import Conformance, Landing
 
 router = APIRouter(tags=["service"])
@@ -18,7 +18,7 @@ PROCESSES_REL = "http://www.opengis.net/def/rel/ogc/1.0/processes"
 JOBS_REL = "http://www.opengis.net/def/rel/ogc/1.0/job-list"
 CLASSES = tuple(
     f"http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/{name}"
-    for name in ("core", "ogc-process-description", "json", "oas30", "job-list", "dismiss")
+    for name in ("core", "ogc-process-description", "json", "job-list", "dismiss")
 )
 
 
@@ -53,17 +53,17 @@ async def landing(request: Request) -> Response:
 @router.get(
     "/conformance",
     summary="Conformance classes",
-    responses={200: answer(Conformance, "Classes."), **refusals()},
+    responses={200: answer(Conformance, "Classes.", ETag=TAG), **refusals(304)},
 )
-async def conformance() -> Response:
+async def conformance(request: Request) -> Response:
     """Conformance classes of OGC API - Processes 1.0 that this service implements."""
-    return Json({"conformsTo": list(CLASSES)})
+    return tagged(request, {"conformsTo": list(CLASSES)})
 
 
 @router.get("/openapi.json", include_in_schema=False)
 def openapi(request: Request) -> Response:
     """The OpenAPI description."""
-    return Json(request.app.openapi())
+    return tagged(request, request.app.openapi())
 
 
 @router.get(

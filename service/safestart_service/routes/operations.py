@@ -6,6 +6,7 @@ from fastapi import APIRouter, Request
 from fastapi.responses import Response
 from prometheus_client.exposition import CONTENT_TYPE_LATEST
 
+from safestart.errors import Unavailable
 from safestart_service.answers import Json
 from safestart_service.openapi import answer, content, refusals
 from safestart_service.schemas import Health, Readiness
@@ -21,12 +22,32 @@ async def healthz(request: Request) -> Response:
 
 
 @router.get(
-    "/readyz", summary="Ready", responses={200: answer(Readiness, "The database answers."), **refusals(503)}
+    "/readyz",
+    summary="Ready",
+    responses={200: answer(Readiness, "The database and a cluster answer."), **refusals(503)},
 )
 def readyz(request: Request) -> Response:
-    """The database answers; says how many workers are connected and how many jobs there are."""
+    """Database and cluster answer, so that jobs are taken; says how many workers, places and jobs there are.
+
+    503 without a worker whose cluster runs: jobs are accepted and wait, and the instant answers go on.
+    """
     found = services(request)
-    return Json({"status": "ready", "workers_alive": found.jobs.workers_alive(), "jobs": found.jobs.counts()})
+    counts, crew = found.jobs.counts(), found.jobs.crew()
+    if not crew.places:
+        raise Unavailable(
+            f"required a worker with a running cluster, found {crew.workers} workers without one",
+            required="a worker with a running cluster",
+            received=crew.workers,
+        )
+    return Json(
+        {
+            "status": "ready",
+            "workers_alive": crew.workers,
+            "places": crew.places,
+            "places_taken": crew.busy,
+            "jobs": counts,
+        }
+    )
 
 
 @router.get(

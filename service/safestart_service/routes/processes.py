@@ -8,11 +8,14 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Header, Path, Request
 from fastapi.responses import Response
 
+from safestart.access import Caller, Role
 from safestart.processes.base import ProcessSpec
 from safestart.processes.registry import PROCESS_IDS, process
-from safestart_service.answers import Json, base_url, link
+from safestart_service.access import caller
+from safestart_service.answers import Json, base_url, link, tagged
 from safestart_service.body import parse_body, read_body
 from safestart_service.describe import description, known_process, summary
+from safestart_service.errors import Forbidden
 from safestart_service.execute import (
     ExecuteRequest,
     check_outputs,
@@ -23,7 +26,7 @@ from safestart_service.execute import (
     selected,
 )
 from safestart_service.jobs_view import job_detail
-from safestart_service.openapi import answer, content, json_body, refusals
+from safestart_service.openapi import TAG, answer, content, json_body, refusals
 from safestart_service.schemas import ProcessDescription, ProcessList, Submitted
 from safestart_service.state import Services, services
 
@@ -32,23 +35,28 @@ ProcessId = Annotated[str, Path(description="Id of a process.")]
 
 
 @router.get(
-    "/processes", summary="List of processes", responses={200: answer(ProcessList, "All."), **refusals()}
+    "/processes",
+    summary="List of processes",
+    responses={200: answer(ProcessList, "All.", ETag=TAG), **refusals(304)},
 )
 async def processes(request: Request) -> Response:
     """Everything that can be run."""
     base = base_url(request)
     entries = [summary(process(name), base) for name in PROCESS_IDS]
-    return Json({"processes": entries, "links": [link(f"{base}/processes", "self", "this list")]})
+    return tagged(request, {"processes": entries, "links": [link(f"{base}/processes", "self", "this list")]})
 
 
 @router.get(
     "/processes/{processID}",
     summary="Description of a process",
-    responses={200: answer(ProcessDescription, "Inputs and outputs as JSON schemas."), **refusals(404)},
+    responses={
+        200: answer(ProcessDescription, "Inputs and outputs as JSON schemas.", ETag=TAG),
+        **refusals(304, 404),
+    },
 )
 async def describe(request: Request, processID: ProcessId) -> Response:
     """Inputs and outputs of one process, as JSON schemas that stand alone."""
-    return Json(description(known_process(processID), base_url(request)))
+    return tagged(request, description(known_process(processID), base_url(request)))
 
 
 @router.post(
@@ -82,15 +90,16 @@ async def execute(
     body = await read_body(request)
     wants_async = prefers_async(prefer)
     sync = spec.light and not wants_async
-    found, base = services(request), base_url(request)
+    found, base, by = services(request), base_url(request), caller(request)
 
     def respond() -> Response:
         asked: Any = parse_body(execute_model(spec.id), body)
         check_outputs(spec, asked, sync=sync)
         check_states(asked.inputs, found.settings.max_states)
         if sync:
-            return Json(selected(run_now(spec, asked.inputs), asked))
-        return _submit(found, spec, asked, idempotency_key, base, wants_async)
+            return Json(selected(run_now(spec, asked.inputs, found.context), asked))
+        found.access.require_submit(request)
+        return _submit(found, spec, asked, idempotency_key, base, wants_async, by)
 
     return await asyncio.to_thread(respond)
 
@@ -102,7 +111,15 @@ def _submit(
     key: str | None,
     base: str,
     wants_async: bool,
+    by: Caller,
 ) -> Response:
+    if asked.priority > 0 and by.key_id is not None and not by.role.allows(Role.ADMIN):
+        raise Forbidden(
+            f"priority: required at most 0 with a key of role {by.role.value}, received {asked.priority}",
+            field="priority",
+            required="at most 0, or a key of role admin",
+            received=asked.priority,
+        )
     instant = spec.instant_answer(asked.inputs)
     job = found.jobs.submit(
         spec.id,
@@ -110,7 +127,10 @@ def _submit(
         instant=instant,
         timeout_s=found.settings.job_timeout_s,
         idempotency_key=key,
+        priority=asked.priority,
         max_queued=found.settings.max_queued,
+        submitter=by.key_id or "",
+        by=by,
     )
     document = job_detail(found, job, base)
     if job.instant is not None:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Path, Request
+from fastapi import APIRouter, Path, Query, Request
 from fastapi.responses import Response
 
+from safestart_service import formats
 from safestart_service.answers import Json, base_url, entity_tag, not_modified
+from safestart_service.arrays import arrays_of
 from safestart_service.jobs_view import known_job, result_document
-from safestart_service.openapi import answer, content, refusals
+from safestart_service.negotiation import chosen
+from safestart_service.openapi import REF, content, refusals
 from safestart_service.routes.jobs import JobId
 from safestart_service.schemas import ResultDocument
 from safestart_service.state import services
@@ -18,6 +21,8 @@ router = APIRouter(tags=["results"])
 
 _CACHE = "private, no-cache"
 _ETAG = "SHA-256 of the content."
+_FILE: dict[str, Any] = {"type": "string", "format": "binary"}
+Format = Literal["record", "ogc", "csv", "npz", "parquet"]
 # Types a browser may show; everything else is a download, so that nothing a worker stored can act as a page.
 _SHOWN = ("image/png", "image/jpeg", "application/json", "text/csv", "text/plain")
 
@@ -26,26 +31,51 @@ _SHOWN = ("image/png", "image/jpeg", "application/json", "text/csv", "text/plain
     "/jobs/{jobID}/results",
     summary="Result of a job",
     responses={
-        200: answer(ResultDocument, "Inputs, outputs, provenance, artifacts.", ETag=_ETAG),
-        **refusals(304, 404, 422, 503),
+        200: {
+            "description": "By Accept: the record (for whoever takes anything), outputs by id as OGC API - Processes "
+            "1.0 has them (application/json), or a table or arrays of the outputs.",
+            "headers": {"ETag": {"description": _ETAG, "schema": {"type": "string"}}},
+            "content": {
+                formats.RECORD: {"schema": {"$ref": REF + ResultDocument.__name__}},
+                formats.OGC: {"schema": {"type": "object"}},
+                **{kind: {"schema": _FILE} for kind in (formats.CSV, formats.NPZ, formats.PARQUET)},
+            },
+        },
+        **refusals(304, 404, 406, 422, 503),
     },
 )
-def results(request: Request, jobID: JobId) -> Response:
+def results(
+    request: Request,
+    jobID: JobId,
+    format: Annotated[
+        Format | None, Query(description="Instead of Accept, for links: record, ogc, csv, npz or parquet.")
+    ] = None,
+    table: Annotated[
+        str | None,
+        Query(max_length=100, description="Which table of the outputs (csv, parquet); absent: the first."),
+    ] = None,
+) -> Response:
     """The stored result; 404 ``result-not-ready`` until the job is successful."""
+    kind = formats.BY_NAME[format] if format else chosen(request.headers.get("accept"), formats.OFFERED)
     found = services(request)
     known_job(found, jobID)
-    document = result_document(found, jobID, base_url(request))
-    tag = entity_tag(document["sha256"])
-    return not_modified(request, tag) or Json(document, headers={"ETag": tag, "Cache-Control": _CACHE})
+    record = result_document(found, jobID, base_url(request))
+    tag = entity_tag(record["sha256"] + formats.tag_of(kind, table))
+    known = not_modified(request, tag)
+    if known is not None:
+        return known
+    headers = {"ETag": tag, "Cache-Control": _CACHE, "Vary": "Accept"}
+    if kind not in formats.JSON:
+        ending = formats.NAME[kind]
+        headers["Content-Disposition"] = f'attachment; filename="{jobID}.{ending}"'
+    return Response(formats.encoded(record, kind, table), headers=headers, media_type=kind)
 
 
 @router.get(
     "/jobs/{jobID}/artifacts/{name}",
     summary="File of a result",
     responses={
-        200: content(
-            "application/octet-stream", {"type": "string", "format": "binary"}, "The file.", ETag=_ETAG
-        ),
+        200: content("*/*", {"type": "string", "format": "binary"}, "The file, in its own type.", ETag=_ETAG),
         **refusals(304, 404, 422, 503),
     },
 )
@@ -65,3 +95,28 @@ def artifact(
         "Content-Disposition": f'{place}; filename="{safe}"',
     }
     return not_modified(request, tag) or Response(file.data, headers=headers, media_type=file.media_type)
+
+
+@router.get(
+    "/jobs/{jobID}/artifacts/{name}/arrays",
+    summary="Arrays of an NPZ file as JSON",
+    responses={
+        200: content("application/json", {"type": "object"}, "Arrays by name, nested lists.", ETag=_ETAG),
+        **refusals(304, 404, 422, 503),
+    },
+)
+def arrays(
+    request: Request,
+    jobID: JobId,
+    name: Annotated[str, Path(description="Name of an NPZ artifact.")],
+    names: Annotated[
+        str | None, Query(max_length=1000, description="Only these, separated by commas; absent: all.")
+    ] = None,
+) -> Response:
+    """For readers without NumPy. NaN and infinity become null; at most a million numbers."""
+    found = services(request)
+    known_job(found, jobID)
+    file = found.results.artifact(jobID, name.replace("\0", ""))
+    tag = entity_tag(f"{file.sha256}-arrays")
+    headers = {"ETag": tag, "Cache-Control": _CACHE}
+    return not_modified(request, tag) or Json(arrays_of(file, names), headers=headers)

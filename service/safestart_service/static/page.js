@@ -1,0 +1,107 @@
+// What every page shares: elements, figures in words, the states empty, loading and failed, the key dialog.
+
+import { Problem, hasKey, useKey } from "./api.js";
+
+/** An element with attributes and children; text stays text. */
+export function el(tag, attributes = {}, ...children) {
+  const node = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (value === undefined || value === null || value === false) continue;
+    if (name.startsWith("on")) node.addEventListener(name.slice(2), value);
+    else node.setAttribute(name, value === true ? "" : value);
+  }
+  node.append(...children.filter((child) => child !== null && child !== undefined));
+  return node;
+}
+
+export const $ = (id) => document.getElementById(id);
+
+export function figure(value, digits = 4) {
+  if (value === null || value === undefined) return "–";
+  if (typeof value === "boolean") return value ? "yes" : "no";
+  if (typeof value !== "number") return String(value);
+  if (Number.isInteger(value) && Math.abs(value) < 1e6) return String(value);
+  return String(Number(value.toPrecision(digits)));
+}
+
+export function duration(seconds) {
+  if (seconds === null || seconds === undefined) return "–";
+  if (seconds < 10) return `${seconds.toFixed(1)} s`;
+  if (seconds < 90) return `${Math.round(seconds)} s`;
+  if (seconds < 5400) return `${Math.round(seconds / 60)} min`;
+  return `${(seconds / 3600).toFixed(1)} h`;
+}
+
+export const moment = (text) => (text ? new Date(text).toISOString().slice(0, 19).replace("T", " ") + " UTC" : "–");
+
+/** Put a failure where the content would stand, with the way out of it. */
+export function fail(place, error, again) {
+  if (error.name === "AbortError") return;
+  const known = error instanceof Problem;
+  const box = el("div", { class: "problem", role: "alert" });
+  box.append(el("h2", {}, known ? error.document.title ?? "Refused" : "This page has a fault"));
+  box.append(el("p", {}, error.message));
+  if (known && error.document.required) {
+    box.append(el("p", { class: "note" }, `Required: ${error.document.required}. Received: ${error.document.received}.`));
+  }
+  if (known && error.status === 401) box.append(keyForm());
+  else if (again) box.append(el("button", { type: "button", onclick: again }, "Try again"));
+  place.replaceChildren(box);
+  if (!known) console.error(error);
+}
+
+export function loading(place, text = "Loading") {
+  place.replaceChildren(el("p", { class: "empty", role: "status" }, `${text} …`));
+}
+
+function keyForm() {
+  const field = el("input", { type: "password", id: "key", autocomplete: "off", required: true });
+  const form = el("form", { class: "inline" },
+    el("label", { for: "key" }, hasKey() ? "This key is not accepted. Another one:" : "API key"), field,
+    el("button", { type: "submit" }, "Use this key"));
+  form.addEventListener("submit", (event) => {
+    event.preventDefault();
+    useKey(field.value);
+    location.reload();
+  });
+  return form;
+}
+
+export const status = (job) => {
+  const stopping = job.dismissal_requested && job.status === "running";
+  return el("span", { class: `status ${job.status}` }, stopping ? "stopping" : job.status);
+};
+
+export const definition = (name, value) => el("div", {}, el("dt", {}, name), el("dd", {}, value));
+
+/** A table: columns of [title, function of the row]; numbers to the right. */
+export function table(rows, columns, label) {
+  const head = el("tr", {}, ...columns.map(([title]) => el("th", { scope: "col" }, title)));
+  const body = rows.map((row) => el("tr", {}, ...columns.map(([, of]) => {
+    const value = of(row);
+    if (value instanceof Node) return el("td", {}, value);
+    return el("td", { class: typeof value === "number" ? "number" : null }, figure(value));
+  })));
+  return el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": label },
+    el("table", {}, el("thead", {}, head), el("tbody", {}, ...body)));
+}
+
+export function save(name, text, type = "text/csv") {
+  const url = URL.createObjectURL(new Blob([text], { type }));
+  el("a", { href: url, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(url), 1000);
+}
+
+export const csv = (rows) => rows.map((row) => row.map((cell) => {
+  const text = cell === null || cell === undefined ? "" : String(cell);
+  return /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+}).join(",")).join("\n") + "\n";
+
+/** Run `work` when things have been quiet for `wait` ms; only the last call counts. */
+export function settle(work, wait) {
+  let timer;
+  return (...given) => {
+    clearTimeout(timer);
+    timer = setTimeout(() => work(...given), wait);
+  };
+}
