@@ -1,19 +1,14 @@
 """The main job over HTTP with everything real: ``safestart up``, a queued benchmark, and processes killed under it."""
 
-import os
-import socket
-import subprocess
-import sys
 import time
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
-import httpx
-import psutil
 import pytest
+from owslib.ogcapi.processes import Processes
 
 from safestart.comparable import comparable
+from tests.acceptance.running import Running
 
 INPUTS = {
     "omega_t_deg_s": 3,
@@ -21,94 +16,10 @@ INPUTS = {
     "grid": {"nx": 31, "ny": 31, "y_max_m": 150},
     "horizon_s": 60,
     "engines": ["analytical", "exact", "backward", "forward", "hamilton_jacobi", "monte_carlo"],
-    "hamilton_jacobi": {"frame": "body", "accuracy": "low"},
+    "hamilton_jacobi": {"frame": "body", "accuracy": "very_high"},
     "seed": 7,
 }
 """The body frame takes more time steps: long enough to be killed in the middle."""
-LIMIT_S = 240.0
-
-
-class Running:
-    """``safestart up`` and a client of it."""
-
-    def __init__(self, folder: Path) -> None:
-        with socket.socket() as probe:
-            probe.bind(("127.0.0.1", 0))
-            port = probe.getsockname()[1]
-        environment = os.environ | {
-            "SAFESTART_DATABASE_URL": f"sqlite:///{folder / 'up.sqlite3'}",
-            "SAFESTART_LEASE_S": "4",
-            "SAFESTART_PROCESSES": "2",
-        }
-        self.log = folder / "up.log"
-        with self.log.open("wb") as sink:
-            command = [sys.executable, "-m", "safestart", "up", "--port", str(port)]
-            self.process = subprocess.Popen(command, env=environment, stdout=sink, stderr=sink)
-        self.client = httpx.Client(base_url=f"http://127.0.0.1:{port}", timeout=30.0)
-        self.until(lambda: self.get("/readyz") is not None, "ready")
-
-    def get(self, path: str) -> Any:
-        try:
-            response = self.client.get(path)
-        except httpx.TransportError:
-            return None
-        return response.json() if response.is_success else None
-
-    def until(self, true: Any, what: str, limit: float = LIMIT_S) -> Any:
-        end = time.monotonic() + limit
-        while time.monotonic() < end:
-            value = true()
-            if value:
-                return value
-            assert self.process.poll() is None, self.log.read_text()
-            time.sleep(0.1)
-        pytest.fail(f"not {what} within {limit} s\n{self.log.read_text()}")
-
-    def submit(self, inputs: dict[str, Any]) -> str:
-        answer = self.client.post("/processes/benchmark/execution", json={"inputs": inputs})
-        assert answer.status_code == 201, answer.text
-        job: str = answer.json()["jobID"]
-        assert answer.headers["Location"].endswith(f"/jobs/{job}")
-        return job
-
-    def under_way(self, job: str) -> Any:
-        status = self.get(f"/jobs/{job}")
-        return status and status["status"] == "running" and status["progress"] > 15 and status
-
-    def outcome(self, job: str) -> dict[str, Any]:
-        def ended() -> Any:
-            status = self.get(f"/jobs/{job}")
-            return status and status["status"] in ("successful", "failed", "dismissed") and status
-
-        status = self.until(ended, "ended")
-        assert status["status"] == "successful", f"{status}\n{self.log.read_text()}"
-        document: dict[str, Any] = self.get(f"/jobs/{job}/results")
-        return document
-
-    def processes(self, word: str) -> list[psutil.Process]:
-        found = []
-        for process in psutil.Process(self.process.pid).children(recursive=True):
-            try:
-                if any(word in part for part in process.cmdline()):
-                    found.append(process)
-            except psutil.NoSuchProcess:
-                continue
-        return found
-
-    def busiest(self, word: str) -> psutil.Process:
-        """The process that is working right now."""
-        candidates = self.processes(word)
-        before = {p.pid: sum(p.cpu_times()[:2]) for p in candidates}
-        time.sleep(0.5)
-        return max(candidates, key=lambda p: sum(p.cpu_times()[:2]) - before[p.pid])
-
-    def stop(self) -> list[psutil.Process]:
-        family = psutil.Process(self.process.pid).children(recursive=True)
-        self.process.terminate()
-        self.process.wait(timeout=60)
-        _, alive = psutil.wait_procs(family, timeout=10)
-        self.client.close()
-        return alive
 
 
 @pytest.fixture(scope="module")
@@ -174,3 +85,30 @@ def test_survives_kill_of_the_whole_worker(running: Running, undisturbed: dict[s
     same(running.outcome(job), undisturbed)
     assert running.get(f"/jobs/{job}")["attempts"] == 2
     assert "worker" in running.log.read_text()
+
+
+def test_a_standard_client_lists_describes_executes_follows_and_reads(running: Running) -> None:
+    """OWSLib knows OGC API - Processes 1.0 and nothing of us."""
+    client = Processes(str(running.client.base_url))
+    assert "benchmark" in {entry["id"] for entry in client.processes()}
+    described = client.process("benchmark")
+    assert "async-execute" in described["jobControlOptions"]
+    assert described["inputs"]["omega_t_deg_s"]["minOccurs"] == 1
+
+    inputs = described["example"] | {"engines": ["analytical", "exact"], "grid": {"nx": 11, "ny": 11}}
+    submitted = client.execute("benchmark", inputs=inputs, async_=True)
+    job = submitted["jobID"]
+    status = running.until(lambda: _ended(client._request(path=f"jobs/{job}")), "ended")
+    assert status["status"] == "successful"
+    assert job in {entry["jobID"] for entry in client._request(path="jobs")["jobs"]}
+    results = client._request(path=f"jobs/{job}/results")
+    rows = results["rows"] if "rows" in results else results["outputs"]["rows"]
+    assert [row["code"] for row in rows] == ["ok", "ok"]
+
+    light = client.process("certificate")
+    at_once = client.execute("certificate", inputs=light["example"], outputs={"r_sync_m": {}})
+    assert at_once["r_sync_m"] == pytest.approx(72.951, abs=1e-3)
+
+
+def _ended(status: dict[str, Any]) -> Any:
+    return status["status"] in ("successful", "failed", "dismissed") and status

@@ -12,6 +12,7 @@ import pytest
 
 from safestart.comparable import comparable
 from safestart.errors import JobFailed
+from safestart.processes.execute import execute
 from safestart.processes.registry import process
 from safestart.store.records import JobStatus
 from tests.acceptance.worker_process import LEASE_S, Farm, over, until
@@ -27,7 +28,23 @@ STEADY: dict[str, Any] = {
 STUBBORN: dict[str, Any] = {
     **CERTIFICATE,
     "engines": ["hamilton_jacobi"],
-    "hamilton_jacobi": {"nodes_xy": 61, "nodes_v": 31, "accuracy": "very_high", "frame": "body"},
+    "hamilton_jacobi": {
+        "nodes_xy": 61,
+        "nodes_v": 31,
+        "accuracy": "very_high",
+        "frame": "body",
+        "solver": "hj_reachability",
+    },
+}
+
+
+# Sixteen shards of some tenths of a second.
+SWEEP: dict[str, Any] = {
+    "controllers": ["filter", "sequence"],
+    "cases_per_cell": 100,
+    "omega_t_deg_s": [1, 4],
+    "a_max_m_s2": [0.1],
+    "records": 300,
 }
 
 
@@ -164,11 +181,11 @@ def test_a_killed_task_process_costs_time_but_not_the_result(farm: Farm, undistu
     until(lambda: farm.said().count(f"job={job} runs in process") == 2, 30, "the second start")
     print(f"the task ran again {time.monotonic() - start:.1f} s after its process was killed")
     ended = farm.ended(job)
-    assert (ended.status, ended.attempts) == (JobStatus.SUCCESSFUL, 1)
+    assert (ended.status, ended.attempts) == (JobStatus.SUCCESSFUL, 2)
     assert result_of(farm, job) == result_of(farm, undisturbed)
     assert farm.results.result(job).sha256 == farm.results.result(undisturbed).sha256
     notes = [event.data["message"] for event in farm.jobs.events(job) if event.kind == "log"]
-    assert notes == ["its task process was lost; running again (start 2)"]
+    assert notes == ["its task process died; starting, attempt 2"]
 
 
 def test_a_job_that_takes_down_every_task_process_fails_as_poison(farm: Farm) -> None:
@@ -179,7 +196,10 @@ def test_a_job_that_takes_down_every_task_process_fails_as_poison(farm: Farm) ->
     ended = farm.ended(job)
     assert ended.status is JobStatus.FAILED
     assert ended.problem is not None
-    assert "2 task processes in a row died" in ended.problem["detail"]
+    assert "started 2 times" in ended.problem["detail"]
+    assert "2 times its task process died" in ended.problem["detail"]
+    assert ended.attempts == 2
+    assert farm.jobs.tallies()["poisoned"] == 1
 
 
 def test_a_killed_worker_leaves_no_process_and_the_next_one_finishes_its_job(
@@ -219,3 +239,33 @@ def test_a_stopped_worker_gives_its_job_back(farm: Farm) -> None:
     until(lambda: over(children), 5, "the end of the task processes")
     assert farm.jobs.workers_alive() == 0
     assert farm.jobs.dismiss(job).status is JobStatus.DISMISSED
+
+
+def test_a_sweep_that_lost_a_process_and_its_worker_has_the_aggregate_of_an_undisturbed_one(
+    farm: Farm,
+) -> None:
+    spec = process("sweep")
+    assert spec.sharding is not None
+    total = len(spec.sharding.parts(spec.parse(SWEEP)))
+    assert total >= 8
+    job = farm.submit("sweep", SWEEP)
+    until(lambda: len(farm.jobs.shard_contents(job)) >= 2, 90, "two finished shards")
+    farm.computing(job).kill()
+    until(lambda: len(farm.jobs.shard_contents(job)) >= 4, 90, "four finished shards")
+    seen = spec.sharding.so_far(spec.parse(SWEEP), farm.jobs.shard_documents(job))
+    assert 0 < seen["cases"] < 800
+    assert farm.worker is not None
+    farm.worker.kill()
+    farm.worker.wait()
+    kept = len(farm.jobs.shard_contents(job))
+    assert 4 <= kept < total
+    farm.start()
+    ended = farm.ended(job)
+    assert ended.status is JobStatus.SUCCESSFUL, ended
+    notes = [event.data["message"] for event in farm.jobs.events(job) if event.kind == "log"]
+    assert f"{kept} of {total} shards are done already" in notes
+    assert farm.jobs.shard_contents(job) == {}
+    there = farm.results.result(job).document
+    here = execute("sweep", SWEEP).document
+    assert comparable(there["outputs"]) == comparable(here["outputs"])
+    assert there["provenance"]["artifacts"] == here["provenance"]["artifacts"]

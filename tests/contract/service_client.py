@@ -28,14 +28,20 @@ def service(folder: Path, **settings: Any) -> Iterator[TestClient]:
     """A client whose unexpected server errors are answers, as they are on the wire."""
     from safestart_service.app import create_app
 
-    chosen = Settings(database_url=f"sqlite:///{folder / 'service.sqlite3'}", **settings)
+    settings = {"allowed_hosts": "testserver", **settings}
+    chosen = Settings(database_url=url_of(folder), **settings)
     with TestClient(create_app(chosen), raise_server_exceptions=False) as client:
         yield client
 
 
+def url_of(folder: Path) -> str:
+    """URL of the database behind :func:`service`."""
+    return f"sqlite:///{folder / 'service.sqlite3'}"
+
+
 def jobs_of(folder: Path) -> JobRepository:
     """The same store, as a worker sees it."""
-    return JobRepository(Database(f"sqlite:///{folder / 'service.sqlite3'}"))
+    return JobRepository(Database(url_of(folder)))
 
 
 def submit(client: TestClient, **headers: str) -> str:

@@ -2,25 +2,39 @@
 
 from __future__ import annotations
 
+import atexit
 import os
 from pathlib import Path
 from uuid import uuid4
 
+import pytest
+from sqlalchemy import URL, create_engine, make_url, text
+
 # SQLAlchemy URL of a server on which a database may be created, e.g. postgresql://user:password@host/postgres
 POSTGRESQL = os.environ.get("SAFESTART_TEST_POSTGRESQL", "")
-BACKENDS = ("sqlite", "postgresql") if POSTGRESQL else ("sqlite",)
+NO_SERVER = "no PostgreSQL server: SAFESTART_TEST_POSTGRESQL names none"
+BACKENDS = (
+    "sqlite",
+    pytest.param("postgresql", marks=pytest.mark.skipif(not POSTGRESQL, reason=NO_SERVER)),
+)
 
 
 def fresh_url(backend: str, folder: Path) -> str:
     """URL of an empty database."""
     if backend == "sqlite":
         return f"sqlite:///{folder / 'store.sqlite3'}"
-    from sqlalchemy import create_engine, make_url, text
-
     server = make_url(POSTGRESQL).set(drivername="postgresql+psycopg")
     name = f"safestart_{uuid4().hex}"
     engine = create_engine(server, isolation_level="AUTOCOMMIT")
     with engine.connect() as connection:
         connection.execute(text(f"CREATE DATABASE {name}"))
     engine.dispose()
+    atexit.register(_drop, server, name)
     return server.set(database=name).render_as_string(hide_password=False)
+
+
+def _drop(server: URL, name: str) -> None:
+    engine = create_engine(server, isolation_level="AUTOCOMMIT")
+    with engine.connect() as connection:
+        connection.execute(text(f"DROP DATABASE IF EXISTS {name} WITH (FORCE)"))
+    engine.dispose()

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import io
 import json
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +14,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from safestart.artifact import Artifact
 from safestart.certificates.closed_form import certify, range_limit
 from safestart.processes.go_no_go.run import run
 from safestart.processes.go_no_go.spec import GoNoGoInputs
@@ -167,7 +170,7 @@ def test_process_list_and_description(client):
         assert described["outputs"]
         assert "$ref" not in json.dumps(described), "each schema stands alone"
         assert ("sync-execute" in described["jobControlOptions"]) == (
-            entry["id"] in ("go-no-go", "certificate")
+            entry["id"] in ("go-no-go", "certificate", "safe-region", "flight", "thrust-map")
         )
     required = client.get("/processes/certificate").json()["inputs"]
     assert required["omega_t_deg_s"]["minOccurs"] == 1
@@ -318,7 +321,6 @@ def test_failed_job(queue):
     jobs.fail(claim, {"type": "about:blank", "title": "Broken", "status": 500, "detail": "the engine broke"})
     assert client.get(f"/jobs/{job}").json()["problem"]["detail"] == "the engine broke"
     assert "the engine broke" in assert_problem(client.get(f"/jobs/{job}/results"), 404)["detail"]
-    assert "the engine broke" in client.get(f"/dashboard/jobs/{job}").text
 
 
 # Results
@@ -392,11 +394,46 @@ def test_landing_conformance_and_operations(client):
     assert (browser.status_code, browser.headers["location"]) == (303, "http://testserver/dashboard")
     assert any(name.endswith("/conf/dismiss") for name in client.get("/conformance").json()["conformsTo"])
     assert client.get("/healthz").json()["status"] == "ok"
-    assert client.get("/readyz").json()["status"] == "ready"
     text = client.get("/metrics").text
     assert 'safestart_http_requests_total{method="GET",route="/healthz",status="200"}' in text
     assert 'safestart_jobs{status="accepted"}' in text
     assert "safestart_workers_alive" in text
+
+
+def test_ready_is_who_can_take_jobs(queue):
+    """The database alone is not enough: a worker with a running cluster has to be there."""
+    client, jobs = queue
+    assert "0 workers" in assert_problem(client.get("/readyz"), 503)["detail"]
+    jobs.heartbeat("starting", 0, 0)
+    assert "1 workers" in assert_problem(client.get("/readyz"), 503)["detail"]
+    jobs.heartbeat("one", 2, 1)
+    body = client.get("/readyz").json()
+    assert (body["status"], body["workers_alive"], body["places"], body["places_taken"]) == ("ready", 2, 2, 1)
+
+
+def test_metrics_of_the_queue(queue):
+    client, jobs = queue
+    submit(client)
+    submit(client)
+    finish(jobs)
+    jobs.heartbeat("one", 2, 1)
+    claim = jobs.claim("one", 60.0)
+    assert jobs.restarted(claim, 3)
+    submit(client)
+    text = client.get("/metrics").text
+    for line in (
+        'safestart_jobs{status="successful"} 1.0',
+        "safestart_queue_depth 1.0",
+        "safestart_places 2.0",
+        "safestart_places_taken 1.0",
+        "safestart_lease_losses_total 0.0",
+        "safestart_task_deaths_total 1.0",
+        "safestart_poisoned_total 0.0",
+    ):
+        assert f"\n{line}\n" in text, line
+    for name in ("job_wait", "job_run"):
+        assert f'safestart_{name}_seconds{{process="benchmark",quantile="0.5"}}' in text
+    assert 0.0 <= float(re.search(r"\nsafestart_queue_oldest_wait_seconds (\S+)", text)[1]) < 60.0
 
 
 def test_database_away(tmp_path):
@@ -412,22 +449,59 @@ def test_database_away(tmp_path):
 
 def test_pages(queue):
     client, jobs = queue
-    assert "No jobs yet" in client.get("/dashboard").text
     job = submit(client)
-    waiting = client.get("/dashboard").text
-    assert "no worker is connected" in waiting
-    assert 'http-equiv="refresh"' in waiting
     finish(jobs)
-    page = client.get(f"/dashboard/jobs/{job}").text
-    assert "analytical" in page
-    assert "map.png" in page
-    assert "<script" not in page, "stored text is escaped, and we have no script"
-    assert 'http-equiv="refresh"' not in page
-    for path in ("/dashboard", f"/dashboard/jobs/{job}", "/docs"):
+    places = ("", "/trade", "/submit", "/jobs", f"/jobs/{job}", "/compare")
+    for path in (*(f"/dashboard{place}" for place in places), "/docs"):
         answer = client.get(path)
+        assert answer.status_code == 200, path
         assert answer.headers["content-type"].startswith("text/html")
-        assert "default-src 'none'" in answer.headers["content-security-policy"]
+        policy = answer.headers["content-security-policy"]
+        assert "default-src 'none'" in policy
+        assert "unsafe-inline" not in policy
+        assert "unsafe-eval" not in policy
+        assert len(answer.headers.get_list("content-security-policy")) == 1
         assert " style=" not in answer.text
+        assert "<script>" not in answer.text, "no inline script"
+        assert " on" not in re.sub(r">[^<]*<", "><", answer.text), "no inline handler"
         assert "//cdn" not in answer.text
-    assert client.get("/static/safestart.css").headers["content-type"].startswith("text/css")
+        assert "analytical" not in answer.text, "a page holds no data of the store"
+
+
+def test_files_of_the_pages(client):
+    for name, kind in (
+        ("safestart.css", "text/css"),
+        ("explore.js", "text/javascript"),
+        ("plotly.min.js", "text/javascript"),
+    ):
+        answer = client.get(f"/static/{name}")
+        assert answer.headers["content-type"].startswith(kind)
+        assert "script-src" not in answer.headers["content-security-policy"]
+        again = client.get(f"/static/{name}", headers={"If-None-Match": answer.headers["etag"]})
+        assert (again.status_code, again.content) == (304, b"")
     assert_problem(client.get("/static/..%2fapp.py"), 404)
+    assert_problem(client.get("/static/app.py"), 404)
+
+
+def test_arrays_as_json(queue):
+    client, jobs = queue
+    client.post("/processes/benchmark/execution", json=HEAVY)
+    claim = jobs.claim("tester", 60.0)
+    buffer = io.BytesIO()
+    np.savez(buffer, mask=np.array([[True, False]]), margin_m=np.array([1.5, np.nan, np.inf]))
+    files = (
+        Artifact("maps.npz", "application/x-npz", buffer.getvalue()),
+        Artifact("bad.npz", "application/x-npz", b"x"),
+    )
+    jobs.succeed(claim, {"outputs": {}}, (*files, Artifact("a.txt", "text/plain", b"x")), {})
+    here = f"/jobs/{claim.job_id}/artifacts"
+    answer = client.get(f"{here}/maps.npz/arrays")
+    assert answer.json() == {"mask": [[True, False]], "margin_m": [1.5, None, None]}
+    assert (
+        client.get(f"{here}/maps.npz/arrays", headers={"If-None-Match": answer.headers["etag"]}).status_code
+        == 304
+    )
+    assert client.get(f"{here}/maps.npz/arrays?names=mask").json() == {"mask": [[True, False]]}
+    assert_problem(client.get(f"{here}/maps.npz/arrays?names=none"), 404, "names")
+    assert_problem(client.get(f"{here}/bad.npz/arrays"), 422, "name")
+    assert_problem(client.get(f"{here}/a.txt/arrays"), 422, "name")

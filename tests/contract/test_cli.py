@@ -109,6 +109,13 @@ def test_reproduce_table1() -> None:
     assert all(abs(cell["ours"] - cell["paper"]) <= 0.3 for cell in cells)
 
 
+def test_reproduce_chain() -> None:
+    shown = safestart("reproduce", "chain", "--rate", "5", "--no-level-sets").stdout
+    assert "tube in analytical" in shown
+    assert "analytical in synchronize" in shown
+    assert "Violation fractions at 5 deg/s" in shown
+
+
 def test_go_no_go_starts_without_the_engines() -> None:
     code = (
         "import sys; from safestart.cli import build; build(); from safestart.processes.execute import execute;"

@@ -100,4 +100,4 @@ def test_atlas_process_knows_the_sliver() -> None:
     outputs = result.document["outputs"]
     assert outputs["relative_gap"] <= 0.005
     assert outputs["certified_outside"] > 0
-    assert {a.name for a in result.artifacts} == {"atlas.png", "atlas.npz"}
+    assert {a.name for a in result.artifacts} == {"atlas.png", "atlas.npz", "proofs.npz"}

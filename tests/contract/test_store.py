@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
+from sqlalchemy import select
 
 from safestart.artifact import Artifact
 from safestart.comparable import comparable, digest
@@ -31,9 +32,10 @@ from safestart.errors import (
 )
 from safestart.store import schema
 from safestart.store.database import Database
+from safestart.store.filters import JobFilter
 from safestart.store.jobs import JobRepository
-from safestart.store.models import Base
-from safestart.store.records import Claim, Job, JobStatus
+from safestart.store.models import Base, JobRow
+from safestart.store.records import Claim, Job, JobStatus, Wait
 from safestart.store.results import ResultRepository
 from tests.contract.store_backends import BACKENDS, fresh_url
 
@@ -169,12 +171,23 @@ def test_a_last_page_that_is_full_has_no_cursor(jobs: JobRepository) -> None:
 def test_lists_are_filtered(jobs: JobRepository) -> None:
     first, second, third = submit(jobs), submit(jobs, "coverage"), submit(jobs)
     jobs.dismiss(third.id)
-    of = lambda **by: {job.id for job in jobs.list(**by).jobs}  # noqa: E731
+    of = lambda **by: {job.id for job in jobs.list(JobFilter(**by)).jobs}  # noqa: E731
     assert of(statuses=[JobStatus.ACCEPTED]) == {first.id, second.id}
     assert of(process_ids=["certificate"]) == {first.id, third.id}
     assert of(statuses=[JobStatus.ACCEPTED], process_ids=["certificate"]) == {first.id}
     assert of(statuses=["accepted", "dismissed"]) == {first.id, second.id, third.id}
     assert of(process_ids=["none"]) == set()
+    claim = claimed(jobs)
+    jobs.succeed(claim, {"outputs": {}}, (), {})
+    assert of(least_s=0.0, most_s=60.0) == {claim.job_id}, "one that never started has no duration"
+    assert of(least_s=60.0) == set()
+    now = datetime.now(UTC)
+    assert of(created_from=now - timedelta(hours=1), created_to=now + timedelta(hours=1)) == {
+        first.id,
+        second.id,
+        third.id,
+    }
+    assert of(created_to=now - timedelta(hours=1)) == set()
 
 
 @pytest.mark.parametrize(
@@ -198,6 +211,58 @@ def test_positions_follow_priority_then_age_and_so_do_claims(jobs: JobRepository
     assert jobs.position(high.id) is None
     assert [jobs.position(job.id) for job in (low, later)] == [1, 2]
     assert claimed(jobs).job_id == low.id
+
+
+def test_submitters_take_turns_whatever_they_have_queued(jobs: JobRepository) -> None:
+    flood = [submit(jobs, submitter="a").id for _ in range(6)]
+    claimed(jobs)
+    late = [submit(jobs, submitter="b").id for _ in range(2)]
+    order = [claimed(jobs).job_id for _ in range(7)]
+    assert order == [flood[1], late[0], flood[2], late[1], flood[3], flood[4], flood[5]]
+
+
+def test_turns_count_among_equal_priorities_only_and_positions_tell_them(jobs: JobRepository) -> None:
+    flood = [submit(jobs, submitter="a").id for _ in range(3)]
+    first, low = submit(jobs, submitter="b").id, submit(jobs, submitter="b", priority=-1).id
+    expected = [flood[0], first, flood[1], flood[2], low]
+    places = jobs.positions([*flood, first, low, "nope"])
+    assert sorted(places, key=places.__getitem__) == expected
+    assert [jobs.position(job) for job in expected] == [1, 2, 3, 4, 5]
+    assert [claimed(jobs).job_id for _ in range(5)] == expected
+
+
+def test_a_released_job_is_next_even_when_turns_began_anew(jobs: JobRepository) -> None:
+    jobs_of_a = [submit(jobs, submitter="a").id for _ in range(3)]
+    claims = [claimed(jobs) for _ in range(3)]
+    later = submit(jobs, submitter="b").id
+    jobs.release(claims[2], "stopped")
+    assert [claimed(jobs).job_id for _ in range(2)] == [jobs_of_a[2], later]
+
+
+def test_the_same_key_of_two_submitters_is_two_jobs(jobs: JobRepository) -> None:
+    one, two = (submit(jobs, submitter=name, idempotency_key="k") for name in "ab")
+    assert one.id != two.id
+    assert submit(jobs, submitter="a", idempotency_key="k").id == one.id
+
+
+def test_a_waiting_job_knows_when_it_will_start(jobs: JobRepository) -> None:
+    done = submit(jobs)
+    assert jobs.wait(done.id) == Wait(1, None, None)  # no history, no worker
+    claim = claimed(jobs)
+    time.sleep(0.2)
+    jobs.succeed(claim, {}, (), {})
+    assert jobs.wait(done.id) is None
+    ids = [submit(jobs).id for _ in range(5)]
+    assert jobs.wait(ids[0]) == Wait(1, None, None)  # still no worker
+    jobs.heartbeat("worker", 2, 0)
+    first, last = jobs.wait(ids[0]), jobs.wait(ids[4])
+    assert first is not None
+    assert (first.position, first.starts_in_s) == (1, 0.0)
+    assert last is not None
+    run_s = first.ends_in_s
+    assert run_s is not None
+    assert 0.2 <= run_s < 2.0
+    assert last == Wait(5, pytest.approx(4 * run_s / 2), pytest.approx(4 * run_s / 2 + run_s))
 
 
 def test_counts_and_the_oldest_waiting(jobs: JobRepository) -> None:
@@ -275,6 +340,71 @@ def test_a_late_owner_whose_job_nobody_took_may_go_on(jobs: JobRepository) -> No
     assert jobs.get(job.id).status is JobStatus.SUCCESSFUL
 
 
+@pytest.mark.parametrize("jump_s", [-86_400, -90, 86_400])
+def test_no_job_is_stuck_when_the_clock_of_the_database_was_set(jobs: JobRepository, jump_s: float) -> None:
+    """Setting the clock by ``jump_s`` is the same as shifting what was written before by as much the other way."""
+    job = submit(jobs)
+    late = claimed(jobs)
+    assert jobs.claim("other", LEASE_S) is None
+    _shift(jobs, -jump_s)
+    assert jobs.renew(late, LEASE_S)  # its worker lives and renews: nothing is taken from it
+    assert jobs.claim("other", LEASE_S) is None
+    _shift(jobs, -jump_s)  # its worker is lost
+    new = jobs.claim("other", LEASE_S)
+    assert new is not None
+    with pytest.raises(LeaseLost):
+        jobs.succeed(late, {}, (), {})
+    jobs.succeed(new, {}, (), {})
+    assert jobs.get(job.id).status is JobStatus.SUCCESSFUL
+
+
+def test_a_small_step_of_the_clock_takes_no_job_from_its_worker(jobs: JobRepository) -> None:
+    submit(jobs)
+    claimed(jobs)
+    for jump_s in (-LEASE_S / 2, LEASE_S / 2):
+        _shift(jobs, -jump_s)
+        assert jobs.claim("other", LEASE_S) is None
+        _shift(jobs, jump_s)
+
+
+def _shift(jobs: JobRepository, seconds: float) -> None:
+    with jobs._database.session(write=True) as session:
+        for row in session.scalars(select(JobRow).where(JobRow.lease_expires_at.is_not(None))):
+            row.lease_expires_at += timedelta(seconds=seconds)
+
+
+def test_a_dead_task_process_costs_an_attempt(jobs: JobRepository) -> None:
+    job = submit(jobs)
+    claim = claimed(jobs)
+    jobs.progress(claim, 50.0, "half", 1.0)
+    assert jobs.restarted(claim, 3) is True
+    now = jobs.get(job.id)
+    assert (now.attempts, now.progress, now.message) == (2, 0.0, "starting, attempt 2")
+    assert jobs.restarted(claim, 3) is True
+    assert jobs.restarted(claim, 3) is False
+    jobs.poisoned(claim, 3)
+    ended = jobs.get(job.id)
+    assert (ended.status, ended.attempts) == (JobStatus.FAILED, 3)
+    assert ended.problem is not None
+    assert "started 3 times" in ended.problem["detail"]
+    assert "3 times its task process died" in ended.problem["detail"]
+    assert "worker" not in ended.problem["detail"]
+    assert jobs.tallies() == {"lease_losses": 0, "task_deaths": 3, "poisoned": 1}
+
+
+def test_a_job_that_lost_its_worker_and_its_task_processes_says_both(jobs: JobRepository) -> None:
+    job = submit(jobs)
+    claimed(jobs, SHORT_S)
+    time.sleep(SHORT_S * 1.5)
+    claim = claimed(jobs)
+    assert jobs.restarted(claim, 3) is True
+    assert jobs.restarted(claim, 3) is False
+    jobs.poisoned(claim, 3)
+    problem = jobs.get(job.id).problem
+    assert problem is not None
+    assert "1 times its worker was lost and 2 times its task process died" in problem["detail"]
+
+
 def test_the_same_owner_with_an_old_token_is_refused(jobs: JobRepository) -> None:
     submit(jobs)
     claim = claimed(jobs)
@@ -294,6 +424,10 @@ def test_a_job_that_loses_every_worker_fails_as_poison(jobs: JobRepository) -> N
     assert ended.status is JobStatus.FAILED
     assert ended.problem is not None
     assert "started 2 times" in ended.problem["detail"]
+    assert "2 times its worker was lost" in ended.problem["detail"]
+    assert jobs.tallies() == {"lease_losses": 1, "task_deaths": 0, "poisoned": 1}
+    said = [event.data.get("lost") for event in jobs.events(poison.id) if event.kind == "log"]
+    assert said == ["worker"]
     assert ended.finished_at is not None
 
 
@@ -512,6 +646,54 @@ def test_workers_count_while_they_beat(jobs: JobRepository) -> None:
     assert jobs.workers_alive(within_s=0.2) == 1
     jobs.farewell("two")
     assert jobs.workers_alive() == 1
+
+
+# --- shards ---
+
+
+def test_finished_shards_are_kept_in_order_and_go_with_the_success(jobs: JobRepository) -> None:
+    job = submit(jobs)
+    claim = claimed(jobs)
+    jobs.save_shard(claim, 2, "c2", {"n": 2}, b"two")
+    jobs.save_shard(claim, 0, "c0", {"n": 0}, b"")
+    jobs.save_shard(claim, 2, "c2", {"n": 22}, b"again")
+    assert jobs.shard_contents(job.id) == {0: "c0", 2: "c2"}
+    assert jobs.shard_documents(job.id) == ({"n": 0}, {"n": 22})
+    assert [(shard.number, shard.data) for shard in jobs.shards(job.id)] == [(0, b""), (2, b"again")]
+    jobs.succeed(claim, {"outputs": {}}, (), {})
+    assert jobs.shards(job.id) == ()
+
+
+def test_a_worker_that_lost_its_lease_adds_no_shard(jobs: JobRepository) -> None:
+    job = submit(jobs)
+    late = claimed(jobs, SHORT_S)
+    jobs.save_shard(late, 0, "c", {}, b"")
+    time.sleep(SHORT_S + 0.1)
+    claimed(jobs)
+    with pytest.raises(LeaseLost):
+        jobs.save_shard(late, 1, "c", {}, b"")
+    assert jobs.shard_contents(job.id) == {0: "c"}, "what was finished in time is there for the next worker"
+
+
+def test_attempts_count_from_the_last_finished_shard(jobs: JobRepository) -> None:
+    job = submit(jobs)
+    for _ in range(2):
+        claim = claimed(jobs, SHORT_S, max_attempts=2)
+        time.sleep(SHORT_S + 0.1)
+    claim = replace(claim)
+    with pytest.raises(LeaseLost):
+        jobs.save_shard(replace(claim, token=claim.token - 1), 0, "c", {}, b"")
+    jobs.save_shard(claim, 0, "c", {}, b"")
+    assert claimed(jobs, max_attempts=2).attempt == 2
+    assert jobs.get(job.id).status is JobStatus.RUNNING
+
+
+def test_shards_of_a_job_that_failed_stay(jobs: JobRepository) -> None:
+    job = submit(jobs)
+    claim = claimed(jobs)
+    jobs.save_shard(claim, 0, "c", {"n": 1}, b"")
+    jobs.fail(claim, {"detail": "no"})
+    assert jobs.shard_documents(job.id) == ({"n": 1},)
 
 
 # --- the database itself ---

@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from safestart.certificates.closed_form import certify
 from safestart.certificates.exact import Verdict, decide
 from safestart.certificates.proof import check
 from safestart.certificates.prove import proof_of
-from safestart.certificates.question import Question
+from safestart.certificates.question import Goal, Question
 from safestart.scenario import Scenario
 
 COUNTEREXAMPLE = np.array([9.364, 81.044, 0.0, 0.0])
@@ -42,3 +43,18 @@ def test_sixty_starts_of_the_sweep() -> None:
     assert disagreements(cases) == []
     assert all(case.inner < 0.0 < case.outer for case in one_sided(cases))
     assert not any(certified(case) and case.answer.verdict is Verdict.NO_GO for case in cases)
+
+
+def test_a_certified_start_that_stays_but_does_not_synchronize_in_time() -> None:
+    """Next to the synchronization range 200 s are not enough; of 126 other certified starts all are at rest by then."""
+    state = np.array([19.25632377, 148.7588451, 0.0, 0.0])
+    staying = Question(Scenario.of(2.0, 0.1), steps=100)
+    assert bool(certify(staying.scenario, state[:2]).safe)
+    assert decide(staying, state, verdict_only=True).verdict is Verdict.GO
+    question = replace(staying, goal=Goal(hold=(0.0, 2.0)))
+    answer = decide(question, state)
+    assert answer.verdict is Verdict.NO_GO
+    assert check(proof_of(question, state, answer)).verdict == "NO_GO"
+    longer = replace(question, steps=150)
+    found = decide(longer, state, verdict_only=True)
+    assert found.verdict is Verdict.GO

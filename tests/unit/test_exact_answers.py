@@ -6,9 +6,9 @@ import sys
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 from benchmarks.peers.dense_lp import DenseLP
+from benchmarks.peers.flown import fly
 from safestart.certificates import search
 from safestart.certificates.conic import Solved
 from safestart.certificates.exact import Answer, Verdict, decide
@@ -29,48 +29,6 @@ def start(radius: float, angle: float, dimensions: int = 2, speed: float = 0.0) 
     if speed:
         state[dimensions:] = speed * np.array([0.6, -0.7, 0.4])[:dimensions]
     return state
-
-
-def fly(question: Question, state: Floats, thrust: Floats) -> float:
-    """Smallest face distance (m) of the flight, by DOP853 on the CWH equations, about 40 samples a second near it."""
-    d, scenario = question.dimensions, question.scenario
-    n, w, shape = scenario.target.mean_motion, scenario.target.tumble_rate, scenario.corridor
-    x = np.zeros(6)
-    x[:d], x[3 : 3 + d] = state[:d], state[d:]
-    lowest = math.inf
-    for k, held in enumerate(thrust):
-        u = np.zeros(3)
-        u[:d] = held
-
-        def rate(_t: float, y: Floats, u: Floats = u) -> list[float]:
-            return [
-                *y[3:],
-                3 * n * n * y[0] + 2 * n * y[4] + u[0],
-                -2 * n * y[3] + u[1],
-                -n * n * y[2] + u[2],
-            ]
-
-        begin = k * question.dt
-        flown = solve_ivp(
-            rate, (0.0, question.dt), x, "DOP853", rtol=1e-12, atol=1e-12, dense_output=True, max_step=0.25
-        )
-        low, high, best = 0.0, question.dt, math.inf
-        for _ in range(3):
-            times = np.linspace(low, high, 401)
-            r = flown.sol(times)[:3]
-            c, s = np.cos(w * (begin + times)), np.sin(w * (begin + times))
-            bx, by, bz = c * r[0] + s * r[1], c * r[1] - s * r[0], r[2]
-            sides = [by - shape.hold_radius]
-            for slope, width, across in ((shape.c_x, shape.x0, bx), (shape.c_z, shape.z0, bz))[: d - 1]:
-                room = width + slope * (by - shape.hold_radius)
-                sides += [(room - across) / math.hypot(1, slope), (room + across) / math.hypot(1, slope)]
-            distance = np.min(sides, axis=0)
-            at = int(np.argmin(distance))
-            best = min(best, float(distance[at]))
-            low, high = times[max(at - 1, 0)], times[min(at + 1, 400)]
-        lowest = min(lowest, best)
-        x = flown.y[:, -1]
-    return lowest
 
 
 def answers(dimensions: int, speed: float) -> list[tuple[Question, Floats, Answer]]:
@@ -186,7 +144,7 @@ def test_a_start_on_the_edge_is_undecided() -> None:
 
 
 def test_a_failing_solver_is_never_a_go(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(search, "solve", lambda *_: Solved("NumericalError"))
+    monkeypatch.setattr(search, "solve", lambda *_, **__: Solved("NumericalError"))
     answer = decide(Question(Scenario.of(1.0, 0.1)), np.array([0.0, 40.0, 0.0, 0.0]))
     assert answer.verdict is Verdict.UNDECIDED
     assert "NumericalError" in answer.reason

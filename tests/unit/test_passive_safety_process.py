@@ -12,7 +12,8 @@ from safestart.processes.execute import execute
 from safestart.processes.passive_safety.outlines import outlines
 from safestart.processes.registry import process
 from safestart.progress import Context
-from safestart.verification.falsify import replay
+from safestart.verification.model import PUBLISHED
+from safestart.verification.replay import replay
 
 QUICK = {"abort_windows_min": [[120, 125], [260, 260]], "box_half_width_m": 0.2, "critical_abort": False}
 
@@ -27,7 +28,7 @@ def test_document_fits_its_schema_and_its_counter_example_replays() -> None:
     assert [v["separation"]["verdict"] for v in verdicts] == ["SAFE", "UNSAFE"]
     example = verdicts[1]["separation"]["counter_example"]
     start = np.array([example[key] for key in ("x_m", "y_m", "vx_m_s", "vy_m_s")]) * [1, 1, 60, 60]
-    assert np.abs(replay(start, example["abort_min"], example["time_min"])[:2]).max() < 0.2
+    assert np.abs(replay(PUBLISHED, start, example["abort_min"], example["time_min"])[:2]).max() < 0.2
     assert verdicts[0]["thrust"]["unit"] == "N"
     assert verdicts[0]["thrust"]["bound"] == pytest.approx(7.71, abs=0.05)
     assert verdicts[0]["velocity"]["limit"] == pytest.approx(0.05)
@@ -40,6 +41,18 @@ def test_critical_abort_has_a_proof_and_a_flight_on_its_sides() -> None:
     assert outputs["critical"]["proved_until_min"] == pytest.approx(274.3, abs=0.5)
     assert outputs["critical"]["counter_example"]["abort_min"] == pytest.approx(274.4, abs=0.5)
     assert [a.name for a in critical.artifacts] == ["tubes.png", "tubes.npz"]
+
+
+def test_variants_are_chosen_on_the_wire() -> None:
+    """Everything other than the default at once: the disc then holds, and own gains are the published ones."""
+    chosen = {"model": "nonlinear", "gains": "bryson", "guard": "circle"}
+    outputs = execute("passive-safety", QUICK | chosen).document["outputs"]
+    process("passive-safety").outputs.model_validate(outputs)
+    assert outputs["crossed_faces"] == ["circle"]
+    verdicts = [{f["requirement"]: f["verdict"] for f in window["findings"]} for window in outputs["windows"]]
+    assert [v["separation"] for v in verdicts] == ["SAFE", "UNSAFE"]
+    assert all(v[name] == "SAFE" for v in verdicts for name in v if name != "separation")
+    assert outputs["gains"]["mode1"][0][0] == pytest.approx(28.828677676943, abs=1e-4)
 
 
 def test_artifacts_open() -> None:
@@ -76,7 +89,9 @@ def test_dismissal_and_progress() -> None:
         ({"abort_windows_min": [[5, 301]]}, "body"),
         ({"abort_windows_min": [[5]]}, "abort_windows_min.0"),
         ({"box_half_width_m": 0}, "box_half_width_m"),
-        ({"model": "nonlinear"}, "model"),
+        ({"model": "elliptic"}, "model"),
+        ({"gains": "bryson", "mode_1": {"x_m": 0}}, "mode_1.x_m"),
+        ({"guard": "square"}, "guard"),
         ({"centre": {"x_m": 0, "y_m": 0}}, "centre"),
         ({"half_widths": {"x_m": -1}}, "half_widths.x_m"),
     ],

@@ -1,0 +1,132 @@
+"""``safestart up`` in a process tree of its own, and a client of it."""
+
+from __future__ import annotations
+
+import os
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import httpx
+import psutil
+import pytest
+
+LIMIT_S = 240.0
+
+
+def free_port() -> int:
+    """A port that nobody listens on."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port: int = probe.getsockname()[1]
+        return port
+
+
+@contextmanager
+def serving(database_url: str) -> Iterator[str]:
+    """``safestart serve`` alone; yields its address."""
+    url = f"http://127.0.0.1:{free_port()}"
+    command = [sys.executable, "-m", "safestart", "serve", "--port", url.rpartition(":")[2]]
+    process = subprocess.Popen(command, env=os.environ | {"SAFESTART_DATABASE_URL": database_url})
+    try:
+        end = time.monotonic() + LIMIT_S
+        while True:
+            try:
+                httpx.get(f"{url}/healthz")
+                break
+            except httpx.TransportError:
+                assert process.poll() is None
+                assert time.monotonic() < end
+                time.sleep(0.1)
+        yield url
+    finally:
+        process.terminate()
+        process.wait(timeout=60)
+
+
+class Running:
+    """``safestart up`` and a client of it."""
+
+    def __init__(self, folder: Path) -> None:
+        port = free_port()
+        self.database_url = f"sqlite:///{folder / 'up.sqlite3'}"
+        environment = os.environ | {
+            "SAFESTART_DATABASE_URL": self.database_url,
+            "SAFESTART_LEASE_S": "4",
+            "SAFESTART_PROCESSES": "2",
+        }
+        self.log = folder / "up.log"
+        with self.log.open("wb") as sink:
+            command = [sys.executable, "-m", "safestart", "up", "--port", str(port)]
+            self.process = subprocess.Popen(command, env=environment, stdout=sink, stderr=sink)
+        self.url = f"http://127.0.0.1:{port}"
+        self.client = httpx.Client(base_url=self.url, timeout=30.0)
+        self.until(lambda: self.get("/readyz") is not None, "ready")
+
+    def get(self, path: str) -> Any:
+        try:
+            response = self.client.get(path)
+        except httpx.TransportError:
+            return None
+        return response.json() if response.is_success else None
+
+    def until(self, true: Any, what: str, limit: float = LIMIT_S) -> Any:
+        end = time.monotonic() + limit
+        while time.monotonic() < end:
+            value = true()
+            if value:
+                return value
+            assert self.process.poll() is None, self.log.read_text()
+            time.sleep(0.1)
+        pytest.fail(f"not {what} within {limit} s\n{self.log.read_text()}")
+
+    def submit(self, inputs: dict[str, Any]) -> str:
+        answer = self.client.post("/processes/benchmark/execution", json={"inputs": inputs})
+        assert answer.status_code == 201, answer.text
+        job: str = answer.json()["jobID"]
+        assert answer.headers["Location"].endswith(f"/jobs/{job}")
+        return job
+
+    def under_way(self, job: str) -> Any:
+        status = self.get(f"/jobs/{job}")
+        return status and status["status"] == "running" and status["progress"] > 15 and status
+
+    def outcome(self, job: str) -> dict[str, Any]:
+        def ended() -> Any:
+            status = self.get(f"/jobs/{job}")
+            return status and status["status"] in ("successful", "failed", "dismissed") and status
+
+        status = self.until(ended, "ended")
+        assert status["status"] == "successful", f"{status}\n{self.log.read_text()}"
+        document: dict[str, Any] = self.get(f"/jobs/{job}/results")
+        return document
+
+    def processes(self, word: str) -> list[psutil.Process]:
+        found = []
+        for process in psutil.Process(self.process.pid).children(recursive=True):
+            try:
+                if any(word in part for part in process.cmdline()):
+                    found.append(process)
+            except psutil.NoSuchProcess:
+                continue
+        return found
+
+    def busiest(self, word: str) -> psutil.Process:
+        """The process that is working right now."""
+        candidates = self.processes(word)
+        before = {p.pid: sum(p.cpu_times()[:2]) for p in candidates}
+        time.sleep(0.5)
+        return max(candidates, key=lambda p: sum(p.cpu_times()[:2]) - before[p.pid])
+
+    def stop(self) -> list[psutil.Process]:
+        family = psutil.Process(self.process.pid).children(recursive=True)
+        self.process.terminate()
+        self.process.wait(timeout=60)
+        _, alive = psutil.wait_procs(family, timeout=10)
+        self.client.close()
+        return alive

@@ -1,0 +1,82 @@
+"""The Docker files say what they must, as far as that can be told without an engine (docker/check.sh goes further)."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+ROOT = Path(__file__).resolve().parents[2]
+IMAGES = ("service", "worker")
+
+
+def steps(image: str) -> list[tuple[str, str]]:
+    """Instructions of a Dockerfile with their arguments."""
+    text = (ROOT / "docker" / f"{image}.Dockerfile").read_text().replace("\\\n", " ")
+    lines = [line for line in text.splitlines() if line and not line.startswith("#")]
+    return [(line.split(None, 1)[0], line.split(None, 1)[1]) for line in lines]
+
+
+@pytest.fixture(scope="module")
+def compose() -> dict[str, Any]:
+    document: dict[str, Any] = yaml.safe_load((ROOT / "docker" / "compose.yaml").read_text())
+    return document
+
+
+@pytest.mark.parametrize("image", IMAGES)
+def test_images_run_as_somebody_and_can_be_asked_how_they_are(image: str) -> None:
+    last = [i for i, (name, _) in enumerate(steps(image)) if name == "FROM"][-1]
+    final = dict(steps(image)[last:])
+    assert final["USER"] == "10001"
+    assert "CMD" in final["HEALTHCHECK"]
+    names = [name for name, _ in steps(image)]
+    assert names.index("USER") < names.index("CMD")
+
+
+@pytest.mark.parametrize("image", IMAGES)
+def test_what_is_copied_is_there_and_not_ignored(image: str) -> None:
+    allowed = {line[1:] for line in (ROOT / ".dockerignore").read_text().splitlines() if line.startswith("!")}
+    copied = [
+        arguments.split()[0]
+        for name, arguments in steps(image)
+        if name == "COPY" and "--from" not in arguments
+    ]
+    assert set(copied) == allowed
+    assert all((ROOT / path).exists() for path in copied)
+
+
+def test_the_service_image_holds_no_engine() -> None:
+    install = [arguments for name, arguments in steps("service") if "uv sync" in arguments]
+    assert len(install) == 1
+    assert install[0].endswith("--package safestart-service")
+    assert "--all" not in install[0]
+    assert "--no-dev" in install[0]
+    dependencies = (ROOT / "service" / "pyproject.toml").read_text()
+    assert not re.search(r"engines|jax|numba|distributed|safestart-worker", dependencies)
+
+
+def test_the_compose_file_has_every_part(compose: dict[str, Any]) -> None:
+    services = compose["services"]
+    assert set(services) == {"database", "service", "scheduler", "dask-worker", "worker"}
+    assert services["worker"]["deploy"]["replicas"] == 2
+    for name, service in services.items():
+        assert not service.get("privileged"), name
+        for needed in service.get("depends_on", {}):
+            assert needed in services
+        for volume in service.get("volumes", ()):
+            assert volume.split(":")[0] in compose["volumes"]
+        if "build" in service:
+            assert (ROOT / "docker" / service["build"]["context"] / service["build"]["dockerfile"]).is_file()
+            assert service["read_only"] is True
+            assert service["cap_drop"] == ["ALL"]
+    assert all(port.startswith("127.0.0.1:") for port in services["service"]["ports"])
+
+
+def test_no_password_is_written_down(compose: dict[str, Any]) -> None:
+    for service in compose["services"].values():
+        for name, value in service.get("environment", {}).items():
+            if "PASSWORD" in name or "URL" in name:
+                assert "${SAFESTART_DB_PASSWORD:?" in value

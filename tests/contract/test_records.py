@@ -1,0 +1,336 @@
+"""Bundles, replays, backups and retention, on every backend."""
+
+from __future__ import annotations
+
+import io
+import json
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from sqlalchemy import inspect
+from typer.testing import CliRunner
+
+from safestart.artifact import Artifact
+from safestart.bundle import pack, unpack
+from safestart.cli import build
+from safestart.cli.records import age
+from safestart.errors import Conflict, InvalidInput, SafestartError
+from safestart.processes.execute import execute
+from safestart.replay import differing, replay
+from safestart.store.backup import backup, restore
+from safestart.store.database import Database
+from safestart.store.jobs import JobRepository
+from safestart.store.models import Base
+from safestart.store.results import ResultRepository
+from safestart.store.retention import Retention
+from safestart.store.transfer import Transfer
+from tests.contract.store_backends import BACKENDS, fresh_url
+
+INPUTS: dict[str, Any] = {
+    "omega_t_deg_s": 3,
+    "a_max_m_s2": 0.1,
+    "grid": {"nx": 9, "ny": 9, "y_max_m": 150},
+    "engines": ["analytical", "exact"],
+}
+
+
+@pytest.fixture(params=BACKENDS)
+def database(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Database]:
+    database = Database(fresh_url(request.param, tmp_path))
+    database.migrate()
+    yield database
+    database.close()
+
+
+@pytest.fixture(scope="module")
+def execution() -> Any:
+    return execute("benchmark", INPUTS)
+
+
+def done(database: Database, execution: Any, inputs: dict[str, Any] | None = None) -> str:
+    """A finished job as a worker leaves it."""
+    jobs = JobRepository(database)
+    job = jobs.submit("benchmark", inputs or INPUTS, timeout_s=60.0, submitter="somebody")
+    claim = jobs.claim("worker", 30.0)
+    assert claim is not None
+    jobs.progress(claim, 50.0, "half", 1.0)
+    jobs.succeed(claim, execution.document, execution.artifacts, {"python": "3"})
+    return job.id
+
+
+def rewritten(data: bytes, name: str, content: bytes | None) -> bytes:
+    """The archive with one member replaced, added or (None) removed."""
+    target = io.BytesIO()
+    with zipfile.ZipFile(io.BytesIO(data)) as old, zipfile.ZipFile(target, "w") as new:
+        for item in old.namelist():
+            if item != name:
+                new.writestr(item, old.read(item))
+        if content is not None:
+            new.writestr(name, content)
+    return target.getvalue()
+
+
+# --- bundles ---
+
+
+def test_a_job_goes_through_a_bundle_into_another_database(
+    database: Database, execution: Any, tmp_path: Path
+) -> None:
+    job = done(database, execution)
+    data, seal = pack(Transfer(database).read(job))
+    assert pack(Transfer(database).read(job)) == (data, seal), "the same job gives the same bytes"
+    assert b"somebody" not in zipfile.ZipFile(io.BytesIO(data)).read("job.json")
+    other = Database(f"sqlite:///{tmp_path / 'other.sqlite3'}")
+    other.migrate()
+    assert Transfer(other).add(unpack(data, seal)) is True
+    assert Transfer(other).add(unpack(data, seal)) is False, "a second time changes nothing"
+    before, after = ResultRepository(database), ResultRepository(other)
+    assert after.result(job).document == before.result(job).document
+    assert after.result(job).sha256 == before.result(job).sha256
+    assert after.artifacts(job) == before.artifacts(job)
+    for info in before.artifacts(job):
+        assert after.artifact(job, info.name).data == before.artifact(job, info.name).data
+    there, here = JobRepository(other).get(job), JobRepository(database).get(job)
+    assert (there.status, there.inputs, there.finished_at) == (here.status, here.inputs, here.finished_at)
+    old, new = JobRepository(database).events(job), JobRepository(other).events(job)
+    assert [(event.kind, event.data, event.at) for event in new] == [(e.kind, e.data, e.at) for e in old]
+    assert pack(Transfer(other).read(job)) == (data, seal)
+    other.close()
+
+
+def test_a_bundle_opens_without_a_server(database: Database, execution: Any) -> None:
+    data, _ = pack(Transfer(database).read(done(database, execution)))
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        page = archive.read("index.html").decode()
+        names = set(archive.namelist())
+    assert "<script" not in page
+    assert "http" not in page.replace("http-equiv", "")
+    for item in execution.artifacts:
+        assert f'href="artifacts/{item.name}"' in page
+        assert f"artifacts/{item.name}" in names
+    assert "analytical" in page
+
+
+def test_the_page_of_a_bundle_runs_nothing_that_a_job_says(database: Database, execution: Any) -> None:
+    bundle = Transfer(database).read(done(database, execution))
+    evil = "<script>alert(1)</script>"
+    bundle.job["message"] = evil
+    bundle.job["inputs"] = {evil: [{evil: evil}]}
+    page = zipfile.ZipFile(io.BytesIO(pack(bundle)[0])).read("index.html").decode()
+    assert "<script" not in page
+    assert "&lt;script&gt;" in page
+
+
+def test_every_altered_bundle_is_refused_with_what_differs(database: Database, execution: Any) -> None:
+    data, seal = pack(Transfer(database).read(done(database, execution)))
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        parts = {name: archive.read(name) for name in archive.namelist()}
+    assert len(parts) >= 6
+    for name, content in parts.items():
+        if name == "manifest.json":
+            continue
+        with pytest.raises(InvalidInput, match=f"{name} was altered"):
+            unpack(rewritten(data, name, content[:-1] + bytes([content[-1] ^ 1])))
+        with pytest.raises(InvalidInput, match=f"{name} is missing"):
+            unpack(rewritten(data, name, None))
+    with pytest.raises(InvalidInput, match=r"extra\.txt is not in the manifest"):
+        unpack(rewritten(data, "extra.txt", b"x"))
+    with pytest.raises(InvalidInput, match=r"no manifest\.json"):
+        unpack(rewritten(data, "manifest.json", None))
+    for wrong in (data[: len(data) // 2], b"", b"PK rubbish"):
+        with pytest.raises(InvalidInput, match="cannot be unpacked"):
+            unpack(wrong)
+    with pytest.raises(InvalidInput, match="its seal is"):
+        unpack(data, "0" * 64)
+    assert unpack(data, seal.upper()).job["id"]
+
+
+def test_a_bundle_that_was_altered_and_sealed_again_is_told_by_its_seal_or_its_contradictions(
+    database: Database, execution: Any
+) -> None:
+    bundle = Transfer(database).read(done(database, execution))
+    _, seal = pack(bundle)
+    assert bundle.result is not None
+    name = bundle.artifacts[0].name
+    forged = [
+        Artifact(a.name, a.media_type, b"forged" if a.name == name else a.data) for a in bundle.artifacts
+    ]
+    data, other = pack(type(bundle)(bundle.job, bundle.result, bundle.events, tuple(forged)))
+    assert other != seal
+    with pytest.raises(InvalidInput, match=f"artifact {name} is not the one"):
+        unpack(data)
+    result = json.loads(json.dumps(bundle.result))
+    result["outputs"]["rows"][0]["area_m2"] = 1.0
+    data, other = pack(type(bundle)(bundle.job, result, bundle.events, bundle.artifacts))
+    with pytest.raises(InvalidInput, match="its seal is"):
+        unpack(data, seal)
+    with pytest.raises(Conflict, match="has another result"):
+        Transfer(database).add(unpack(data, other))
+
+
+def test_a_job_that_has_not_ended_is_not_exported(database: Database) -> None:
+    job = JobRepository(database).submit("benchmark", INPUTS, timeout_s=60.0)
+    with pytest.raises(Conflict, match="is accepted; required a job that has ended"):
+        Transfer(database).read(job.id)
+    JobRepository(database).dismiss(job.id)
+    bundle = unpack(pack(Transfer(database).read(job.id))[0])
+    assert (bundle.job["status"], bundle.result) == ("dismissed", None)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("status", "running"),
+        ("status", "x"),
+        ("id", ""),
+        ("inputs", []),
+        ("created_at", "2026-01-01"),
+        ("id", None),
+    ],
+)
+def test_a_bundle_with_impossible_facts_is_refused(
+    database: Database, execution: Any, name: str, value: Any
+) -> None:
+    bundle = Transfer(database).read(done(database, execution))
+    bundle.job[name] = value
+    with pytest.raises(InvalidInput, match="bundle"):
+        Transfer(database).add(bundle)
+
+
+# --- replay ---
+
+
+def test_a_replay_here_is_the_same_bit_for_bit(execution: Any) -> None:
+    found = replay(execution.document, {item.name: item.data for item in execution.artifacts})
+    assert (found.verdict, found.kept, found.tolerance) == ("identical", True, None), found
+    assert (found.environment, found.differences) == ((), ())
+
+
+def test_a_replay_tells_what_differs_and_keeps_to_the_tolerance_elsewhere(execution: Any) -> None:
+    files = {item.name: item.data for item in execution.artifacts}
+    document = json.loads(json.dumps(execution.document))
+    document["outputs"]["rows"][0]["area_m2"] *= 1 + 1e-12
+    found = replay(document, files)
+    assert (found.verdict, found.kept) == ("different", False)
+    assert any("rows[0].area_m2" in line for line in found.differences)
+    document["provenance"]["packages"]["numpy"] = "1.0"
+    found = replay(document, files)
+    assert (found.verdict, found.kept, found.tolerance) == ("within tolerance", True, 1e-9)
+    assert any(line.startswith("numpy: 1.0 before") for line in found.environment)
+    document["outputs"]["rows"][0]["area_m2"] *= 1 + 1e-6
+    assert replay(document, files).kept is False
+    assert replay(execution.document, files | {"x.npz": b""}).differences == (
+        "artifact x.npz: not made any more",
+    )
+
+
+def test_documents_differ_by_name_kind_and_length() -> None:
+    assert differing({"a": 1}, {"a": 1.0}) == ["outputs.a: 1 before, 1.0 now"]
+    assert differing({"a": [1]}, {"a": [1, 2]}) == ["outputs.a: [1] before, [1, 2] now"]
+    assert differing({"a": 1}, {}) == ["outputs.a: 1 before, nothing now"]
+    assert differing({}, {"a": None}) == ["outputs.a: nothing before, None now"]
+    assert differing({"run_s": 1}, {"run_s": 2}) == []
+    assert differing({"a": 1e6}, {"a": 1e6 + 1e-4}, 1e-9) == []
+    assert differing({"a": 1e-12}, {"a": 2e-12}, 1e-9) == []
+    assert len(differing({"a": True}, {"a": False}, 1e9)) == 1
+
+
+# --- backup, retention ---
+
+
+def test_a_backup_restores_into_every_kind_of_database(
+    database: Database, execution: Any, tmp_path: Path
+) -> None:
+    job = done(database, execution)
+    waiting = JobRepository(database).submit("benchmark", INPUTS, timeout_s=60.0).id
+    file = tmp_path / "copy.sqlite3"
+    assert backup(database, file) == 2
+    assert [path.name for path in tmp_path.glob("copy*")] == ["copy.sqlite3"]
+    with pytest.raises(InvalidInput, match="required a file that is not there yet"):
+        backup(database, file)
+    with pytest.raises(Conflict, match="required an empty one"):
+        restore(database, file)
+    for backend in ("sqlite", "postgresql"):
+        if backend == "postgresql" and database.file is not None and BACKENDS[1].marks[0].args[0]:
+            continue  # no server
+        folder = tmp_path / backend
+        folder.mkdir()
+        other = Database(fresh_url(backend, folder))
+        assert restore(other, file) == 2
+        jobs, results = JobRepository(other), ResultRepository(other)
+        assert jobs.get(job) == JobRepository(database).get(job)
+        assert jobs.events(job) == JobRepository(database).events(job)
+        assert results.result(job) == ResultRepository(database).result(job)
+        assert pack(Transfer(other).read(job)) == pack(Transfer(database).read(job))
+        claim = jobs.claim("worker", 30.0)
+        assert claim is not None
+        assert claim.job_id == waiting
+        assert jobs.submit("benchmark", INPUTS, timeout_s=60.0).id not in (job, waiting)
+        assert jobs.tallies() == JobRepository(database).tallies()
+        other.close()
+
+
+def test_a_backup_copies_every_table_that_there_is(database: Database) -> None:
+    with database.session() as session:
+        there = set(inspect(session.connection()).get_table_names()) - {"alembic_version"}
+    assert there == set(Base.metadata.tables)
+
+
+def test_what_is_no_backup_is_refused(database: Database, tmp_path: Path) -> None:
+    (tmp_path / "x").write_text("no database " * 100)
+    for wrong in (tmp_path / "x", tmp_path / "nothing"):
+        with pytest.raises(SafestartError, match=r"required a backup|could not be copied"):
+            restore(database, wrong)
+
+
+def test_only_what_ended_long_ago_is_purged(database: Database, execution: Any) -> None:
+    jobs, retention = JobRepository(database), Retention(database)
+    old = done(database, execution)
+    running = jobs.submit("benchmark", INPUTS, timeout_s=60.0).id
+    assert jobs.claim("worker", 30.0) is not None
+    waiting = jobs.submit("benchmark", INPUTS, timeout_s=60.0).id
+    assert retention.older(3600.0) == retention.purge(3600.0) == 0
+    assert retention.older(-1.0) == retention.purge(-1.0) == 1
+    assert {job.id for job in jobs.list().jobs} == {running, waiting}
+    assert jobs.events(old) == ()
+    assert retention.purge(-1.0) == 0
+
+
+@pytest.mark.parametrize(("text", "seconds"), [("30d", 2592000), ("1.5h", 5400), ("90 min", 5400), ("0s", 0)])
+def test_ages(text: str, seconds: float) -> None:
+    assert age(text) == seconds
+
+
+@pytest.mark.parametrize("text", ["", "d", "-1d", "30", "1e9d", "1 year"])
+def test_ages_that_are_none(text: str) -> None:
+    with pytest.raises(InvalidInput, match="--older-than"):
+        age(text)
+
+
+def test_the_commands(execution: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    url = f"sqlite:///{tmp_path / 'store.sqlite3'}"
+    database = Database(url)
+    database.migrate()
+    job = done(database, execution)
+    database.close()
+
+    def run(*arguments: str, code: int = 0) -> str:
+        ended = CliRunner().invoke(build(), arguments)
+        if isinstance(ended.exception, SafestartError):
+            assert code == 2
+            return ended.exception.detail
+        assert ended.exit_code == code, ended.output
+        return ended.output
+
+    said = run("export", job, "--output", "b.zip", "--database-url", url)
+    seal = said.split("seal ")[1].split()[0]
+    other = f"sqlite:///{tmp_path / 'other.sqlite3'}"
+    assert "imported" in run("import", "b.zip", "--seal", seal, "--database-url", other)
+    assert "its seal is" in run("import", "b.zip", "--seal", "00", "--database-url", other, code=2)
+    assert '"verdict": "identical"' in run("replay", "b.zip", "--json")
+    assert "1 jobs" in run("backup", "c.sqlite3", "--database-url", url)
+    assert "1 jobs would be deleted" in run("purge", "--older-than", "0s", "--dry-run", "--database-url", url)
