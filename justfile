@@ -35,3 +35,7 @@ generate:
     python3 -m uv run --all-packages python tools/openapi.py write
     python3 -m uv run --all-packages python tools/settings_page.py write
     python3 -m uv run --all-packages python tools/picture.py
+
+# the pages in Chromium, their screenshots into docs/screenshots
+screenshots:
+    SAFESTART_SCREENSHOTS=docs/screenshots python3 -m uv run --all-packages pytest tests/browser

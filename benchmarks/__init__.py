@@ -3,7 +3,9 @@
 BENCHMARKS = (
     "certificate",
     "reach",
+    "level_set",
     "closed_loop",
+    "sweep",
     "exact_answers",
     "passive_safety",
     "atlas",

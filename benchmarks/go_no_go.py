@@ -42,35 +42,58 @@ def measure(seconds: float = 2.0, repeats: int = 5) -> dict[str, Any]:
     """Requests per second of both, and the median of the pairwise ratios.
 
     ``ratio`` is against FastAPI's ordinary endpoint, ``ratio_encoded`` against one that sends prepared bytes;
-    ``ratio_fresh`` is against the ordinary one when every question has another operating point.
+    ``ratio_fresh`` is against the ordinary one when every question has another operating point; ``ratio_keyed`` when
+    API keys are in use and each request brings one.
     """
     with tempfile.TemporaryDirectory() as folder:
         url = f"sqlite:///{Path(folder) / 'bench.sqlite3'}"
-        with _server(
-            "safestart_service.app:create_app", "/healthz", factory=True, SAFESTART_DATABASE_URL=url
-        ) as ours:
+        keyed_url = f"sqlite:///{Path(folder) / 'keyed.sqlite3'}"
+        key = _key(keyed_url)
+        with (
+            _server("safestart_service.app:create_app", "/healthz", SAFESTART_DATABASE_URL=url) as ours,
+            _server(
+                "safestart_service.app:create_app",
+                "/healthz",
+                SAFESTART_DATABASE_URL=keyed_url,
+                SAFESTART_RATE_PER_S="1e9",
+            ) as keyed,
+        ):
             with urllib.request.urlopen(f"http://127.0.0.1:{ours}{QUESTION}") as answer:
                 document = json.loads(answer.read())
             peer = _server(
                 "benchmarks.peers.constant_service:app", "/encoded", CONSTANT_DOCUMENT=json.dumps(document)
             )
             with peer as bare:
-                return _compare(ours, bare, seconds, repeats)
+                return _compare(ours, bare, keyed, key, seconds, repeats)
 
 
-def _compare(ours: int, bare: int, seconds: float, repeats: int) -> dict[str, Any]:
-    calls = {
-        "service": (ours, QUESTIONS),
-        "bare": (bare, ("/constant",)),
-        "encoded": (bare, ("/encoded",)),
-        "fresh": (ours, FRESH),
+def _key(url: str) -> str:
+    """Make a key that may read, in a database of its own."""
+    from safestart.access import Caller, Role
+    from safestart.store.database import Database
+    from safestart.store.keys import KeyRepository
+
+    database = Database(url)
+    database.migrate()
+    _, key = KeyRepository(database).create("bench", Role.READ, None, Caller(None, "bench", Role.ADMIN))
+    database.close()
+    return key
+
+
+def _compare(ours: int, bare: int, keyed: int, key: str, seconds: float, repeats: int) -> dict[str, Any]:
+    calls: dict[str, tuple[int, tuple[str, ...], str]] = {
+        "service": (ours, QUESTIONS, ""),
+        "bare": (bare, ("/constant",), ""),
+        "encoded": (bare, ("/encoded",), ""),
+        "fresh": (ours, FRESH, ""),
+        "keyed": (keyed, QUESTIONS, f"Authorization: Bearer {key}\r\n"),
     }
     rates: dict[str, list[float]] = {name: [] for name in calls}
-    for port, paths in calls.values():
-        requests_per_second(port, paths, 0.5)  # warm up
+    for port, paths, more in calls.values():
+        requests_per_second(port, paths, 0.5, more=more)  # warm up
     for _ in range(repeats):
-        for name, (port, paths) in calls.items():
-            rates[name].append(requests_per_second(port, paths, seconds))
+        for name, (port, paths, more) in calls.items():
+            rates[name].append(requests_per_second(port, paths, seconds, more=more))
 
     def ratio(peer: str, service: str = "service") -> float:
         return median(a / b for a, b in zip(rates[service], rates[peer], strict=True))
@@ -79,6 +102,7 @@ def _compare(ours: int, bare: int, seconds: float, repeats: int) -> dict[str, An
         "ratio": ratio("bare"),
         "ratio_encoded": ratio("encoded"),
         "ratio_fresh": ratio("bare", "fresh"),
+        "ratio_keyed": ratio("bare", "keyed"),
         "rps_service": median(rates["service"]),
         "rps_bare": median(rates["bare"]),
         "rps_encoded": median(rates["encoded"]),
@@ -90,7 +114,7 @@ def _compare(ours: int, bare: int, seconds: float, repeats: int) -> dict[str, An
 
 
 @contextmanager
-def _server(target: str, probe: str, *, factory: bool = False, **environment: str) -> Iterator[int]:
+def _server(target: str, probe: str, **environment: str) -> Iterator[int]:
     """A uvicorn process on a free loopback port that answers ``probe``; ended on leaving."""
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
@@ -105,7 +129,7 @@ def _server(target: str, probe: str, *, factory: bool = False, **environment: st
             "--port",
             str(port),
             *options,
-            *(["--factory"] if factory else []),
+            *(["--factory"] if target.endswith(":create_app") else []),
         ],
         cwd=ROOT,
         env={**os.environ, **environment},

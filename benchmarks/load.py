@@ -17,14 +17,18 @@ class _Connection(asyncio.Protocol):
     def __init__(self, requests: Iterator[bytes], stop_at: float) -> None:
         self.requests = requests
         self.stop_at = stop_at
-        self.answers = 0
+        self.times: list[float] = []
         self.error: Exception | None = None
         self.done: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self._buffer = b""
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         self._transport = cast(asyncio.Transport, transport)  # uvloop's is none of asyncio's classes
-        transport.write(next(self.requests))
+        self._ask()
+
+    def _ask(self) -> None:
+        self._asked = perf_counter()
+        self._transport.write(next(self.requests))
 
     def data_received(self, data: bytes) -> None:
         self._buffer += data
@@ -40,9 +44,10 @@ class _Connection(asyncio.Protocol):
         if len(body) < length:
             return
         self._buffer = b""
-        self.answers += 1
-        if perf_counter() < self.stop_at:
-            self._transport.write(next(self.requests))
+        now = perf_counter()
+        self.times.append(now - self._asked)
+        if now < self.stop_at:
+            self._ask()
         else:
             self._transport.close()
 
@@ -52,9 +57,11 @@ class _Connection(asyncio.Protocol):
             self.done.set_result(None)
 
 
-async def _load(port: int, paths: Sequence[str], seconds: float, connections: int) -> float:
+async def _load(
+    port: int, paths: Sequence[str], seconds: float, connections: int, more: str
+) -> tuple[list[float], float]:
     loop = asyncio.get_running_loop()
-    lines = f" HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nAccept: application/json\r\n\r\n"
+    lines = f" HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nAccept: application/json\r\n{more}\r\n"
     requests = cycle([f"GET {path}{lines}".encode() for path in paths])
     start = perf_counter()
     made = []
@@ -67,11 +74,21 @@ async def _load(port: int, paths: Sequence[str], seconds: float, connections: in
     for connection in made:
         if connection.error is not None:
             raise connection.error
-    return sum(connection.answers for connection in made) / (perf_counter() - start)
+    return [taken for connection in made for taken in connection.times], perf_counter() - start
 
 
-def requests_per_second(port: int, paths: Sequence[str], seconds: float, connections: int = 16) -> float:
-    """Answers per second on the loopback port; the paths are asked for in turn."""
+def requests_per_second(
+    port: int, paths: Sequence[str], seconds: float, connections: int = 16, more: str = ""
+) -> float:
+    """Answers per second on the loopback port; the paths are asked for in turn, with ``more`` header lines."""
     import uvloop
 
-    return uvloop.run(_load(port, paths, seconds, connections))
+    times, took = uvloop.run(_load(port, paths, seconds, connections, more))
+    return len(times) / took
+
+
+def latencies(port: int, paths: Sequence[str], seconds: float, connections: int) -> list[float]:
+    """Seconds that each answer took."""
+    import uvloop
+
+    return uvloop.run(_load(port, paths, seconds, connections, ""))[0]

@@ -1,4 +1,4 @@
-"""The pictures of the README: the benchmark's overlay map at 2 deg/s, 0.10 m/s^2, and an atlas at 0.05 m/s^2."""
+"""The pictures of the README: overlay map and atlas at 2 deg/s, the sets of the inclusion chain at 3 deg/s."""
 
 from __future__ import annotations
 
@@ -20,3 +20,4 @@ if __name__ == "__main__":
     grid = {"nx": 121, "ny": 121, "y_max_m": 150}
     draw("benchmark", {"omega_t_deg_s": 2, "a_max_m_s2": 0.1, "grid": grid}, "overlay.png", "safe-start.png")
     draw("atlas", {"omega_t_deg_s": 2, "a_max_m_s2": 0.05, "grid": grid}, "atlas.png", "atlas.png")
+    draw("inclusion-chain", {"omega_t_deg_s": 3, "a_max_m_s2": 0.1}, "sets.png", "chain.png")
