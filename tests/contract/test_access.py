@@ -24,7 +24,8 @@ from safestart.errors import InvalidInput, NotFound
 from safestart.store.audit import AuditLog
 from safestart.store.database import Database
 from safestart.store.keys import KeyRepository
-from safestart_service.access import needed_role
+from safestart_service import rates
+from safestart_service.access import MOST_FAILURES_PER_S, needed_role
 from safestart_service.keyring import Keyring
 from safestart_service.rates import Buckets
 from tests.contract.service_client import HEAVY, POINT, assert_problem, jobs_of, service, submit, url_of
@@ -374,17 +375,24 @@ def test_rates_per_key(tmp_path):
         assert client.get("/healthz").status_code == 200
 
 
-def test_guessing_is_slowed_down_but_shuts_nobody_out(guarded):
+def test_guessing_is_slowed_down_but_shuts_nobody_out(guarded, monkeypatch):
+    """On a clock that stands still: a slow machine must not fill the bucket while it asks."""
     client, made, _ = guarded
-    statuses = [client.get("/jobs", headers=bearer(f"guess {i}")).status_code for i in range(80)]
-    assert statuses[0] == 401
-    assert statuses[-1] == 429
+    now = [0.0]
+    monkeypatch.setattr(rates, "monotonic", lambda: now[0])
+
+    def guess() -> int:
+        return client.get("/jobs", headers=bearer("guess")).status_code
+
+    burst = round(MOST_FAILURES_PER_S * rates.BURST_S)
+    assert [guess() for _ in range(burst + 2)] == [401] * burst + [429] * 2
     assert client.get("/jobs", headers=bearer(made["read"])).status_code == 200
+    now[0] = 1.0
+    again = round(MOST_FAILURES_PER_S)
+    assert [guess() for _ in range(again + 1)] == [401] * again + [429]
 
 
 def test_buckets_fill_again_and_stay_few(monkeypatch):
-    from safestart_service import rates
-
     now = [0.0]
     monkeypatch.setattr(rates, "monotonic", lambda: now[0])
     buckets = Buckets(2.0, burst=3.0)

@@ -82,7 +82,7 @@ $("compare").addEventListener("click", () => location.assign(`${root}/dashboard/
 loading($("list"));
 try {
   await filters();
+  await show();
 } catch (error) {
   fail($("list"), error, () => location.reload());
 }
-await show();

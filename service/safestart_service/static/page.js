@@ -38,6 +38,8 @@ export const moment = (text) => (text ? new Date(text).toISOString().slice(0, 19
 export function fail(place, error, again) {
   if (error.name === "AbortError") return;
   const known = error instanceof Problem;
+  // Somebody may be typing a key there: a second refusal must not wipe it out.
+  if (known && error.status === 401 && place.querySelector("#key")) return;
   const box = el("div", { class: "problem", role: "alert" });
   box.append(el("h2", {}, known ? error.document.title ?? "Refused" : "This page has a fault"));
   box.append(el("p", {}, error.message));
