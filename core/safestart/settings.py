@@ -38,6 +38,12 @@ class Settings(BaseSettings):
     poll_s: float = Field(0.2, ge=0.02, le=60, description="How often the worker looks for work, s.")
     job_timeout_s: float = Field(3600.0, ge=1, le=604800, description="Longest run of a job, s.")
     max_attempts: int = Field(3, ge=1, le=100, description="Attempts after which a job counts as poison.")
+    silence_s: float = Field(
+        60.0,
+        ge=1,
+        le=3600,
+        description="A job that reports nothing and uses no processor for that long, s, starts again.",
+    )
     keep_days: float = Field(
         0.0, ge=0, le=36500, description="Days after which the worker deletes ended jobs; 0: they are kept."
     )

@@ -15,7 +15,7 @@ from safestart.errors import JobFailed
 from safestart.processes.execute import execute
 from safestart.processes.registry import process
 from safestart.store.records import JobStatus
-from tests.acceptance.worker_process import LEASE_S, Farm, over, until
+from tests.acceptance.worker_process import LEASE_S, SILENCE_S, Farm, over, until
 
 CERTIFICATE: dict[str, Any] = {"omega_t_deg_s": 3, "a_max_m_s2": 0.1}
 # About a hundred steps of some 50 ms, each of them reported: long enough to be disturbed, polls for a stop.
@@ -186,6 +186,40 @@ def test_a_killed_task_process_costs_time_but_not_the_result(farm: Farm, undistu
     assert farm.results.result(job).sha256 == farm.results.result(undisturbed).sha256
     notes = [event.data["message"] for event in farm.jobs.events(job) if event.kind == "log"]
     assert notes == ["its task process died; starting, attempt 2"]
+
+
+def test_a_task_process_that_stands_still_is_replaced(farm: Farm, undisturbed: str) -> None:
+    """Dask itself would wait five minutes for a process that neither works nor ends."""
+    job = farm.submit("coverage", STEADY)
+    stopped = farm.computing(job, 10.0)
+    stopped.suspend()
+    start = time.monotonic()
+    until(lambda: "give no sign of life, their processes do nothing" in farm.said(), 60, "the discovery")
+    assert time.monotonic() - start > 0.9 * SILENCE_S
+    ended = farm.ended(job)
+    assert (ended.status, ended.attempts) == (JobStatus.SUCCESSFUL, 2)
+    assert over([stopped])
+    assert result_of(farm, job) == result_of(farm, undisturbed)
+
+
+def test_a_process_that_takes_long_to_come_back_is_waited_for(farm: Farm) -> None:
+    """Dask gives up after 15 s; a loaded machine needs longer, and had no task process left in the end."""
+    first, second = farm.submit("coverage", STEADY), farm.submit("coverage", STEADY)
+    lost = [farm.computing(first), farm.computing(second)]
+    for job in (first, second):
+        farm.jobs.dismiss(job)
+        farm.ended(job)
+    before = {process.pid for process in farm.processes()}
+    lost[0].kill()
+    late = until(lambda: [p for p in farm.processes() if p.pid not in before], 30, "its successor")[0]
+    late.suspend()
+    time.sleep(17.0)
+    late.resume()
+    jobs = [farm.submit("coverage", STEADY), farm.submit("coverage", STEADY)]
+    assert {farm.computing(job).pid for job in jobs} == {late.pid, lost[1].pid}
+    for job in jobs:
+        farm.jobs.dismiss(job)
+        farm.ended(job)
 
 
 def test_a_job_that_takes_down_every_task_process_fails_as_poison(farm: Farm) -> None:

@@ -21,6 +21,7 @@ from safestart.store.results import ResultRepository
 PROCESSES = 2
 LEASE_S = 3.0
 MAX_ATTEMPTS = 2
+SILENCE_S = 8.0
 READY_S = 120.0
 
 
@@ -52,6 +53,7 @@ class Farm:
         environment = os.environ | {
             "SAFESTART_LEASE_S": f"{LEASE_S:g}",
             "SAFESTART_MAX_ATTEMPTS": str(MAX_ATTEMPTS),
+            "SAFESTART_SILENCE_S": f"{SILENCE_S:g}",
         }
         command = [sys.executable, "-m", "safestart_worker", "--database-url", self.url]
         already = self.said().count("takes jobs from")

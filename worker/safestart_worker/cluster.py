@@ -6,9 +6,11 @@ import asyncio
 import logging
 from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager, suppress
+from dataclasses import dataclass
 from typing import Any, TypeVar, cast
 
 import dask
+import psutil
 from distributed import Client, Future, LocalCluster, Nanny
 from distributed.system import MEMORY_LIMIT
 
@@ -33,6 +35,18 @@ _ONE_THREAD = {
 }
 
 
+# States of a task that still has to run; in every other one it is over for the scheduler.
+_TO_RUN = frozenset({"waiting", "no-worker", "queued", "processing"})
+
+
+@dataclass(frozen=True, slots=True)
+class Where:
+    """Processes that run some tasks now, by address; ``over``: the scheduler has none of them to run any more."""
+
+    processes: frozenset[str]
+    over: bool
+
+
 class Cluster:
     """A Dask client and what this worker does with it."""
 
@@ -40,6 +54,8 @@ class Cluster:
         self._client = client
         self._topic = f"safestart-{owner}"
         self._local = local
+        self._size = 0 if local is None else len(local.workers)
+        self._given_up = False
 
     @property
     def embedded(self) -> bool:
@@ -50,9 +66,48 @@ class Cluster:
         """Hand every report of our tasks to ``handler``."""
         self._client.subscribe_topic(self._topic, lambda event: handler(event[1]))
 
-    def connected(self) -> bool:
-        """False once the scheduler is gone for good."""
-        return bool(self._client.status == "running")
+    @property
+    def lost(self) -> str:
+        """Why this cluster is of no use any more; empty while it is."""
+        if self._given_up:
+            return "the cluster of task processes is given up"
+        return "" if self._client.status == "running" else "the connection to the scheduler is lost"
+
+    def give_up(self) -> None:
+        """Do not use this cluster any more: the worker ends, and a new one starts with a new cluster."""
+        self._given_up = True
+
+    async def where(self, futures: Sequence[Future[Any]]) -> Where:
+        """Where tasks are, by the scheduler's word and not by what this client has heard."""
+        keys = {future.key for future in futures}
+        states = await cast(Any, self._client.scheduler).get_task_status(keys=list(keys))
+        return Where(frozenset(await self._running(keys)), not _TO_RUN.intersection(states.values()))
+
+    def cpu_s(self, addresses: frozenset[str]) -> float | None:
+        """Processor time (s) that local task processes have used; None for a cluster elsewhere.
+
+        There Dask's scheduler itself drops processes it has not heard of for five minutes.
+        """
+        if self._local is None:
+            return None
+        used = 0.0
+        for nanny in self._nannies():
+            if nanny.worker_address in addresses and nanny.pid:
+                with suppress(psutil.Error):  # it has just died: Dask sees to that
+                    used += sum(psutil.Process(nanny.pid).cpu_times()[:2])
+        return used
+
+    async def complete(self) -> bool:
+        """True when every local task process is there, or the cluster is not ours."""
+        return await self.threads() >= self._size
+
+    async def replace(self, addresses: frozenset[str]) -> None:
+        """Kill local task processes; new ones start, and Dask runs their tasks again."""
+        for nanny in self._nannies():
+            if nanny.worker_address in addresses:
+                # Sooner than restart_workers, which waits several seconds for a busy process to end by itself; the
+                # nanny starts the next process in the background.
+                await nanny.kill(timeout=KILL_TIMEOUT_S)
 
     async def threads(self) -> int:
         """Number of tasks that can run at once now."""
@@ -88,11 +143,7 @@ class Cluster:
             await future.cancel()
         if self._local is None and addresses:
             await self._client.restart_workers(addresses, timeout=RESTART_TIMEOUT_S, raise_for_error=False)
-        for nanny in self._nannies():
-            # Sooner than restart_workers, which waits several seconds for a busy process to end by itself; the
-            # nanny starts the next process in the background.
-            if nanny.worker_address in addresses:
-                await nanny.kill(timeout=KILL_TIMEOUT_S)
+        await self.replace(frozenset(addresses))
 
     async def leave(self, job: str, futures: Sequence[Future[Any]], outcome: asyncio.Task[Any]) -> None:
         """End the tasks of a job that somebody else will run, as far as that goes in a short time."""
@@ -177,6 +228,9 @@ def _config(max_attempts: int) -> dict[str, Any]:
     return {
         # Dask counts deaths beyond the first allowed ones; we count attempts.
         "distributed.scheduler.allowed-failures": max_attempts - 1,
+        # Dask gives a lost process up for ever when its successor is not there after 15 s, which on a loaded machine
+        # it is not; we wait for it, and give up ourselves when jobs have waited in vain (see signs).
+        "distributed.deploy.lost-worker-timeout": "1000 hours",
         # Events are for progress only: the database keeps what is worth keeping.
         "distributed.admin.low-level-log-length": 1000,
         # Read before the process imports NumPy or Numba.

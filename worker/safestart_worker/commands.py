@@ -37,6 +37,7 @@ def register(app: typer.Typer) -> None:
             lease_s=configured.lease_s,
             poll_s=configured.poll_s,
             max_attempts=configured.max_attempts,
+            silence_s=configured.silence_s,
             keep_s=configured.keep_days * 86_400.0,
         )
         raise typer.Exit(asyncio.run(work(options)))

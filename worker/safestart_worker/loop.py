@@ -44,12 +44,13 @@ class Options:
     lease_s: float
     poll_s: float
     max_attempts: int
+    silence_s: float
     keep_s: float = 0.0
 
     @property
     def rules(self) -> Rules:
         """What the shepherds need to know."""
-        return Rules(self.lease_s, self.max_attempts)
+        return Rules(self.lease_s, self.max_attempts, self.silence_s)
 
 
 class Worker:
@@ -78,8 +79,8 @@ class Worker:
                 pause = AWAY_S
             except OSError as error:  # Dask's errors of communication are OSErrors
                 log.warning("%s", error)
-            if not self._cluster.connected():
-                log.error("the connection to the scheduler is lost")
+            if self._cluster.lost:
+                log.error("%s", self._cluster.lost)
                 break
             await asyncio.wait({stop, *self._herd}, timeout=pause, return_when=asyncio.FIRST_COMPLETED)
             self._collect()
@@ -149,7 +150,7 @@ async def work(options: Options) -> int:
             purging = asyncio.create_task(_purge(Retention(database), options.keep_s))
             await Worker(options, jobs, cluster, owner).run(stopping)
             purging.cancel()
-            lost = not cluster.connected()
+            lost = bool(cluster.lost)
         await _say_goodbye(jobs, owner)
         log.info("stopping")
     database.close()

@@ -52,7 +52,7 @@ class Sharded:
         self._jobs, self._spec, self._sharding = jobs, spec, cast(Sharding, spec.sharding)
         self._started = datetime.now(UTC)
         self._begin = time.monotonic()
-        self._ending = False
+        self._ending = self._storing = False
         self._futures: dict[int, Future[Any]] = {}
         self._starts: dict[int, int] = {}
         self._shares: dict[int, float] = {}
@@ -123,14 +123,22 @@ class Sharded:
 
     async def _store(self, call: Callable[[], Answer]) -> Answer:
         """Call the store; while the database is away, try until it is back or the lease is lost."""
-        while True:
-            try:
-                return await asyncio.to_thread(call)
-            except Unavailable as error:
-                if self._ending:
-                    raise
-                self._journal.say(error.detail, logging.WARNING)
-                await asyncio.sleep(RETRY_S)
+        self._storing = True
+        try:
+            while True:
+                try:
+                    return await asyncio.to_thread(call)
+                except Unavailable as error:
+                    if self._ending:
+                        raise
+                    self._journal.say(error.detail, logging.WARNING)
+                    await asyncio.sleep(RETRY_S)
+        finally:
+            self._storing = False
+
+    def awaited(self) -> list[Future[Any]]:
+        """Shards under way, or the merge; none while the store is asked."""
+        return [] if self._storing else list(self._futures.values())
 
     def on_report(self, data: dict[str, Any]) -> None:
         """Follow the progress of the shards together; the merge counts as one more."""

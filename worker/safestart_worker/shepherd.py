@@ -22,6 +22,7 @@ from safestart.store.records import Claim
 from safestart_worker import problems
 from safestart_worker.cluster import Cluster
 from safestart_worker.shards import Sharded
+from safestart_worker.signs import Finding, Signs
 from safestart_worker.task import Outcome
 from safestart_worker.work import Journal, Whole, Work
 
@@ -41,6 +42,7 @@ class Rules:
 
     lease_s: float
     max_attempts: int
+    silence_s: float
 
     @property
     def renew_s(self) -> float:
@@ -58,11 +60,13 @@ class Shepherd:
         self._cluster = cluster
         self._rules = rules
         self._journal = Journal(claim.job_id)
+        self._signs = Signs(cluster, rules.silence_s)
         self._work: Work | None = None
         self._shown = False
 
     def on_report(self, data: dict[str, Any]) -> None:
         """Take in a report of one of its tasks."""
+        self._signs.heard()
         if self._work is not None:
             self._work.on_report(data)
 
@@ -92,7 +96,7 @@ class Shepherd:
 
     async def _watch(self, work: Work, outcome: asyncio.Task[Outcome], stopping: asyncio.Event) -> None:
         start = time.monotonic()
-        written = renewed = start
+        written = renewed = looked = start
         stop = asyncio.ensure_future(stopping.wait())
         try:
             while not outcome.done():
@@ -115,12 +119,27 @@ class Shepherd:
                         self._say("dismissal asked for")
                         await work.stop(outcome)
                         return await self._end("dismissed", lambda: self._jobs.dismissed(self.claim))
+                if now - looked >= self._signs.period_s:
+                    looked = now
+                    await self._look(work)
                 if now - start > self.claim.timeout_s:
                     await work.stop(outcome)
                     return await self._fail(problems.of_timeout(self.claim.timeout_s))
         finally:
             stop.cancel()
         return await self._finish(work, outcome)
+
+    async def _look(self, work: Work) -> None:
+        """Start a silent and lifeless job again, with a new process, or with a new cluster where that is no help."""
+        found = await self._signs.look(work.awaited())
+        if found is Finding.ALIVE:
+            return
+        self._say(f"its tasks give no sign of life, {found.value}; starting again", logging.WARNING)
+        self._signs.heard()
+        if found is Finding.HUNG:
+            await self._cluster.replace(self._signs.addresses)
+        else:
+            self._cluster.give_up()
 
     async def _finish(self, work: Work, outcome: asyncio.Task[Outcome]) -> None:
         try:

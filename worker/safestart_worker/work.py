@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Awaitable
+from collections.abc import Awaitable, Sequence
 from typing import Any, Protocol, cast
 
 from distributed import Future
@@ -46,6 +46,10 @@ class Work(Protocol):
 
     def on_report(self, data: dict[str, Any]) -> None:
         """Take in a report of one of the tasks."""
+        ...
+
+    def awaited(self) -> Sequence[Future[Any]]:
+        """The tasks that :meth:`run` waits for now; none while it waits for something else."""
         ...
 
     async def stop(self, outcome: asyncio.Task[Outcome]) -> None:
@@ -92,6 +96,10 @@ class Whole:
             journal.say(f"runs in process {data['pid']} at {data['address']}")
         else:
             journal.track.update(data["done"], data["total"], data["elapsed_s"], data["message"])
+
+    def awaited(self) -> Sequence[Future[Any]]:
+        """The task."""
+        return [self._future]
 
     async def stop(self, outcome: asyncio.Task[Outcome]) -> None:
         """End the task."""
