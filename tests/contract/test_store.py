@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
-from sqlalchemy import select
+from sqlalchemy import create_engine, make_url, select, text
 
 from safestart.artifact import Artifact
 from safestart.comparable import comparable, digest
@@ -471,6 +471,23 @@ def test_two_workers_share_fifty_jobs_each_once(url: str, jobs: JobRepository, k
     for job in ids:
         statuses = [event.data["status"] for event in jobs.events(job) if event.kind == "status"]
         assert statuses == ["accepted", "running", "successful"]
+
+
+@pytest.mark.parametrize("url", BACKENDS[1:], indirect=True)
+def test_connections_that_the_server_ended_are_made_anew_unseen(url: str, jobs: JobRepository) -> None:
+    job = submit(jobs)
+    others = "FROM pg_stat_activity WHERE datname = current_database() AND pid <> pg_backend_pid()"
+    engine = create_engine(make_url(url))
+    with engine.connect() as connection:
+        assert connection.scalar(text(f"SELECT count(pg_terminate_backend(pid)) {others}"))
+        connection.commit()
+        deadline = time.monotonic() + 30.0
+        while connection.scalar(text(f"SELECT count(*) {others}")):
+            assert time.monotonic() < deadline
+            connection.rollback()
+            time.sleep(0.05)
+    engine.dispose()
+    assert claimed(jobs).job_id == job.id
 
 
 # --- dismissal ---

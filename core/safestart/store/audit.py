@@ -12,9 +12,11 @@ from safestart.errors import invalid
 from safestart.store.access_models import AuditRow
 from safestart.store.database import Database
 from safestart.store.dialect import after
+from safestart.store.models import table
 from safestart.store.records import AuditPage
 
 MAX_PAGE = 1000
+_ADD = insert(table(AuditRow)).values(at=after()).inline()
 
 
 def add_audit(
@@ -22,7 +24,6 @@ def add_audit(
 ) -> None:
     """Note in this transaction that ``by`` did ``action`` to ``subject`` (the id of a job or a key)."""
     values = {
-        "at": after(),
         "action": action,
         "subject": subject,
         "key_id": by.key_id,
@@ -31,7 +32,7 @@ def add_audit(
         "request_id": by.request_id,
         "detail": detail,
     }
-    session.execute(insert(AuditRow).values(values))
+    session.execute(_ADD, values)
 
 
 class AuditLog:

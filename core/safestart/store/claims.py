@@ -8,22 +8,27 @@ from __future__ import annotations
 
 from typing import Any
 
-from sqlalchemy import ColumnElement, Select, delete, func, select, update
+from sqlalchemy import ColumnElement, Row, Select, Update, bindparam, delete, func, select, update
 from sqlalchemy.orm import Session
 
 from safestart.artifact import Artifact
 from safestart.store.database import Database
 from safestart.store.dialect import after
 from safestart.store.events import add_event, add_status
-from safestart.store.holding import change, try_change
+from safestart.store.holding import FREE, HELD, JOBS, LEASE, WANTED, change, try_change
 from safestart.store.lease import expired
-from safestart.store.models import JobRow, ShardRow
+from safestart.store.models import JobRow, ShardRow, table
 from safestart.store.poison import TASK_PROCESS, WORKER, add_lost, poison
 from safestart.store.records import Claim, JobStatus
 from safestart.store.tally import Tally, count
 from safestart.store.writing import add_result
 
-_FREE: dict[str, Any] = {"owner": None, "lease_expires_at": None, "lease_s": None, "eta_s": None}
+_RENEWED = HELD.values(LEASE)
+_ENDED = HELD.values(finished_at=after())
+_ENDED_WANTED = WANTED.values(finished_at=after())
+_RELEASED = WANTED.values(attempts=JOBS.c.attempts - 1)
+_ASKED = select(JOBS.c.cancel_requested).where(JOBS.c.id == bindparam("job"))
+_SHARDS_OF = delete(table(ShardRow)).where(table(ShardRow).c.job_id == bindparam("job"))
 
 
 class Claims:
@@ -32,16 +37,20 @@ class Claims:
     def __init__(self, database: Database) -> None:
         self._database = database
 
-    def claim(self, owner: str, lease_s: float, max_attempts: int = 3) -> Claim | None:
+    def claim(
+        self, owner: str, lease_s: float, max_attempts: int = 3, *, likely: bool = False
+    ) -> Claim | None:
         """Take the next job, or None: highest priority first, then in turn, then oldest.
 
         A running job whose lease ran out is taken over. One that has used up its attempts ends failed, and
-        one whose dismissal was asked for ends dismissed, and the next is tried.
+        one whose dismissal was asked for ends dismissed, and the next is tried. ``likely``: there probably is one, so
+        that a look beforehand would be wasted.
         """
-        with self._database.session() as session:
-            # A look without the write lock: idle workers must not queue up behind each other.
-            if _next(session) is None:
-                return None
+        if not likely and self._database.one_writer:
+            with self._database.session() as session:
+                # Without the write lock: idle workers must not queue up behind each other.
+                if _next(session) is None:
+                    return None
         with self._database.session(write=True) as session:
             while (row := _next(session)) is not None:
                 if row.cancel_requested:
@@ -59,9 +68,8 @@ class Claims:
     def renew(self, claim: Claim, lease_s: float) -> bool:
         """Extend the lease. True: keep going; False: dismissal was asked for. Raises ``LeaseLost``."""
         with self._database.session(write=True) as session:
-            change(session, claim, lease_expires_at=after(lease_s), lease_s=lease_s)
-            asked = session.scalar(select(JobRow.cancel_requested).where(JobRow.id == claim.job_id))
-            return not asked
+            change(session, claim, _RENEWED, lease_for=lease_s, lease_s=lease_s)
+            return not session.scalar(_ASKED, {"job": claim.job_id})
 
     def progress(self, claim: Claim, percent: float, message: str, eta_s: float | None) -> None:
         """Write progress (0..100), message and estimated seconds left, and append the event."""
@@ -116,7 +124,7 @@ class Claims:
             values = {"progress": 100.0, "message": "done", "versions": versions}
             if _end(session, claim, JobStatus.SUCCESSFUL, **values):
                 add_result(session, claim.job_id, document, artifacts)
-                session.execute(delete(ShardRow).where(ShardRow.job_id == claim.job_id))
+                session.execute(_SHARDS_OF, {"job": claim.job_id})
 
     def fail(self, claim: Claim, problem: dict[str, Any]) -> None:
         """End the job as failed with a problem document (dismissed, when that was asked for)."""
@@ -135,43 +143,62 @@ class Claims:
         with self._database.session(write=True) as session:
             values = {
                 "status": JobStatus.ACCEPTED.value,
-                "attempts": JobRow.attempts - 1,
                 "progress": 0.0,
                 "message": reason,
                 "started_at": None,
-                **_FREE,
+                **FREE,
             }
-            if try_change(session, claim, JobRow.cancel_requested.is_(False), **values):
+            if try_change(session, claim, _RELEASED, **values):
                 add_status(session, claim.job_id, JobStatus.ACCEPTED, message=reason)
             else:
                 _end(session, claim, JobStatus.DISMISSED)
 
 
-def _first(condition: ColumnElement[bool]) -> Select[JobRow]:
+_SEEN = tuple(
+    JOBS.c[name]
+    for name in (
+        "seq", "id", "status", "priority", "turn", "owner", "token", "attempts", "cancel_requested",
+        "process_id", "inputs", "timeout_s",
+    )
+)  # fmt: skip
+
+
+def _first(condition: ColumnElement[bool]) -> Select[Any]:
     return (
-        select(JobRow)
+        select(*_SEEN)
         .where(condition)
         .order_by(JobRow.priority.desc(), JobRow.turn, JobRow.seq)
         .limit(1)
         .with_for_update(skip_locked=True)  # PostgreSQL: pass over what another worker is taking
-        .execution_options(populate_existing=True)
     )
 
 
 _WAITS = JobRow.status == JobStatus.ACCEPTED.value
 # The highest priority apart: what is left is then read off the index, in its order. Two queries, as a union could not
-# use the index; made once, as making them takes longer than running them.
+# use the index.
 _HIGHEST = select(func.max(JobRow.priority)).where(_WAITS).scalar_subquery()
 _CANDIDATES = (_first(_WAITS & (JobRow.priority == _HIGHEST)), _first(expired()))
 
+_AS_SEEN = (
+    update(JOBS)
+    .where(
+        JOBS.c.id == bindparam("seen_id"),
+        JOBS.c.token == bindparam("seen_token"),
+        JOBS.c.status == bindparam("seen_status"),
+    )
+    .values(updated_at=after())
+)
+_TAKEN = _AS_SEEN.values(LEASE | {"started_at": func.coalesce(JOBS.c.started_at, after())})
+_ENDED_AS_SEEN = _AS_SEEN.values(finished_at=after())
 
-def _next(session: Session) -> JobRow | None:
+
+def _next(session: Session) -> Row[Any] | None:
     """The job to serve next: the first that waits or whose lease ran out, whichever ranks higher."""
-    found = [row for query in _CANDIDATES for row in session.scalars(query)]
+    found = [row for query in _CANDIDATES for row in session.execute(query)]
     return min(found, key=lambda row: (-row.priority, row.turn, row.seq), default=None)
 
 
-def _take(session: Session, row: JobRow, owner: str, lease_s: float) -> Claim | None:
+def _take(session: Session, row: Row[Any], owner: str, lease_s: float) -> Claim | None:
     """Make the job ours if it still is as we saw it."""
     token, attempt = row.token + 1, row.attempts + 1
     values = {
@@ -182,12 +209,11 @@ def _take(session: Session, row: JobRow, owner: str, lease_s: float) -> Claim | 
         "progress": 0.0,
         "eta_s": None,
         "message": _starting(attempt),
-        "lease_expires_at": after(lease_s),
+        "lease_for": lease_s,
         "lease_s": lease_s,
-        "started_at": func.coalesce(JobRow.started_at, after()),
     }
     lost_by = row.owner
-    if not _if_as_seen(session, row, values):
+    if not _if_as_seen(session, row, _TAKEN, values):
         return None
     if lost_by is not None:
         add_lost(
@@ -203,31 +229,25 @@ def _starting(attempt: int) -> str:
     return "starting" if attempt == 1 else f"starting, attempt {attempt}"
 
 
-def _end_unheld(session: Session, row: JobRow, status: JobStatus, **values: Any) -> bool:
-    ended = {"status": status.value, "token": row.token + 1, "finished_at": after(), **_FREE, **values}
-    if not _if_as_seen(session, row, ended):
+def _end_unheld(session: Session, row: Row[Any], status: JobStatus, **values: Any) -> bool:
+    ended = {"status": status.value, "token": row.token + 1, **FREE, **values}
+    if not _if_as_seen(session, row, _ENDED_AS_SEEN, ended):
         return False
     add_status(session, row.id, status, message=values["message"])
     return True
 
 
-def _if_as_seen(session: Session, row: JobRow, values: dict[str, Any]) -> bool:
-    query = (
-        update(JobRow)
-        .where(JobRow.id == row.id, JobRow.token == row.token, JobRow.status == row.status)
-        .values(updated_at=after(), **values)
-        .execution_options(synchronize_session=False)
-    )
-    return bool(session.execute(query).rowcount)  # type: ignore[attr-defined]
+def _if_as_seen(session: Session, row: Row[Any], statement: Update, values: dict[str, Any]) -> bool:
+    seen = {"seen_id": row.id, "seen_token": row.token, "seen_status": row.status}
+    return bool(session.execute(statement, seen | values).rowcount)  # type: ignore[attr-defined]
 
 
 def _end(session: Session, claim: Claim, status: JobStatus, **values: Any) -> bool:
     """End the claimed job as ``status``; as dismissed when that was asked for, and then return False."""
-    ended = {"finished_at": after(), **_FREE}
-    if try_change(session, claim, JobRow.cancel_requested.is_(False), status=status.value, **ended, **values):
+    if try_change(session, claim, _ENDED_WANTED, status=status.value, **FREE, **values):
         more = {"message": values["message"]} if status is JobStatus.FAILED else {}
         add_status(session, claim.job_id, status, **more)
         return True
-    change(session, claim, status=JobStatus.DISMISSED.value, message="dismissed", **ended)
+    change(session, claim, _ENDED, status=JobStatus.DISMISSED.value, message="dismissed", **FREE)
     add_status(session, claim.job_id, JobStatus.DISMISSED)
     return False

@@ -55,6 +55,11 @@ class Database:
             yield session
 
     @property
+    def one_writer(self) -> bool:
+        """True where a transaction that may write keeps all others from writing."""
+        return self._engine.dialect.name == "sqlite"
+
+    @property
     def file(self) -> Path | None:
         """The file of a SQLite database; None for another."""
         sqlite = self._url.get_backend_name() == "sqlite"
@@ -152,7 +157,6 @@ def _engine(url: URL) -> Engine:
         return create_engine(
             url,
             json_serializer=_dumps,
-            pool_pre_ping=not sqlite,
             connect_args={"timeout": BUSY_TIMEOUT_S} if sqlite else _POSTGRESQL,
         )
     except ModuleNotFoundError as error:

@@ -6,12 +6,14 @@ who holds a job, however far their own clocks are apart.
 
 from __future__ import annotations
 
+import select
 import sqlite3
 import time
 from datetime import UTC, datetime
 from typing import Any
 
 from sqlalchemy import Connection, DateTime, Dialect, Engine, event, text
+from sqlalchemy.exc import InvalidatePoolError
 from sqlalchemy.ext.compiler import compiles
 from sqlalchemy.sql.expression import ColumnElement, literal
 from sqlalchemy.sql.functions import FunctionElement
@@ -104,6 +106,7 @@ def prepare(engine: Engine) -> None:
         event.listen(engine, "begin", _on_sqlite_begin)
     else:
         event.listen(engine, "connect", _on_postgresql_connect)
+        event.listen(engine, "checkout", _on_postgresql_checkout)
 
 
 def _on_sqlite_connect(connection: sqlite3.Connection, _record: Any) -> None:
@@ -130,6 +133,17 @@ def _on_postgresql_connect(connection: Any, _record: Any) -> None:
     with connection.cursor() as cursor:
         cursor.execute(f"SET idle_in_transaction_session_timeout = {int(STOPPED_S * 1000)}")
     connection.commit()
+
+
+def _on_postgresql_checkout(connection: Any, _record: Any, _proxy: Any) -> None:
+    # An idle connection has nothing to say, except that its server is gone: seen without asking it, which would cost
+    # every transaction a round trip. The pool then drops its connections and makes a new one.
+    if not connection.closed:
+        heard = select.poll()
+        heard.register(connection, select.POLLIN)
+        if not heard.poll(0):
+            return
+    raise InvalidatePoolError
 
 
 def _on_sqlite_begin(connection: Connection) -> None:

@@ -9,13 +9,15 @@ from sqlalchemy.orm import Session
 
 from safestart.store.database import Database
 from safestart.store.dialect import after
-from safestart.store.models import EventRow
+from safestart.store.models import EventRow, table
 from safestart.store.records import Event, JobStatus
+
+_ADD = insert(table(EventRow)).values(at=after()).inline()
 
 
 def add_event(session: Session, job_id: str, kind: str, data: dict[str, Any]) -> None:
     """Append one event, in the transaction that changes the job."""
-    session.execute(insert(EventRow).values(job_id=job_id, at=after(), kind=kind, data=data))
+    session.execute(_ADD, {"job_id": job_id, "kind": kind, "data": data})
 
 
 def add_status(session: Session, job_id: str, status: JobStatus, **more: Any) -> None:

@@ -1,38 +1,50 @@
-"""Changes to a job by the worker that holds it: conditional updates that name the claim's token."""
+"""Changes to a job by the worker that holds it: conditional updates that name the claim's token.
+
+Statements are made once, as making one takes longer than running it: the values of plain columns come with the
+execution, and the database's clock is part of the statement.
+"""
 
 from __future__ import annotations
 
 from typing import Any
 
-from sqlalchemy import update
+from sqlalchemy import Float, Update, bindparam, update
 from sqlalchemy.orm import Session
 
 from safestart.errors import LeaseLost
 from safestart.store.dialect import after
-from safestart.store.models import JobRow
+from safestart.store.models import JobRow, table
 from safestart.store.records import Claim, JobStatus
 
-
-def try_change(session: Session, claim: Claim, *conditions: Any, **values: Any) -> bool:
-    """Update the claimed job if the claim still holds (and ``conditions`` are met)."""
-    query = (
-        update(JobRow)
-        .where(
-            JobRow.id == claim.job_id,
-            JobRow.status == JobStatus.RUNNING.value,
-            JobRow.owner == claim.owner,
-            JobRow.token == claim.token,
-            *conditions,
-        )
-        .values(updated_at=after(), **values)
-        .execution_options(synchronize_session=False)
+JOBS = table(JobRow)
+FREE: dict[str, Any] = {"owner": None, "lease_expires_at": None, "lease_s": None, "eta_s": None}
+"""Columns of a job that nobody holds."""
+LEASE: dict[str, Any] = {"lease_expires_at": after(bindparam("lease_for", type_=Float()))}
+"""A lease of ``lease_for`` seconds from now."""
+HELD = (
+    update(JOBS)
+    .where(
+        JOBS.c.id == bindparam("held_id"),
+        JOBS.c.status == JobStatus.RUNNING.value,
+        JOBS.c.owner == bindparam("held_owner"),
+        JOBS.c.token == bindparam("held_token"),
     )
-    return bool(session.execute(query).rowcount)  # type: ignore[attr-defined]
+    .values(updated_at=after())
+)
+"""The update of a job while its claim holds."""
+WANTED = HELD.where(JOBS.c.cancel_requested.is_(False))
+"""... and its dismissal was not asked for."""
 
 
-def change(session: Session, claim: Claim, **values: Any) -> None:
+def try_change(session: Session, claim: Claim, statement: Update = HELD, **values: Any) -> bool:
+    """Set ``values`` on the claimed job by ``statement``, which begins with ``HELD``; False if it met no row."""
+    held = {"held_id": claim.job_id, "held_owner": claim.owner, "held_token": claim.token}
+    return bool(session.execute(statement, held | values).rowcount)  # type: ignore[attr-defined]
+
+
+def change(session: Session, claim: Claim, statement: Update = HELD, **values: Any) -> None:
     """Update the claimed job; raises ``LeaseLost``."""
-    if not try_change(session, claim, **values):
+    if not try_change(session, claim, statement, **values):
         raise LeaseLost(
             f"job {claim.job_id} is no longer held by {claim.owner}, claim {claim.token}; nothing written",
             required="a claim that still holds",

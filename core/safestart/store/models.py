@@ -5,7 +5,7 @@ from __future__ import annotations
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import JSON, BigInteger, ForeignKey, Index, LargeBinary, MetaData, String, Text
+from sqlalchemy import JSON, BigInteger, ForeignKey, Index, LargeBinary, MetaData, String, Table, Text
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 
 from safestart.store.dialect import UtcTime
@@ -28,6 +28,13 @@ class Base(DeclarativeBase):
         # none_as_null: an absent document is SQL NULL, not the JSON word null.
         dict[str, Any]: JSON(none_as_null=True),
     }
+
+
+def table(row: type[Base]) -> Table:
+    """The table of a kind of row: statements on it do without the object mapper, which costs more than they do."""
+    found = row.__table__
+    assert isinstance(found, Table)
+    return found
 
 
 class JobRow(Base):

@@ -11,32 +11,32 @@ from safestart.artifact import Artifact
 from safestart.comparable import digest
 from safestart.store.cache import shelve
 from safestart.store.dialect import after
-from safestart.store.models import ArtifactRow, ResultRow
+from safestart.store.models import ArtifactRow, ResultRow, table
+
+_RESULT = insert(table(ResultRow)).values(created_at=after()).inline()
+_ARTIFACT = insert(table(ArtifactRow)).inline()
 
 
 def add_result(
     session: Session, job_id: str, document: dict[str, Any], artifacts: tuple[Artifact, ...]
 ) -> None:
     """Insert the document with its hash, each artifact with size and hash; what has a content key is cached, too."""
-    session.execute(
-        insert(ResultRow).values(
-            job_id=job_id,
-            schema_version=document.get("schema_version", 1),
-            document=document,
-            sha256=digest(document),
-            created_at=after(),
-        )
-    )
+    result = {
+        "job_id": job_id,
+        "schema_version": document.get("schema_version", 1),
+        "document": document,
+        "sha256": digest(document),
+    }
+    session.execute(_RESULT, result)
     for item in artifacts:
-        session.execute(
-            insert(ArtifactRow).values(
-                job_id=job_id,
-                name=item.name,
-                media_type=item.media_type,
-                size=len(item.data),
-                sha256=item.sha256,
-                data=item.data,
-            )
-        )
+        artifact = {
+            "job_id": job_id,
+            "name": item.name,
+            "media_type": item.media_type,
+            "size": len(item.data),
+            "sha256": item.sha256,
+            "data": item.data,
+        }
+        session.execute(_ARTIFACT, artifact)
         if item.key is not None:
             shelve(session, item.key, item.data)
