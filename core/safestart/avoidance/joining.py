@@ -23,7 +23,8 @@ class Check:
     """Nodes by what is proved of them, and how many of those the grid alone, or after joining, calls otherwise.
 
     ``too_high_m`` and ``too_low_m`` are the largest distances of the grid's own values above the upper and below the
-    lower bound, among nodes near the boundary (``BAND``) and those on its wrong side.
+    lower bound, among nodes near the boundary (``BAND``) and those on its wrong side; ``read_high_m`` and
+    ``read_low_m`` the same of the joined values read at the middles of cells, where they are farthest from any node.
     """
 
     nodes: int = 0
@@ -36,6 +37,8 @@ class Check:
     safe_called_unsafe_joined: int = 0
     too_high_m: float = 0.0
     too_low_m: float = 0.0
+    read_high_m: float = 0.0
+    read_low_m: float = 0.0
 
     def document(self) -> dict[str, Any]:
         """JSON-able."""
@@ -87,3 +90,33 @@ def join(
         check.unsafe_called_safe_joined += int((unsafe & (new[-1] > 0.0)).sum())
         check.safe_called_unsafe_joined += int((safe & (new[-1] <= 0.0)).sum())
     return joined, check
+
+
+def reading_errors(
+    game: Game, lattice: Lattice, values: Floats, horizon: float, context: Context
+) -> tuple[float, float]:
+    """How far ``values`` (nodes...) read at the middles of cells lie above the upper and below the lower bound (m).
+
+    Looked at are cells with a value near the boundary (``BAND``), or a sign that is refuted.
+    """
+    middles = values
+    for axis in range(lattice.ndim):
+        middles = 0.5 * (
+            middles.take(range(1, middles.shape[axis]), axis)
+            + middles.take(range(middles.shape[axis] - 1), axis)
+        )
+    axes = [0.5 * (axis[1:] + axis[:-1]) for axis in lattice.axes]
+    too_high = too_low = 0.0
+    for row, first in enumerate(axes[0]):
+        context.step(row, len(axes[0]), "between nodes")
+        states = np.stack(np.meshgrid([first], *axes[1:], indexing="ij"), axis=-1)[0]
+        found = middles[row]
+        above = upper(game, states, horizon)
+        looked = (np.minimum(np.abs(found), np.abs(above)) < BAND * game.keep_out_m) | (
+            (found > 0.0) & (above <= 0.0)
+        )
+        if looked.any():
+            below = lower(game, states[looked], horizon, effort=0)
+            too_high = max(too_high, float((found - above)[looked].max()))
+            too_low = max(too_low, float((below - found[looked]).max()))
+    return too_high, too_low

@@ -11,7 +11,7 @@ import numpy as np
 
 from safestart.avoidance.certified import MAX_HORIZON_S, lower, upper
 from safestart.avoidance.game import Game, Players
-from safestart.avoidance.joining import Check, join
+from safestart.avoidance.joining import Check, join, reading_errors
 from safestart.avoidance.tube_settings import SCHEMES, TubeSettings, make_lattice
 from safestart.errors import invalid
 from safestart.levelset import Kind, Lattice, Linear, Options, ValueField, solve
@@ -59,11 +59,11 @@ class Tube:
 
     @property
     def grid_error_m(self) -> float:
-        """Largest distance of the grid's own values from the certified bounds, near the boundary or across it.
+        """Largest distance of :meth:`value` from the certified bounds near the boundary or across it, at the horizon.
 
-        Infinite where nothing was compared.
+        Measured at the middles of all cells (on the nodes it is zero). Infinite where nothing was compared.
         """
-        return math.inf if self.check is None else max(self.check.too_high_m, self.check.too_low_m)
+        return math.inf if self.check is None else max(self.check.read_high_m, self.check.read_low_m)
 
     def covers(self, states: Floats) -> Bools:
         """Whether states lie in the lattice's box, (...)."""
@@ -167,7 +167,9 @@ def solve_tube(
         return made(raw, raw, None, warnings, failure, steps, run_s)
     if not settings.join:
         return made(raw, raw, None, warnings, "", steps, run_s)
-    bounds = context.part(0.6, 0.4, 1.0, "bounds")
+    bounds = context.part(0.6, 0.2, 1.0, "bounds")
     joined, check = join(game, lattice, raw, times, bounds, only_upper=settings.fuel_price > 0.0)
     values = joined if settings.players is Players.AVOID else raw
+    bounds = context.part(0.8, 0.2, 1.0, "bounds")
+    check.read_high_m, check.read_low_m = reading_errors(game, lattice, values[-1], horizon, bounds)
     return made(raw, values, check, warnings, "", steps, run_s)
