@@ -63,12 +63,12 @@ def received(report: Any) -> str:
 
 def refusal(reports: Sequence[Any], prefix: str = "") -> InvalidInput:
     """One exception for a list of reports: the first in full, the other fields by name."""
-    fields = [prefix + (".".join(str(part) for part in report["loc"]) or "body") for report in reports]
+    named = reports[: 1 + _LISTED]
+    fields = [prefix + (".".join(str(part) for part in report["loc"]) or "body") for report in named]
     wanted, came = required(reports[0]), received(reports[0])
     detail = f"{fields[0]}: required {wanted}, received {came}"
-    others = fields[1 : 1 + _LISTED]
-    if others:
-        detail += f" (and {len(fields) - 1} more: {', '.join(others)})"
+    if len(fields) > 1:
+        detail += f" (and {len(reports) - 1} more: {', '.join(fields[1:])})"
     return InvalidInput(detail, field=fields[0], required=wanted, received=came)
 
 

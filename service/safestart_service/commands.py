@@ -60,6 +60,7 @@ def _serve(overrides: dict[str, object]) -> None:
 
         from safestart.store.database import Database
         from safestart_service.app import create_app
+        from safestart_service.wire import Protocol
 
         database = Database(chosen.url())
         configure(chosen.log_format)
@@ -67,7 +68,8 @@ def _serve(overrides: dict[str, object]) -> None:
             database.migrate()
         config = uvicorn.Config(
             create_app(chosen, database),
-            http="httptools",
+            http=Protocol,
+            ws="none",
             access_log=False,
             log_config=None,
             log_level="warning",

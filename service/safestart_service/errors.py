@@ -27,6 +27,14 @@ class MalformedBody(SafestartError):
     title = "Malformed body"
 
 
+class MalformedRequest(SafestartError):
+    """Bytes that are no HTTP request."""
+
+    status = 400
+    slug = "malformed-request"
+    title = "Malformed request"
+
+
 class BodyTooLarge(SafestartError):
     """A body beyond ``max_body_bytes``, declared or streamed."""
 
@@ -68,7 +76,7 @@ class NotAcceptable(SafestartError):
 
 
 class RequestTimeout(SafestartError):
-    """A body that did not come in time."""
+    """A head or a body that did not come in time."""
 
     status = 408
     slug = "request-timeout"
@@ -91,8 +99,16 @@ class RateLimited(SafestartError):
     title = "Too many requests"
 
 
+class HeadTooLarge(SafestartError):
+    """A request line and headers longer than any request needs."""
+
+    status = 431
+    slug = "headers-too-large"
+    title = "Headers too large"
+
+
 class UnsupportedMediaType(SafestartError):
-    """A body whose content type is not JSON."""
+    """A body whose content type is not JSON, or that is compressed."""
 
     status = 415
     slug = "unsupported-media-type"

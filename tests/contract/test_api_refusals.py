@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import json
 from typing import Any
 
@@ -37,6 +38,7 @@ def client(setting):
         ({"omega_t_deg_s": "3000"}, "omega_t_deg_s"),
         ({"omega_t_deg_s": ""}, "omega_t_deg_s"),
         ({"omega_t_deg_s": None}, "omega_t_deg_s"),
+        ({"omega_t_deg_s": "1_0"}, "omega_t_deg_s"),
         ({"a_max_m_s2": "0"}, "a_max_m_s2"),
         ({"a_max_m_s2": "-0.1"}, "a_max_m_s2"),
         ({"a_max_m_s2": "100"}, "a_max_m_s2"),
@@ -172,6 +174,14 @@ def test_bodies_of_another_shape(client, path, body):
 def test_other_content_types(client, kind):
     headers = {"Content-Type": kind} if kind else {}
     assert_problem(client.post("/certificates", content=b"{}", headers=headers), 415, "Content-Type")
+
+
+def test_compressed_bodies(client):
+    headers = {"Content-Type": "application/json", "Content-Encoding": "gzip"}
+    body = gzip.compress(json.dumps(POINT).encode())
+    assert_problem(client.post("/certificates", content=body, headers=headers), 415, "Content-Encoding")
+    headers["Content-Encoding"] = "identity"
+    assert client.post("/certificates", json=POINT, headers=headers).status_code == 200
 
 
 @pytest.mark.parametrize("path", ["/certificates", "/processes/benchmark/execution"])
