@@ -174,3 +174,15 @@ def test_a_stronger_disturbance_leaves_nothing_to_certify() -> None:
     assert not avoidable(game, np.array([900.0, 0.0, 0.0, 0.0]), 10.0)
     with pytest.raises(InvalidInput):
         witness(game, np.array([900.0, 0.0, 0.0, 0.0]), 10.0)
+
+
+def test_braking_lowers_the_orbit_and_brings_the_chaser_forward() -> None:
+    """The paper's Mode 3 (tangential braking keeps the altitude, adds distance behind) holds for minutes only."""
+    braked = np.array([-1000.0, 0.0, -1.0, 0.0])
+    early, late = (PAPER.transition(t) @ braked for t in (600.0, 3000.0))
+    assert early[0] < -1000.0
+    assert early[1] < -300.0
+    assert late[0] > 0.0
+    # Turning point of 4 sin(w t) / w - 3 t: back where it braked after 4 sin(x) = 3 x, x = 1.2757.
+    back = PAPER.transition(1.2756981 / W) @ braked
+    assert back[0] == pytest.approx(-1000.0, abs=1e-3)
