@@ -15,7 +15,6 @@ import resource
 import sys
 import tempfile
 import time
-from collections.abc import Callable
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -34,6 +33,7 @@ from safestart.processes.execute import execute
 from safestart.processes.registry import process
 from safestart.progress import Context
 from safestart.scenario import Rest, Scenario
+from tests.waiting import until
 
 FILTER: dict[str, Any] = {"controllers": ["filter"], "certificates": ["closed_form"]}
 CELLS = 60
@@ -132,10 +132,15 @@ def chaos(count: int, kills: int) -> dict[str, Any]:
         job = farm.submit("sweep", inputs)
         killed = []
         for kill in range(kills):
-            _until(lambda n=kill: len(farm.jobs.shard_contents(job)) >= (n + 1) * total // (kills + 2))
+            until(
+                lambda n=kill: len(farm.jobs.shard_contents(job)) >= (n + 1) * total // (kills + 2),
+                "the next shards",
+                1800.0,
+            )
             if kill % 3 == 2:
                 farm.worker.kill()
                 farm.worker.wait()
+                farm.lapse()
                 killed.append("worker")
                 farm.start()
             else:
@@ -163,23 +168,14 @@ class _farm:
         self.processes = processes
 
     def __enter__(self) -> Any:
-        from tests.acceptance import worker_process
+        from tests.acceptance.worker_process import Farm
 
-        worker_process.PROCESSES, worker_process.READY_S = self.processes, 900.0
-        self.farm = worker_process.Farm(Path(tempfile.mkdtemp()))
+        self.farm = Farm(Path(tempfile.mkdtemp()), self.processes)
         self.farm.start()
         return self.farm
 
     def __exit__(self, *_: object) -> None:
         self.farm.close()
-
-
-def _until(condition: Callable[[], bool], within_s: float = 1800.0) -> None:
-    deadline = time.monotonic() + within_s
-    while not condition():
-        if time.monotonic() > deadline:
-            raise TimeoutError(f"waited {within_s:g} s")
-        time.sleep(0.01)
 
 
 if __name__ == "__main__":

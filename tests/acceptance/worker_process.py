@@ -6,8 +6,6 @@ import os
 import re
 import subprocess
 import sys
-import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -17,27 +15,20 @@ from safestart.store.database import Database
 from safestart.store.jobs import JobRepository
 from safestart.store.records import Job, JobStatus
 from safestart.store.results import ResultRepository
+from tests.contract.store_backends import pass_time
+from tests.waiting import PATIENCE_S, until
 
-PROCESSES = 2
-LEASE_S = 3.0
+# Longer than a worker on a loaded machine may go without renewing; where a lease has to end, Farm.lapse ends it.
+LEASE_S = 30.0
 MAX_ATTEMPTS = 2
-SILENCE_S = 8.0
-READY_S = 120.0
-
-
-def until(condition: Callable[[], Any], within_s: float, what: str) -> Any:
-    """Wait for a true answer and return it."""
-    deadline = time.monotonic() + within_s
-    while not (answer := condition()):
-        assert time.monotonic() < deadline, f"waited {within_s:g} s for {what}"
-        time.sleep(0.02)
-    return answer
+DASK_GIVES_UP_S = 2.0
 
 
 class Farm:
     """A database and at most one worker on it."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, processes: int = 2) -> None:
+        self._number = processes
         self.url = f"sqlite:///{folder / 'farm.sqlite3'}"
         self.log = folder / "worker.log"
         self.database = Database(self.url)
@@ -46,22 +37,24 @@ class Farm:
         self.results = ResultRepository(self.database)
         self.worker: subprocess.Popen[bytes] | None = None
 
-    def start(self) -> None:
+    def start(self, silence_s: float = PATIENCE_S) -> None:
         """Start the worker unless it runs; returns when it takes jobs."""
         if self.worker is not None and self.worker.poll() is None:
             return
         environment = os.environ | {
             "SAFESTART_LEASE_S": f"{LEASE_S:g}",
             "SAFESTART_MAX_ATTEMPTS": str(MAX_ATTEMPTS),
-            "SAFESTART_SILENCE_S": f"{SILENCE_S:g}",
+            "SAFESTART_SILENCE_S": f"{silence_s:g}",
+            # Dask's own patience with a process that is to come back, which the worker must not keep to.
+            "DASK_DISTRIBUTED__DEPLOY__LOST_WORKER_TIMEOUT": f"{DASK_GIVES_UP_S:g}s",
         }
         command = [sys.executable, "-m", "safestart_worker", "--database-url", self.url]
         already = self.said().count("takes jobs from")
         with self.log.open("ab") as log:
             self.worker = subprocess.Popen(
-                [*command, "--processes", str(PROCESSES)], stdout=log, stderr=log, env=environment
+                [*command, "--processes", str(self._number)], stdout=log, stderr=log, env=environment
             )
-        until(lambda: self.said().count("takes jobs from") > already, READY_S, "a worker that takes jobs")
+        until(lambda: self.said().count("takes jobs from") > already, "a worker that takes jobs")
 
     def said(self) -> str:
         """Everything the workers have logged."""
@@ -71,12 +64,12 @@ class Farm:
         """Submit a job and return its id."""
         return self.jobs.submit(process_id, inputs, timeout_s=timeout_s).id
 
-    def ended(self, job_id: str, within_s: float = 120.0) -> Job:
+    def ended(self, job_id: str, within_s: float = PATIENCE_S) -> Job:
         """Wait for the end of a job."""
-        until(lambda: self.jobs.get(job_id).status.ended, within_s, f"the end of {self.jobs.get(job_id)}")
+        until(lambda: self.jobs.get(job_id).status.ended, f"the end of {self.jobs.get(job_id)}", within_s)
         return self.jobs.get(job_id)
 
-    def computing(self, job_id: str, percent: float = 0.0, within_s: float = 60.0) -> psutil.Process:
+    def computing(self, job_id: str, percent: float = 0.0) -> psutil.Process:
         """Wait until a job has reported more than ``percent``; returns the task process it runs in."""
 
         def there() -> bool:
@@ -85,20 +78,32 @@ class Farm:
             reported = any(event.kind == "progress" for event in self.jobs.events(job_id))
             return job.status is JobStatus.RUNNING and reported and (job.progress > percent or percent == 0.0)
 
-        until(there, within_s, f"progress of {self.jobs.get(job_id)}")
+        until(there, f"progress of {self.jobs.get(job_id)}")
         found = re.findall(rf"job={job_id} runs in process (\d+)", self.said())
         return psutil.Process(int(found[-1]))
+
+    def lapse(self) -> None:
+        """The time of a lease passes."""
+        pass_time(self.database, LEASE_S + 1.0)
+
+    def stop(self) -> None:
+        """Stop the worker if it runs."""
+        if self.worker is not None and self.worker.poll() is None:
+            self.worker.terminate()
+            self.worker.wait(PATIENCE_S)
 
     def processes(self) -> list[psutil.Process]:
         """Every process the worker has started."""
         assert self.worker is not None
         return psutil.Process(self.worker.pid).children(recursive=True)
 
+    def task_processes(self) -> list[psutil.Process]:
+        """Those that compute."""
+        return [process for process in self.processes() if "spawn_main" in " ".join(process.cmdline())]
+
     def close(self) -> None:
-        """Stop the worker."""
-        if self.worker is not None and self.worker.poll() is None:
-            self.worker.terminate()
-            self.worker.wait(30)
+        """Stop the worker and leave the database."""
+        self.stop()
         self.database.close()
 
 

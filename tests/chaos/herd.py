@@ -24,6 +24,7 @@ from safestart.store.models import ResultRow
 from safestart.store.records import JobStatus
 from safestart.store.results import ResultRepository
 from tests.chaos import claimer
+from tests.waiting import PATIENCE_S, until
 
 LEASE_S = 1.0
 JOB_S = 0.12
@@ -72,13 +73,13 @@ class Herd:
         """Queue jobs; a repeated submission with the same key is the same job."""
         for i in range(len(self.ids), len(self.ids) + number):
             submit = lambda i=i: self.jobs.submit(  # noqa: E731
-                "certificate", inputs(i), timeout_s=60.0, idempotency_key=f"k{i}"
+                "certificate", inputs(i), timeout_s=PATIENCE_S, idempotency_key=f"k{i}"
             )
             self.ids.append(self.insist(submit).id)
 
-    def insist(self, call: Callable[[], Any], within_s: float = 60.0) -> Any:
+    def insist(self, call: Callable[[], Any]) -> Any:
         """Call until the database answers, as a client does."""
-        deadline = time.monotonic() + within_s
+        deadline = time.monotonic() + PATIENCE_S
         while True:
             try:
                 return call()
@@ -107,12 +108,9 @@ class Herd:
         counts = self.insist(self.jobs.counts)
         return int(counts["accepted"] + counts["running"])
 
-    def finish(self, within_s: float = 60.0) -> None:
+    def finish(self) -> None:
         """Wait until every job has ended."""
-        deadline = time.monotonic() + within_s
-        while self.open():
-            assert time.monotonic() < deadline, f"stuck: {self.insist(self.jobs.counts)}"
-            time.sleep(0.05)
+        until(lambda: not self.open(), "the end of every job")
 
     def check(self) -> None:
         """Nothing lost, nothing doubled, nothing stuck, every result the right one."""

@@ -6,14 +6,14 @@ import os
 import pwd
 import shutil
 import signal
-import socket
 import subprocess
-import time
 from pathlib import Path
 
 import psutil
 import psycopg
 import pytest
+
+from tests.waiting import free_port, until
 
 NEEDED = ("initdb", "postgres")
 USER = "postgres"
@@ -33,9 +33,7 @@ class Server:
             [*self._as, self._binaries["initdb"], *options], capture_output=True, text=True, cwd=folder
         )
         assert made.returncode == 0, made.stderr
-        with socket.socket() as probe:
-            probe.bind(("127.0.0.1", 0))
-            self.port = probe.getsockname()[1]
+        self.port = free_port()
         self.url = f"postgresql://{USER}@127.0.0.1:{self.port}/postgres"
         self._process: subprocess.Popen[bytes] | None = None
 
@@ -52,15 +50,14 @@ class Server:
             command += ["-c", f"{name}={value}"]
         with (self._folder.parent / "server.log").open("ab") as log:
             self._process = subprocess.Popen(command, stdout=log, stderr=log, cwd=self._folder)
-        deadline = time.monotonic() + 60
-        while True:
-            try:
-                psycopg.connect(self.url, connect_timeout=2).close()
-            except psycopg.OperationalError:
-                assert time.monotonic() < deadline, (self._folder.parent / "server.log").read_text()[-2000:]
-                time.sleep(0.05)
-            else:
-                return
+        until(self._answers, "the database server", log=self._folder.parent / "server.log")
+
+    def _answers(self) -> bool:
+        try:
+            psycopg.connect(self.url, connect_timeout=20).close()
+        except psycopg.OperationalError:
+            return False
+        return True
 
     def kill(self) -> None:
         """SIGKILL every process of the server at once, as a power cut would."""
@@ -72,7 +69,7 @@ class Server:
                 process.send_signal(signal.SIGKILL)
             except psutil.NoSuchProcess:
                 continue
-        psutil.wait_procs(family, timeout=20)
+        psutil.wait_procs(family, timeout=60)
         self._process.wait()
         (self._folder / "data" / "postmaster.pid").unlink(missing_ok=True)
 

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import os
 import random
-import socket
 import subprocess
 import sys
 import time
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -21,19 +21,17 @@ import pytest
 from safestart.comparable import comparable
 from safestart.processes.execute import execute
 from tests.contract.store_backends import BACKENDS, POSTGRESQL, fresh_url
+from tests.waiting import PATIENCE_S, free_port, until
 
 JOBS = 30
 KINDS = ("task process", "worker", "service")
-LIMIT_S = 300.0
 
 
 class Platform:
     """``safestart up`` and a second worker on the same database, and a client that does not give up."""
 
     def __init__(self, url: str, folder: Path) -> None:
-        with socket.socket() as probe:
-            probe.bind(("127.0.0.1", 0))
-            port = probe.getsockname()[1]
+        port = free_port()
         environment = os.environ | {
             "SAFESTART_DATABASE_URL": url,
             "SAFESTART_LEASE_S": "5",
@@ -46,23 +44,15 @@ class Platform:
         self._parts: list[subprocess.Popen[bytes]] = []
         self._start("up", "--port", str(port))
         self._start("worker")
-        self._client = httpx.Client(base_url=f"http://127.0.0.1:{port}", timeout=30.0)
+        self._client = httpx.Client(base_url=f"http://127.0.0.1:{port}", timeout=60.0)
         self._random = random.Random(11)
-        self.until(lambda: self.get("/readyz")["places"] == 2, "ready")
+        until(lambda: self.get("/readyz")["places"] == 2, "two workers", log=self.log)
 
     def _start(self, *arguments: str) -> None:
         with self.log.open("ab") as sink:
             command = [sys.executable, "-m", "safestart", *arguments]
             part = subprocess.Popen(command, env=self._environment, stdout=sink, stderr=sink)
         self._parts.append(part)
-
-    def until(self, true: Any, what: str) -> None:
-        deadline = time.monotonic() + LIMIT_S
-        while not true():
-            assert time.monotonic() < deadline, (
-                f"not {what} within {LIMIT_S:g} s\n{self.log.read_text()[-4000:]}"
-            )
-            time.sleep(0.1)
 
     def get(self, path: str) -> dict[str, Any]:
         return self._insist("GET", path)
@@ -76,7 +66,7 @@ class Platform:
         return str(document["jobID"])
 
     def _insist(self, method: str, path: str, **more: Any) -> dict[str, Any]:
-        deadline = time.monotonic() + LIMIT_S
+        deadline = time.monotonic() + PATIENCE_S
         while True:
             try:
                 answer = self._client.request(method, path, **more)
@@ -115,20 +105,16 @@ class Platform:
                     found.append(process)
         return found
 
-    def counts(self) -> dict[str, int]:
-        deadline = time.monotonic() + LIMIT_S
-        while True:  # /readyz is 503 while no worker is there
-            jobs = self.get("/jobs?limit=200")["jobs"]
-            if len(jobs) == JOBS:
-                states = [job["status"] for job in jobs]
-                return {state: states.count(state) for state in set(states)}
-            assert time.monotonic() < deadline
+    def counts(self) -> Counter[str]:
+        jobs = self.get("/jobs?limit=200")["jobs"]
+        assert len(jobs) == JOBS
+        return Counter(job["status"] for job in jobs)
 
     def close(self) -> None:
         for part in self._parts:
             part.terminate()
         for part in self._parts:
-            part.wait(timeout=60)
+            part.wait(PATIENCE_S)
         self._client.close()
 
 
@@ -155,7 +141,7 @@ def hammer(url: str, folder: Path, kills: int) -> None:
             platform.kill(KINDS[kill % len(KINDS)])
             if kill == kills // 2:
                 ids += [platform.submit(number) for number in range(JOBS // 2, JOBS)]
-        platform.until(lambda: platform.counts() == {"successful": JOBS}, "all successful")
+        until(lambda: platform.counts() == {"successful": JOBS}, "success of all", log=platform.log)
         assert len(set(ids)) == JOBS
         for number, job in enumerate(ids):
             document = platform.get(f"/jobs/{job}/results")

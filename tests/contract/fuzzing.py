@@ -31,6 +31,7 @@ from safestart.store.jobs import JobRepository
 from safestart.store.keys import KeyRepository
 from safestart_service.formats import tables_of
 from tests.contract.service_client import url_of
+from tests.waiting import PATIENCE_S
 
 CONFIG = Path(__file__).with_name("schemathesis.toml")
 BENCHMARK: dict[str, Any] = {
@@ -118,7 +119,7 @@ def served(found: Stock, log: Path) -> Iterator[str]:
         yield server.stdout.readline().split()[1]
     finally:
         server.terminate()
-        server.wait(timeout=30)
+        server.wait(timeout=PATIENCE_S)
 
 
 def ask(

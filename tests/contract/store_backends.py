@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import atexit
 import os
+from datetime import timedelta
 from pathlib import Path
 from uuid import uuid4
 
 import pytest
-from sqlalchemy import URL, create_engine, make_url, text
+from sqlalchemy import URL, create_engine, make_url, select, text
+
+from safestart.store.database import Database
+from safestart.store.dialect import UtcTime
+from safestart.store.models import Base
 
 # SQLAlchemy URL of a server on which a database may be created, e.g. postgresql://user:password@host/postgres
 POSTGRESQL = os.environ.get("SAFESTART_TEST_POSTGRESQL", "")
@@ -31,6 +36,18 @@ def fresh_url(backend: str, folder: Path) -> str:
     engine.dispose()
     atexit.register(_drop, server, name)
     return server.set(database=name).render_as_string(hide_password=False)
+
+
+def pass_time(database: Database, seconds: float) -> None:
+    """As if ``seconds`` had passed, or the clock been set: every time that is written moves back by as much."""
+    with database.session(write=True) as session:
+        for mapper in Base.registry.mappers:
+            names = [column.key for column in mapper.columns if isinstance(column.type, UtcTime)]
+            for row in session.scalars(select(mapper.class_)):
+                for name in names:
+                    written = getattr(row, name)
+                    if written is not None:
+                        setattr(row, name, written - timedelta(seconds=seconds))
 
 
 def _drop(server: URL, name: str) -> None:

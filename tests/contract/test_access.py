@@ -5,11 +5,9 @@ from __future__ import annotations
 import base64
 import json
 import os
-import socket
 import statistics
 import subprocess
 import sys
-import time
 from pathlib import Path
 from time import perf_counter_ns
 from typing import Any
@@ -29,18 +27,24 @@ from safestart_service.access import MOST_FAILURES_PER_S, needed_role
 from safestart_service.keyring import Keyring
 from safestart_service.rates import Buckets
 from tests.contract.service_client import HEAVY, POINT, assert_problem, jobs_of, service, submit, url_of
-from tests.contract.store_backends import BACKENDS, fresh_url
+from tests.contract.store_backends import BACKENDS, fresh_url, pass_time
+from tests.waiting import PATIENCE_S, free_port, until
 
 BY = Caller(None, "test", Role.ADMIN)
 ASK = {**POINT, "x_m": 5, "y_m": 40}
 
 
 @pytest.fixture(params=BACKENDS)
-def keys(request: pytest.FixtureRequest, tmp_path: Path):
+def database(request: pytest.FixtureRequest, tmp_path: Path):
     database = Database(fresh_url(request.param, tmp_path))
     database.migrate()
-    yield KeyRepository(database)
+    yield database
     database.close()
+
+
+@pytest.fixture
+def keys(database: Database) -> KeyRepository:
+    return KeyRepository(database)
 
 
 @pytest.fixture
@@ -74,11 +78,11 @@ def test_keys_are_random_and_only_digests_are_kept(keys):
     assert kept == {record.id: key_digest(key.encode()) for record, key in made}
 
 
-def test_expiry_and_revocation_are_the_databases_word(keys):
-    short, _ = keys.create("short", Role.READ, 0.2 / 86400, BY)
+def test_expiry_and_revocation_are_the_databases_word(database, keys):
+    short, _ = keys.create("short", Role.READ, 1.0, BY)
     lasting, _ = keys.create("lasting", Role.SUBMIT, None, BY)
     assert [key.usable for key in keys.list()] == [True, True]
-    time.sleep(0.4)
+    pass_time(database, 86401.0)
     assert {key.id: key.usable for key in keys.list()} == {short.id: False, lasting.id: True}
     assert keys.revoke(lasting.id, BY).revoked_at is not None
     first = keys.revoke(lasting.id, BY).revoked_at
@@ -211,10 +215,10 @@ def _told(answer: Any) -> tuple[Any, ...]:
 
 def test_ended_keys_are_refused_and_keys_stay_required(guarded):
     client, made, found = guarded
-    _, key = found.keys.create("short", Role.ADMIN, 0.3 / 86400, BY)
+    _, key = found.keys.create("short", Role.ADMIN, 0.1, BY)
     found.keyring.load()
     assert client.get("/jobs", headers=bearer(key)).status_code == 200
-    time.sleep(0.4)
+    pass_time(found.database, 8641.0)
     found.keyring.load()
     expired = _told(client.get("/jobs", headers=bearer(key)))
     ids = {record.name: record.id for record in found.keys.list()}
@@ -233,18 +237,11 @@ def test_ended_keys_are_refused_and_keys_stay_required(guarded):
 def test_keys_made_elsewhere_count_within_seconds(tmp_path):
     with service(tmp_path) as client:
         record, key = KeyRepository(Database(url_of(tmp_path))).create("x", Role.READ, None, BY)
-        _until(lambda: client.get("/jobs").status_code == 401)
+        until(lambda: client.get("/jobs").status_code == 401, "the new key")
         assert client.get("/jobs", headers=bearer(key)).status_code == 200
-        _until(lambda: client.app.state.services.keys.list()[0].last_used_at is not None)
+        until(lambda: client.app.state.services.keys.list()[0].last_used_at is not None, "a note of its use")
         KeyRepository(Database(url_of(tmp_path))).revoke(record.id, BY)
-        _until(lambda: client.get("/jobs", headers=bearer(key)).status_code == 401)
-
-
-def _until(true: Any, limit: float = 10.0) -> None:
-    end = time.monotonic() + limit
-    while not true():
-        assert time.monotonic() < end, "not within the limit"
-        time.sleep(0.05)
+        until(lambda: client.get("/jobs", headers=bearer(key)).status_code == 401, "its revocation")
 
 
 def test_made_over_http(guarded):
@@ -358,7 +355,8 @@ def test_submissions_without_keys_are_audited_too(tmp_path):
 # Rates
 
 
-def test_rates_per_key(tmp_path):
+def test_rates_per_key(tmp_path, monkeypatch):
+    monkeypatch.setattr("safestart_service.rates.monotonic", lambda: 0.0)
     with service(tmp_path, rate_per_s=0.5, submit_rate_per_s=0.2) as client:
         found = client.app.state.services
         one, two = (found.keys.create(name, Role.SUBMIT, None, BY)[1] for name in ("one", "two"))
@@ -448,9 +446,7 @@ def test_no_secret_in_logs_database_or_answers(tmp_path):
     repository = KeyRepository(database)
     made = {role: repository.create(role.value, role, 1.0, BY)[1] for role in Role}
     database.close()
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
+    port = free_port()
     code = (
         "import logging; logging.basicConfig(level=logging.DEBUG);"
         "import safestart_service.commands as c, uvicorn; config = uvicorn.Config;"
@@ -463,8 +459,8 @@ def test_no_secret_in_logs_database_or_answers(tmp_path):
     with log.open("wb") as sink:
         process = subprocess.Popen([sys.executable, "-c", code], stdout=sink, stderr=sink, env={**os.environ})
     try:
-        with httpx.Client(base_url=f"http://127.0.0.1:{port}", timeout=20) as client:
-            _until(lambda: _answers(client), 30)
+        with httpx.Client(base_url=f"http://127.0.0.1:{port}", timeout=PATIENCE_S) as client:
+            until(lambda: _answers(client), "a service that answers")
             for key in made.values():
                 wrong = key[:-4] + "AAAA"
                 for shown in (key, wrong):
@@ -480,7 +476,7 @@ def test_no_secret_in_logs_database_or_answers(tmp_path):
             answers.append(client.get("/jobs", headers=bearer(made[Role.READ])).text)
     finally:
         process.terminate()
-        process.wait(timeout=20)
+        process.wait(PATIENCE_S)
     written = log.read_bytes()
     assert b"/jobs" in written, "the log is talkative"
     stored = b"".join(file.read_bytes() for file in tmp_path.glob("service.sqlite3*"))
@@ -520,7 +516,7 @@ def test_beyond_loopback_with_a_key(tmp_path):
         ],
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=PATIENCE_S,
     )
     key = made.stdout.strip()
     assert KEY_PATTERN.fullmatch(key), made.stderr
@@ -539,13 +535,13 @@ def test_beyond_loopback_with_a_key(tmp_path):
     try:
         assert process.stdout is not None
         port = process.stdout.readline().split()[1].rpartition(":")[2]
-        with httpx.Client(base_url=f"http://127.0.0.1:{port}", timeout=20) as client:
+        with httpx.Client(base_url=f"http://127.0.0.1:{port}", timeout=PATIENCE_S) as client:
             assert client.get("/jobs").status_code == 401
             assert client.get("/jobs", headers=bearer(key)).status_code == 200
             assert client.get("/admin/keys", headers=bearer(key)).status_code == 200
     finally:
         process.terminate()
-        _, errors = process.communicate(timeout=20)
+        _, errors = process.communicate(timeout=PATIENCE_S)
     assert "TLS" in errors
     assert key not in errors
 

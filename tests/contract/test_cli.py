@@ -14,7 +14,7 @@ POINT = ["--omega-t-deg-s", "3", "--a-max-m-s2", "0.1"]
 
 def safestart(*arguments: str, stdin: str = "") -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-m", "safestart", *arguments]
-    return subprocess.run(command, input=stdin, capture_output=True, text=True, timeout=240, check=False)
+    return subprocess.run(command, input=stdin, capture_output=True, text=True, check=False)
 
 
 def document(*arguments: str, stdin: str = "") -> Any:

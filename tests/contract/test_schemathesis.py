@@ -17,7 +17,7 @@ def test_every_operation_keeps_its_word(tmp_path: Path) -> None:
     found = stock(tmp_path)
     log = tmp_path / "service.log"
     with served(found, log) as base:
-        ended = ask(base, found, tmp_path, phases="examples,fuzzing", examples=10)
+        ended = ask(base, found, tmp_path, "examples,fuzzing", 10, "--seed", "1")
     assert ended.returncode == 0, ended.stdout[-20_000:] + ended.stderr[-2000:]
     assert "Tested: 31" in ended.stdout
     assert "Traceback" not in log.read_text(), "nothing unexpected in the service's log"

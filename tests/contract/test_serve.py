@@ -14,6 +14,7 @@ import pytest
 from openapi_spec_validator import validate
 
 from tests.contract.service_client import HEAVY, POINT, finish, jobs_of
+from tests.waiting import PATIENCE_S
 from tools.openapi import FILE, render
 
 SERVE = [sys.executable, "-m", "safestart_service"]
@@ -31,13 +32,13 @@ def server(tmp_path_factory):
     base = process.stdout.readline().split()[1]
     yield base, jobs_of(folder)
     process.terminate()
-    process.wait(timeout=20)
+    process.wait(timeout=PATIENCE_S)
 
 
 def test_live_events(server):
     """Events arrive while the job runs, and a broken stream goes on where it broke off."""
     base, jobs = server
-    with httpx.Client(base_url=base, timeout=30) as client:
+    with httpx.Client(base_url=base, timeout=PATIENCE_S) as client:
         job = client.post("/processes/benchmark/execution", json=HEAVY).json()["jobID"]
         seen: list[str] = []
         with client.stream("GET", f"/jobs/{job}/events") as first:
@@ -64,7 +65,7 @@ def test_chunked_body_on_the_wire(server):
         for _ in range(9):
             yield b" " * 1_000_000
 
-    with httpx.Client(base_url=base, timeout=30) as client:
+    with httpx.Client(base_url=base, timeout=PATIENCE_S) as client:
         answer = client.post("/certificates", content=chunks(), headers={"Content-Type": "application/json"})
         assert answer.status_code == 413
         assert answer.headers["content-type"] == "application/problem+json"
@@ -74,7 +75,9 @@ def test_chunked_body_on_the_wire(server):
 @pytest.mark.parametrize("host", ["0.0.0.0", "::", "192.0.2.1"])
 def test_only_loopback_without_keys(host, tmp_path):
     where = ["--database-url", f"sqlite:///{tmp_path / 'empty.sqlite3'}"]
-    ended = subprocess.run([*SERVE, "--host", host, *where], capture_output=True, text=True, timeout=60)
+    ended = subprocess.run(
+        [*SERVE, "--host", host, *where], capture_output=True, text=True, timeout=PATIENCE_S
+    )
     assert ended.returncode == 2
     assert "loopback" in ended.stderr
     assert "safestart keys create" in ended.stderr
@@ -84,7 +87,7 @@ def test_only_loopback_without_keys(host, tmp_path):
 def test_port_in_use():
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = str(taken.getsockname()[1])
-        ended = subprocess.run([*SERVE, "--port", port], capture_output=True, text=True, timeout=60)
+        ended = subprocess.run([*SERVE, "--port", port], capture_output=True, text=True, timeout=PATIENCE_S)
     assert ended.returncode == 2
     assert port in ended.stderr
     assert len(ended.stderr.strip().splitlines()) == 1
@@ -92,7 +95,10 @@ def test_port_in_use():
 
 def test_wrong_database():
     ended = subprocess.run(
-        [*SERVE, "--port", "0", "--database-url", "oracle://x"], capture_output=True, text=True, timeout=60
+        [*SERVE, "--port", "0", "--database-url", "oracle://x"],
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE_S,
     )
     assert ended.returncode == 2
     assert "database_url" in ended.stderr
@@ -116,7 +122,7 @@ with service(Path({str(tmp_path)!r})) as client:
     assert client.get("/docs").status_code == 200
 assert not heavy & set(sys.modules), heavy & set(sys.modules)
 """
-    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=PATIENCE_S)
     assert ended.returncode == 0, ended.stderr
 
 

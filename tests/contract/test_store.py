@@ -5,7 +5,6 @@ from __future__ import annotations
 import multiprocessing
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
@@ -15,7 +14,7 @@ from pathlib import Path
 import pytest
 from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
-from sqlalchemy import create_engine, make_url, select, text
+from sqlalchemy import create_engine, make_url, text
 
 from safestart.artifact import Artifact
 from safestart.comparable import comparable, digest
@@ -34,13 +33,13 @@ from safestart.store import schema
 from safestart.store.database import Database
 from safestart.store.filters import JobFilter
 from safestart.store.jobs import JobRepository
-from safestart.store.models import Base, JobRow
+from safestart.store.models import Base
 from safestart.store.records import Claim, Job, JobStatus, Wait
 from safestart.store.results import ResultRepository
-from tests.contract.store_backends import BACKENDS, fresh_url
+from tests.contract.store_backends import BACKENDS, fresh_url, pass_time
+from tests.waiting import PATIENCE_S, until
 
 LEASE_S = 30.0
-SHORT_S = 0.3
 
 
 @pytest.fixture(params=BACKENDS)
@@ -74,6 +73,11 @@ def claimed(jobs: JobRepository, lease_s: float = LEASE_S, **more) -> Claim:
     claim = jobs.claim("worker", lease_s, **more)
     assert claim is not None
     return claim
+
+
+def lapse(database: Database) -> None:
+    """The time of a lease passes."""
+    pass_time(database, LEASE_S + 1.0)
 
 
 # --- submission ---
@@ -245,11 +249,11 @@ def test_the_same_key_of_two_submitters_is_two_jobs(jobs: JobRepository) -> None
     assert submit(jobs, submitter="a", idempotency_key="k").id == one.id
 
 
-def test_a_waiting_job_knows_when_it_will_start(jobs: JobRepository) -> None:
+def test_a_waiting_job_knows_when_it_will_start(database: Database, jobs: JobRepository) -> None:
     done = submit(jobs)
     assert jobs.wait(done.id) == Wait(1, None, None)  # no history, no worker
     claim = claimed(jobs)
-    time.sleep(0.2)
+    pass_time(database, 20.0)
     jobs.succeed(claim, {}, (), {})
     assert jobs.wait(done.id) is None
     ids = [submit(jobs).id for _ in range(5)]
@@ -261,7 +265,7 @@ def test_a_waiting_job_knows_when_it_will_start(jobs: JobRepository) -> None:
     assert last is not None
     run_s = first.ends_in_s
     assert run_s is not None
-    assert 0.2 <= run_s < 2.0
+    assert 20.0 <= run_s < 20.0 + PATIENCE_S
     assert last == Wait(5, pytest.approx(4 * run_s / 2), pytest.approx(4 * run_s / 2 + run_s))
 
 
@@ -294,12 +298,12 @@ def test_a_claim_makes_the_job_run_under_a_lease(jobs: JobRepository) -> None:
     assert jobs.claim("other", LEASE_S) is None
 
 
-def test_renewing_keeps_the_lease(jobs: JobRepository) -> None:
+def test_renewing_keeps_the_lease(database: Database, jobs: JobRepository) -> None:
     submit(jobs)
-    claim = claimed(jobs, SHORT_S)
+    claim = claimed(jobs)
     for _ in range(4):
-        time.sleep(SHORT_S / 2)
-        assert jobs.renew(claim, SHORT_S) is True
+        pass_time(database, LEASE_S / 2)
+        assert jobs.renew(claim, LEASE_S) is True
         assert jobs.claim("other", LEASE_S) is None
 
 
@@ -307,10 +311,8 @@ def test_an_expired_lease_is_taken_over_and_the_late_writer_is_refused(
     jobs: JobRepository, results: ResultRepository
 ) -> None:
     job = submit(jobs)
-    late = claimed(jobs, SHORT_S)
-    time.sleep(SHORT_S * 1.5)
-    new = jobs.claim("other", LEASE_S)
-    assert new is not None
+    late = claimed(jobs, 0.3)
+    new = until(lambda: jobs.claim("other", LEASE_S), "the end of a lease")
     assert (new.job_id, new.token, new.attempt) == (job.id, late.token + 1, 2)
     before = (jobs.get(job.id), jobs.events(job.id))
     writes = (
@@ -331,25 +333,26 @@ def test_an_expired_lease_is_taken_over_and_the_late_writer_is_refused(
     assert results.artifacts(job.id) == ()
 
 
-def test_a_late_owner_whose_job_nobody_took_may_go_on(jobs: JobRepository) -> None:
+def test_a_late_owner_whose_job_nobody_took_may_go_on(database: Database, jobs: JobRepository) -> None:
     job = submit(jobs)
-    claim = claimed(jobs, SHORT_S)
-    time.sleep(SHORT_S * 1.5)
+    claim = claimed(jobs)
+    lapse(database)
     assert jobs.renew(claim, LEASE_S) is True
     jobs.succeed(claim, {}, (), {})
     assert jobs.get(job.id).status is JobStatus.SUCCESSFUL
 
 
 @pytest.mark.parametrize("jump_s", [-86_400, -90, 86_400])
-def test_no_job_is_stuck_when_the_clock_of_the_database_was_set(jobs: JobRepository, jump_s: float) -> None:
-    """Setting the clock by ``jump_s`` is the same as shifting what was written before by as much the other way."""
+def test_no_job_is_stuck_when_the_clock_of_the_database_was_set(
+    database: Database, jobs: JobRepository, jump_s: float
+) -> None:
     job = submit(jobs)
     late = claimed(jobs)
     assert jobs.claim("other", LEASE_S) is None
-    _shift(jobs, -jump_s)
+    pass_time(database, jump_s)
     assert jobs.renew(late, LEASE_S)  # its worker lives and renews: nothing is taken from it
     assert jobs.claim("other", LEASE_S) is None
-    _shift(jobs, -jump_s)  # its worker is lost
+    pass_time(database, jump_s)  # its worker is lost
     new = jobs.claim("other", LEASE_S)
     assert new is not None
     with pytest.raises(LeaseLost):
@@ -358,19 +361,15 @@ def test_no_job_is_stuck_when_the_clock_of_the_database_was_set(jobs: JobReposit
     assert jobs.get(job.id).status is JobStatus.SUCCESSFUL
 
 
-def test_a_small_step_of_the_clock_takes_no_job_from_its_worker(jobs: JobRepository) -> None:
+def test_a_small_step_of_the_clock_takes_no_job_from_its_worker(
+    database: Database, jobs: JobRepository
+) -> None:
     submit(jobs)
     claimed(jobs)
     for jump_s in (-LEASE_S / 2, LEASE_S / 2):
-        _shift(jobs, -jump_s)
+        pass_time(database, jump_s)
         assert jobs.claim("other", LEASE_S) is None
-        _shift(jobs, jump_s)
-
-
-def _shift(jobs: JobRepository, seconds: float) -> None:
-    with jobs._database.session(write=True) as session:
-        for row in session.scalars(select(JobRow).where(JobRow.lease_expires_at.is_not(None))):
-            row.lease_expires_at += timedelta(seconds=seconds)
+        pass_time(database, -jump_s)
 
 
 def test_a_dead_task_process_costs_an_attempt(jobs: JobRepository) -> None:
@@ -392,10 +391,12 @@ def test_a_dead_task_process_costs_an_attempt(jobs: JobRepository) -> None:
     assert jobs.tallies() == {"lease_losses": 0, "task_deaths": 3, "poisoned": 1}
 
 
-def test_a_job_that_lost_its_worker_and_its_task_processes_says_both(jobs: JobRepository) -> None:
+def test_a_job_that_lost_its_worker_and_its_task_processes_says_both(
+    database: Database, jobs: JobRepository
+) -> None:
     job = submit(jobs)
-    claimed(jobs, SHORT_S)
-    time.sleep(SHORT_S * 1.5)
+    claimed(jobs)
+    lapse(database)
     claim = claimed(jobs)
     assert jobs.restarted(claim, 3) is True
     assert jobs.restarted(claim, 3) is False
@@ -414,11 +415,11 @@ def test_the_same_owner_with_an_old_token_is_refused(jobs: JobRepository) -> Non
         jobs.renew(replace(claim, owner="thief"), LEASE_S)
 
 
-def test_a_job_that_loses_every_worker_fails_as_poison(jobs: JobRepository) -> None:
+def test_a_job_that_loses_every_worker_fails_as_poison(database: Database, jobs: JobRepository) -> None:
     poison, good = submit(jobs), submit(jobs)
     for _ in range(2):
-        assert claimed(jobs, SHORT_S, max_attempts=2).job_id == poison.id
-        time.sleep(SHORT_S * 1.5)
+        assert claimed(jobs, max_attempts=2).job_id == poison.id
+        lapse(database)
     assert claimed(jobs, max_attempts=2).job_id == good.id
     ended = jobs.get(poison.id)
     assert ended.status is JobStatus.FAILED
@@ -481,11 +482,12 @@ def test_connections_that_the_server_ended_are_made_anew_unseen(url: str, jobs: 
     with engine.connect() as connection:
         assert connection.scalar(text(f"SELECT count(pg_terminate_backend(pid)) {others}"))
         connection.commit()
-        deadline = time.monotonic() + 30.0
-        while connection.scalar(text(f"SELECT count(*) {others}")):
-            assert time.monotonic() < deadline
+
+        def alone() -> bool:
             connection.rollback()
-            time.sleep(0.05)
+            return connection.scalar(text(f"SELECT count(*) {others}")) == 0
+
+        until(alone, "the end of the others' connections")
     engine.dispose()
     assert claimed(jobs).job_id == job.id
 
@@ -532,20 +534,22 @@ def test_a_job_asked_to_stop_ends_dismissed_however_it_ends(
     assert results.artifacts(job.id) == ()
 
 
-def test_a_running_job_without_a_worker_is_dismissed_at_once(jobs: JobRepository) -> None:
+def test_a_running_job_without_a_worker_is_dismissed_at_once(database: Database, jobs: JobRepository) -> None:
     job = submit(jobs)
-    claim = claimed(jobs, SHORT_S)
-    time.sleep(SHORT_S * 1.5)
+    claim = claimed(jobs)
+    lapse(database)
     assert jobs.dismiss(job.id).status is JobStatus.DISMISSED
     with pytest.raises(LeaseLost):
         jobs.succeed(claim, {}, (), {})
 
 
-def test_a_dismissed_job_whose_worker_vanished_ends_when_the_next_one_looks(jobs: JobRepository) -> None:
+def test_a_dismissed_job_whose_worker_vanished_ends_when_the_next_one_looks(
+    database: Database, jobs: JobRepository
+) -> None:
     job = submit(jobs)
-    claimed(jobs, SHORT_S)
+    claimed(jobs)
     jobs.dismiss(job.id)
-    time.sleep(SHORT_S * 1.5)
+    lapse(database)
     assert jobs.claim("other", LEASE_S) is None
     assert jobs.get(job.id).status is JobStatus.DISMISSED
 
@@ -652,17 +656,17 @@ def test_progress_is_in_the_row(jobs: JobRepository) -> None:
     assert (now.progress, now.message, now.eta_s) == (40.0, "sampling", 3.5)
 
 
-def test_workers_count_while_they_beat(jobs: JobRepository) -> None:
+def test_workers_count_while_they_beat(database: Database, jobs: JobRepository) -> None:
     assert jobs.workers_alive() == 0
     jobs.heartbeat("one", 2, 0)
     jobs.heartbeat("one", 2, 1)
     jobs.heartbeat("two", 4, 0)
     assert jobs.workers_alive() == 2
-    time.sleep(0.3)
+    pass_time(database, PATIENCE_S)
     jobs.heartbeat("two", 4, 0)
-    assert jobs.workers_alive(within_s=0.2) == 1
+    assert jobs.workers_alive(within_s=PATIENCE_S) == 1
     jobs.farewell("two")
-    assert jobs.workers_alive() == 1
+    assert jobs.workers_alive(within_s=2 * PATIENCE_S) == 1
 
 
 # --- shards ---
@@ -681,22 +685,22 @@ def test_finished_shards_are_kept_in_order_and_go_with_the_success(jobs: JobRepo
     assert jobs.shards(job.id) == ()
 
 
-def test_a_worker_that_lost_its_lease_adds_no_shard(jobs: JobRepository) -> None:
+def test_a_worker_that_lost_its_lease_adds_no_shard(database: Database, jobs: JobRepository) -> None:
     job = submit(jobs)
-    late = claimed(jobs, SHORT_S)
+    late = claimed(jobs)
     jobs.save_shard(late, 0, "c", {}, b"")
-    time.sleep(SHORT_S + 0.1)
+    lapse(database)
     claimed(jobs)
     with pytest.raises(LeaseLost):
         jobs.save_shard(late, 1, "c", {}, b"")
     assert jobs.shard_contents(job.id) == {0: "c"}, "what was finished in time is there for the next worker"
 
 
-def test_attempts_count_from_the_last_finished_shard(jobs: JobRepository) -> None:
+def test_attempts_count_from_the_last_finished_shard(database: Database, jobs: JobRepository) -> None:
     job = submit(jobs)
     for _ in range(2):
-        claim = claimed(jobs, SHORT_S, max_attempts=2)
-        time.sleep(SHORT_S + 0.1)
+        claim = claimed(jobs, max_attempts=2)
+        lapse(database)
     claim = replace(claim)
     with pytest.raises(LeaseLost):
         jobs.save_shard(replace(claim, token=claim.token - 1), 0, "c", {}, b"")
@@ -731,7 +735,7 @@ def test_processes_that_migrate_at_once_all_succeed(url: str) -> None:
         for _ in range(4)
     ]
     for process in started:
-        _, said = process.communicate(timeout=60)
+        _, said = process.communicate(timeout=PATIENCE_S)
         assert process.returncode == 0, said
 
 
