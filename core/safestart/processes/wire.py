@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated
+from typing import Annotated, TypeVar
 
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
 from safestart.processes.base import WireModel
 from safestart.scenario import (
@@ -33,6 +33,20 @@ Thrust = Annotated[
         examples=[0.1],
     ),
 ]
+DT_S = 2.0
+"""Length of a control interval, s."""
+Horizon = Annotated[float, Field(ge=DT_S, le=600, multiple_of=DT_S)]
+T = TypeVar("T")
+
+
+def _distinct(values: list[T]) -> list[T]:
+    if len(set(values)) != len(values):
+        raise ValueError("each value at most once")
+    return values
+
+
+DISTINCT = AfterValidator(_distinct)
+"""For a list that names nothing twice."""
 Seed = Annotated[int, Field(ge=0, le=2**63 - 1, description="Seed of every random draw.")]
 
 

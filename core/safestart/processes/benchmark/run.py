@@ -14,8 +14,9 @@ from safestart.metrics import ConfusionMatrix, iou, ratio, violation
 from safestart.processes.base import Artifact, ProcessOutput
 from safestart.processes.benchmark.notes import notes
 from safestart.processes.benchmark.plots import agreement_panels, overlay_map
-from safestart.processes.benchmark.spec import DT_S, BenchmarkInputs
+from safestart.processes.benchmark.spec import BenchmarkInputs
 from safestart.processes.plotting import npz
+from safestart.processes.wire import DT_S
 from safestart.progress import Context
 from safestart.published import TABLE2, TABLE2_THRUST_M_S2
 from safestart.scenario import Bools

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field, model_validator
 
 from safestart.processes.base import ProcessSpec, WireModel
-from safestart.processes.wire import GridInput, ScenarioInput, Seed
+from safestart.processes.wire import DISTINCT, GridInput, Horizon, ScenarioInput, Seed
 from safestart.scenario import Rest, SetKind
 
 EngineName = Literal["analytical", "exact", "backward", "forward", "hamilton_jacobi", "monte_carlo"]
@@ -19,7 +19,6 @@ ALL_ENGINES: tuple[EngineName, ...] = (
     "hamilton_jacobi",
     "monte_carlo",
 )
-DT_S = 2.0
 
 
 class HamiltonJacobiInput(WireModel):
@@ -46,12 +45,10 @@ class BenchmarkInputs(ScenarioInput):
     """One operating point and what to compare."""
 
     grid: GridInput = Field(default_factory=GridInput)
-    engines: list[EngineName] = Field(
+    engines: Annotated[list[EngineName], DISTINCT] = Field(
         list(ALL_ENGINES), min_length=1, max_length=6, description="Engines to run."
     )
-    horizon_s: float = Field(
-        40.0, gt=0, le=600, description="Horizon of the reachable sets, s; a multiple of 2 s."
-    )
+    horizon_s: Horizon = Field(40.0, description="Horizon of the reachable sets, s; a multiple of 2 s.")
     rest: Rest = Field(Rest.LVLH, description="Frame in which the starts are at rest.")
     set: SetKind = Field(
         SetKind.FIXED,
@@ -59,20 +56,6 @@ class BenchmarkInputs(ScenarioInput):
     )
     hamilton_jacobi: HamiltonJacobiInput = Field(default_factory=HamiltonJacobiInput)
     seed: Seed = 0
-
-    @field_validator("engines")
-    @classmethod
-    def _distinct(cls, value: list[EngineName]) -> list[EngineName]:
-        if len(set(value)) != len(value):
-            raise ValueError("each engine at most once")
-        return value
-
-    @field_validator("horizon_s")
-    @classmethod
-    def _whole_steps(cls, value: float) -> float:
-        if abs(value / DT_S - round(value / DT_S)) > 1e-9:
-            raise ValueError(f"a multiple of {DT_S:g} s")
-        return value
 
     @model_validator(mode="after")
     def _affordable(self) -> BenchmarkInputs:

@@ -14,11 +14,11 @@ from safestart.corridor import corridor_of
 from safestart.dynamics.body_frame import body_to_lvlh, lvlh_to_body
 from safestart.processes.base import ProcessOutput
 from safestart.processes.flight.spec import FlightInputs
-from safestart.processes.wire import finite
+from safestart.processes.wire import DT_S, finite
 from safestart.progress import Context
 from safestart.scenario import Floats, Rest
 
-_DT_S, _PARTS = 2.0, 4
+_PARTS = 4
 
 
 def run(inputs: FlightInputs, context: Context) -> ProcessOutput:
@@ -26,19 +26,19 @@ def run(inputs: FlightInputs, context: Context) -> ProcessOutput:
     start, scenario = inputs.start, inputs.scenario()
     point = [start.x_m, start.y_m] if start.z_m is None else [start.x_m, start.y_m, start.z_m]
     d, rate = len(point), scenario.target.tumble_rate
-    stay = Question(scenario, _DT_S, round(inputs.horizon_s / _DT_S), d)
+    stay = Question(scenario, DT_S, round(inputs.horizon_s / DT_S), d)
     question = stay
     if inputs.question == "synchronize":
-        question = Question(scenario, _DT_S, round(inputs.within_s / _DT_S), d, Goal())
+        question = Question(scenario, DT_S, round(inputs.within_s / DT_S), d, Goal())
     spin = rate if inputs.rest is Rest.BODY else 0.0
     at, speed = body_to_lvlh(np.array(point), np.zeros(d), spin, 0.0)
     state = np.concatenate([at, speed])
     answer = decide(question, state)
     thrust = best_thrust(stay, state) if answer.thrust is None else answer.thrust
-    tables = motion_tables(scenario.target.mean_motion, _DT_S, len(thrust), d, _PARTS)
+    tables = motion_tables(scenario.target.mean_motion, DT_S, len(thrust), d, _PARTS)
     flown = tables.flight(state, thrust)
     states = np.concatenate([flown[:, :-1].reshape(-1, 2 * d), flown[-1, -1:]])
-    times = _DT_S / _PARTS * np.arange(len(states))
+    times = DT_S / _PARTS * np.arange(len(states))
     body = np.array(
         [lvlh_to_body(s[:d], s[d:], rate, t)[0] for s, t in zip(states, times.tolist(), strict=True)]
     )
@@ -59,6 +59,6 @@ def run(inputs: FlightInputs, context: Context) -> ProcessOutput:
             "closest_face": corridor.faces[int(face)],
             "closest_m": float(distance[when, face]),
             "closest_s": float(times[when]),
-            "delta_v_m_s": _DT_S * math.fsum(np.linalg.norm(thrust, axis=1)),
+            "delta_v_m_s": DT_S * math.fsum(np.linalg.norm(thrust, axis=1)),
         }
     )

@@ -9,7 +9,7 @@ from pydantic import Field
 from safestart.processes.base import ProcessSpec, WireModel
 from safestart.processes.go_no_go.asked import Kind
 from safestart.processes.go_no_go.spec import StateInput
-from safestart.processes.wire import ScenarioInput
+from safestart.processes.wire import Horizon, ScenarioInput
 from safestart.scenario import Rest
 
 
@@ -23,10 +23,8 @@ class FlightInputs(ScenarioInput):
         description="stay: in the corridor for horizon_s. synchronize: also at rest in the hold ball at the end, "
         "within within_s; where that is no GO, the best attempt to stay is flown.",
     )
-    horizon_s: float = Field(
-        60.0, ge=2, le=600, multiple_of=2, description="How long to stay in the corridor, s."
-    )
-    within_s: float = Field(200.0, ge=2, le=600, multiple_of=2, description="Latest end of synchronize, s.")
+    horizon_s: Horizon = Field(60.0, description="How long to stay in the corridor, s.")
+    within_s: Horizon = Field(200.0, description="Latest end of synchronize, s.")
 
 
 class FlightOutputs(WireModel):

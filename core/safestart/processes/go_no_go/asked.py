@@ -8,6 +8,7 @@ from pydantic import Field
 
 from safestart.errors import invalid
 from safestart.processes.go_no_go.widths import HALF_WIDTHS, Widths
+from safestart.processes.wire import Horizon
 from safestart.scenario import MAX_RANGE
 
 Method = Literal["closed_form", "exact", "auto"]
@@ -27,8 +28,8 @@ class Asked(Widths):
         description="stay: in the corridor at all times of horizon_s. synchronize: in addition at rest in the body "
         "frame inside a ball around the hold point at the end, at some time up to within_s.",
     )
-    horizon_s: float = Field(60.0, ge=2, le=600, multiple_of=2, description="How long to stay, s.")
-    within_s: float = Field(200.0, ge=2, le=600, multiple_of=2, description="Latest end of synchronize, s.")
+    horizon_s: Horizon = Field(60.0, description="How long to stay, s.")
+    within_s: Horizon = Field(200.0, description="Latest end of synchronize, s.")
     hold_x_m: float = Field(0.0, ge=-MAX_RANGE, le=MAX_RANGE, description="Hold point, body-frame x, m.")
     hold_y_m: float | None = Field(
         None, ge=0, le=MAX_RANGE, description="Hold point, body-frame y, m; absent: the hold radius."

@@ -6,8 +6,8 @@ from safestart.certificates.answer import Answer, Verdict
 from safestart.certificates.question import SPEED_SCALE, Goal, Question
 from safestart.errors import InvalidInput, invalid
 from safestart.processes.go_no_go.spec import GoNoGoInputs
+from safestart.processes.wire import DT_S
 
-DT_S = 2.0
 _WIRE = {"keep_out": "keep_out_m", "hold": "hold_x_m, hold_y_m, hold_z_m", "speed_limit": "speed_limit_m_s"}
 
 

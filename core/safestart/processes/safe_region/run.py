@@ -10,10 +10,9 @@ from safestart.errors import invalid
 from safestart.processes.base import ProcessOutput
 from safestart.processes.go_no_go.atlases import atlas_for
 from safestart.processes.safe_region.spec import SafeRegionInputs
+from safestart.processes.wire import DT_S
 from safestart.progress import Context
 from safestart.scenario import Floats
-
-_DT_S = 2.0
 
 
 def run(inputs: SafeRegionInputs, context: Context) -> ProcessOutput:
@@ -22,7 +21,7 @@ def run(inputs: SafeRegionInputs, context: Context) -> ProcessOutput:
     shape = scenario.corridor
     if inputs.y_max_m <= shape.hold_radius:
         raise invalid("y_max_m", f"more than corridor.r_h_m, {shape.hold_radius:g}", inputs.y_max_m)
-    question = Question(scenario, _DT_S, round(inputs.horizon_s / _DT_S))
+    question = Question(scenario, DT_S, round(inputs.horizon_s / DT_S))
     atlas = atlas_for(question, inputs.y_max_m, context.shelf, make=True)
     assert atlas is not None  # made where there was none
     corridor = corridor_of(shape)

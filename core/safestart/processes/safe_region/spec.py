@@ -5,15 +5,13 @@ from __future__ import annotations
 from pydantic import Field
 
 from safestart.processes.base import ProcessSpec, WireModel
-from safestart.processes.wire import ScenarioInput
+from safestart.processes.wire import Horizon, ScenarioInput
 
 
 class SafeRegionInputs(ScenarioInput):
     """One operating point, how long to stay, and where the picture ends."""
 
-    horizon_s: float = Field(
-        60.0, ge=2, le=600, multiple_of=2, description="How long to stay in the corridor, s."
-    )
+    horizon_s: Horizon = Field(60.0, description="How long to stay in the corridor, s.")
     y_max_m: float = Field(150.0, gt=0, le=5000, description="Where the corridor is cut, m.")
 
 

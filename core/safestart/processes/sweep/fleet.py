@@ -18,7 +18,8 @@ from safestart.guidance.truth import Truth, draws, truth_of
 from safestart.guidance.worlds import CwhWorld, TwoBodyWorld, World
 from safestart.processes.sweep.cases import Cases
 from safestart.processes.sweep.judge import UNASKED, Verdicts, of
-from safestart.processes.sweep.spec import DT_S, FINE_DT_S, SweepInputs
+from safestart.processes.sweep.spec import FINE_DT_S, SweepInputs
+from safestart.processes.wire import DT_S
 from safestart.scenario import Bools, Floats, Rest
 
 # Flights between two looks at a dismissal, some 10 ms.

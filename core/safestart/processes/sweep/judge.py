@@ -10,7 +10,7 @@ from safestart.certificates.exact import decide
 from safestart.certificates.question import Question
 from safestart.certificates.survey import build
 from safestart.processes.sweep.cases import Cases
-from safestart.processes.sweep.spec import DT_S
+from safestart.processes.wire import DT_S
 from safestart.scenario import Floats
 
 # From here on an atlas, which costs as much as some hundred answers, is the cheaper way to the same verdicts.

@@ -19,7 +19,8 @@ from safestart.processes.sweep.cases import Cases, scenario_of
 from safestart.processes.sweep.fleet import fly_one
 from safestart.processes.sweep.plots import confusion_picture, table_picture, worst_picture
 from safestart.processes.sweep.records import MEDIA_TYPE, joined
-from safestart.processes.sweep.spec import DT_S, SweepInputs
+from safestart.processes.sweep.spec import SweepInputs
+from safestart.processes.wire import DT_S
 from safestart.progress import Context
 from safestart.scenario import Floats
 

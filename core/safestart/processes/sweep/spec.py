@@ -2,26 +2,27 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field, model_validator
 
 from safestart.processes.base import ProcessSpec, WireModel
 from safestart.processes.sharding import Sharding
-from safestart.processes.wire import CorridorInput, Seed, Thrust, TumbleRate
+from safestart.processes.wire import DISTINCT, DT_S, CorridorInput, Horizon, Seed, Thrust, TumbleRate
 from safestart.scenario import MAX_MEAN_MOTION, MAX_RANGE
 
 Controller = Literal["filter", "filter_fine", "sequence"]
 CertificateName = Literal["closed_form", "exact"]
-DT_S = 2.0
 FINE_DT_S = 0.5
 MAX_CASES = 10_000_000
 # Flown interval by interval from Python, or with a scenario of its own per case.
 MAX_SLOW_CASES = 200_000
 
-Rates = Annotated[list[TumbleRate], Field(min_length=1, max_length=50)]
-Thrusts = Annotated[list[Thrust], Field(min_length=1, max_length=50)]
-Ranges = Annotated[list[Annotated[float, Field(gt=0, le=MAX_RANGE)]], Field(min_length=1, max_length=50)]
+Rates = Annotated[list[TumbleRate], Field(min_length=1, max_length=50), DISTINCT]
+Thrusts = Annotated[list[Thrust], Field(min_length=1, max_length=50), DISTINCT]
+Ranges = Annotated[
+    list[Annotated[float, Field(gt=0, le=MAX_RANGE)]], Field(min_length=1, max_length=50), DISTINCT
+]
 Sigma = Annotated[float, Field(ge=0, le=100)]
 
 
@@ -69,14 +70,14 @@ class FilterInput(WireModel):
 class SweepInputs(WireModel):
     """Ranges of the paper by default: 5 x 3 operating points, 4 ranges, 9 starts each, at rest in LVLH, 60 s."""
 
-    controllers: list[Controller] = Field(
+    controllers: Annotated[list[Controller], DISTINCT] = Field(
         ["filter", "sequence"],
         min_length=1,
         max_length=3,
         description="filter: the paper's; filter_fine: the same commanded every 0.5 s; sequence: MPC over the whole "
         "thrust sequence.",
     )
-    certificates: list[CertificateName] = Field(["closed_form", "exact"], max_length=2)
+    certificates: Annotated[list[CertificateName], DISTINCT] = Field(["closed_form", "exact"], max_length=2)
     preset: Literal["tuned", "paper"] = Field("tuned", description="Gains of the filter.")
     filter: FilterInput = Field(default_factory=FilterInput)
     distribution: Literal["grid", "monte_carlo", "latin_hypercube"] = Field(
@@ -89,7 +90,7 @@ class SweepInputs(WireModel):
     r0_m: Ranges = Field([30.0, 50.0, 100.0, 150.0], description="Ranges of the starts, m.")
     cases_per_cell: int = Field(9, ge=1, le=MAX_CASES, description="Starts per cell of the grid.")
     cases: int = Field(500, ge=1, le=MAX_SLOW_CASES, description="Starts of the other distributions.")
-    horizon_s: float = Field(60.0, gt=0, le=600, description="Flight time, s; a multiple of 2 s.")
+    horizon_s: Horizon = Field(60.0, description="Flight time, s; a multiple of 2 s.")
     truth: TruthInput = Field(default_factory=TruthInput)
     mean_motion_rad_s: float = Field(1.1e-3, ge=0, le=MAX_MEAN_MOTION, description="Mean motion, rad/s.")
     corridor: CorridorInput = Field(default_factory=CorridorInput)
@@ -103,20 +104,6 @@ class SweepInputs(WireModel):
     records: int = Field(100_000, ge=0, le=1_000_000, description="Starts recorded in cases.parquet at most.")
     worst: int = Field(5, ge=0, le=20, description="Flights kept for replay per controller.")
     seed: Seed = 0
-
-    @field_validator("controllers", "certificates", "omega_t_deg_s", "a_max_m_s2", "r0_m")
-    @classmethod
-    def _distinct(cls, value: list[Any]) -> list[Any]:
-        if len(set(value)) != len(value):
-            raise ValueError("each value at most once")
-        return value
-
-    @field_validator("horizon_s")
-    @classmethod
-    def _whole_steps(cls, value: float) -> float:
-        if abs(value / DT_S - round(value / DT_S)) > 1e-9:
-            raise ValueError(f"a multiple of {DT_S:g} s")
-        return value
 
     @model_validator(mode="after")
     def _sensible(self) -> SweepInputs:

@@ -20,10 +20,10 @@ from safestart.guidance.truth import CONTINUOUS, Truth
 from safestart.metrics import ratio
 from safestart.processes.base import ProcessOutput
 from safestart.processes.sharding import Part
-from safestart.processes.sweep.spec import DT_S
 from safestart.processes.trade_study.plots import heat_maps
 from safestart.processes.trade_study.spec import TradeStudyInputs
 from safestart.processes.trade_study.split import area, summary
+from safestart.processes.wire import DT_S
 from safestart.progress import Context
 from safestart.scenario import Chaser, Rest, Scenario, Target
 
