@@ -82,7 +82,7 @@ coordinate = st.one_of(
 )
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
 @given(
     omega=st.one_of(st.just(0.0), st.floats(1e-6, 60.0)),
     thrust=st.floats(1e-4, 10.0),

@@ -18,7 +18,7 @@ steps = st.integers(2, 20)
 rests = st.sampled_from(list(Rest))
 kinds = st.sampled_from(list(SetKind))
 sets = st.sampled_from(["exact", "backward", "forward"])
-quick = settings(max_examples=40, deadline=None)
+quick = settings(max_examples=40)
 
 
 def mask(name: str, problem: Problem) -> Bools:
