@@ -25,6 +25,15 @@ def until(
     return answer
 
 
+def accepts(port: int) -> bool:
+    """True when something listens on a port of this machine."""
+    try:
+        socket.create_connection(("127.0.0.1", port), timeout=PATIENCE_S).close()
+    except OSError:
+        return False
+    return True
+
+
 def free_port() -> int:
     """A port that nobody listens on."""
     with socket.socket() as probe:

@@ -14,7 +14,7 @@ from safestart.store.database import Database
 from safestart.store.jobs import JobRepository
 from safestart.store.records import JobStatus
 from tests.acceptance.test_worker import CERTIFICATE, STEADY
-from tests.waiting import PATIENCE_S, free_port, until
+from tests.waiting import PATIENCE_S, accepts, free_port, until
 
 
 @pytest.fixture
@@ -48,6 +48,7 @@ def test_jobs_run_on_it_and_wait_again_when_it_goes_away(
         scheduler = start(
             "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", str(port), "--no-dashboard"
         )
+        until(lambda: accepts(port), "a scheduler that listens", log=tmp_path / "log")
         start("distributed.cli.dask_worker", address, "--nthreads", "1", "--nworkers", "1", "--no-dashboard")
         first = jobs.submit("certificate", CERTIFICATE, timeout_s=PATIENCE_S).id
         worker = start("safestart_worker", "--database-url", url, "--scheduler", address)

@@ -6,6 +6,7 @@ import os
 import re
 import subprocess
 import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -99,7 +100,12 @@ class Farm:
 
     def task_processes(self) -> list[psutil.Process]:
         """Those that compute."""
-        return [process for process in self.processes() if "spawn_main" in " ".join(process.cmdline())]
+        found = []
+        for process in self.processes():
+            with suppress(psutil.NoSuchProcess):
+                if any("spawn_main" in word for word in process.cmdline()):
+                    found.append(process)
+        return found
 
     def close(self) -> None:
         """Stop the worker and leave the database."""
