@@ -14,6 +14,9 @@ from safestart.processes.execute import execute
 from safestart.processes.go_no_go.run import single
 from safestart.scenario import Rest
 
+# Options of the command that are no inputs of the process; every other one has the input's name.
+_NO_INPUTS = ("x_m", "y_m", "z_m", "proof", "as_json")
+
 
 def register(app: typer.Typer) -> None:
     """Add the command."""
@@ -71,35 +74,9 @@ def register(app: typer.Typer) -> None:
         as_json: Json = False,
     ) -> None:
         """May a chaser at rest at this point start its approach? By the closed form at once, or proved (exact)."""
+        inputs = {name: value for name, value in locals().items() if name not in _NO_INPUTS}
         state = {"x_m": x_m, "y_m": y_m} | ({} if z_m is None else {"z_m": z_m})
-        inputs = {
-            "omega_t_deg_s": omega_t_deg_s,
-            "a_max_m_s2": a_max_m_s2,
-            "mean_motion_rad_s": mean_motion_rad_s,
-            "states": [state],
-            "rest": rest.value,
-            "method": method,
-            "question": question,
-            "horizon_s": horizon_s,
-            "within_s": within_s,
-            "hold_x_m": hold_x_m,
-            "hold_y_m": hold_y_m,
-            "hold_z_m": hold_z_m,
-            "ball_radius_m": ball_radius_m,
-            "rest_speed_m_s": rest_speed_m_s,
-            "speed_limit_m_s": speed_limit_m_s,
-            "keep_out_m": keep_out_m,
-            "omega_t_half_width_deg_s": omega_t_half_width_deg_s,
-            "a_max_half_width_m_s2": a_max_half_width_m_s2,
-            "mean_motion_half_width_rad_s": mean_motion_half_width_rad_s,
-            "position_half_width_m": position_half_width_m,
-            "velocity_half_width_m_s": velocity_half_width_m_s,
-            "witness": witness,
-            "disturbance_m_s2": disturbance_m_s2,
-            "start_error_m": start_error_m,
-            "start_error_m_s": start_error_m_s,
-            "proofs": proof is not None,
-        }
+        inputs |= {"states": [state], "rest": rest.value, "proofs": proof is not None}
         document = execute("go-no-go", inputs).document
         answer = document["outputs"]
         if proof is not None:
