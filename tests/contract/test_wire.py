@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 
 from tests.contract.service_client import url_of
+from tests.waiting import PATIENCE_S
 
 HOST = b"Host: localhost\r\n"
 POST = b"POST /certificates HTTP/1.1\r\n" + HOST + b"Content-Type: application/json\r\n"
@@ -41,22 +42,22 @@ NO_HTTP = {
 
 @pytest.fixture(scope="module")
 def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, int]]:
-    """A real server that waits two seconds for a head instead of twenty."""
+    """A real server that waits five seconds for a head instead of twenty."""
     folder: Path = tmp_path_factory.mktemp("wire")
     code = (
-        "import safestart_service.wire as wire; wire.HEAD_S = 2.0;"
+        "import safestart_service.wire as wire; wire.HEAD_S = 5.0;"
         f"import safestart_service.commands as c; c._serve({{'port': 0, 'database_url': {url_of(folder)!r}}})"
     )
     process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
     assert process.stdout is not None
     yield "127.0.0.1", int(process.stdout.readline().split()[1].rpartition(":")[2])
     process.terminate()
-    process.wait(timeout=20)
+    process.wait(PATIENCE_S)
 
 
 def said(address: tuple[str, int], *pieces: bytes) -> bytes:
     """All that comes back until the server closes the connection."""
-    with socket.create_connection(address, timeout=30) as connection:
+    with socket.create_connection(address, timeout=PATIENCE_S) as connection:
         for piece in pieces:
             try:
                 connection.sendall(piece)
