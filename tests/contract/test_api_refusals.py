@@ -176,6 +176,14 @@ def test_other_content_types(client, kind):
     assert_problem(client.post("/certificates", content=b"{}", headers=headers), 415, "Content-Type")
 
 
+def test_many_unknown_fields(client):
+    """All are counted, a few are named."""
+    problem = assert_problem(
+        client.post("/certificates", json=POINT | {f"k{i}": 1 for i in range(1000)}), 422, "k0"
+    )
+    assert problem["detail"].endswith("(and 999 more: k1, k2, k3, k4, k5)")
+
+
 def test_compressed_bodies(client):
     headers = {"Content-Type": "application/json", "Content-Encoding": "gzip"}
     body = gzip.compress(json.dumps(POINT).encode())
