@@ -76,11 +76,11 @@ class Tube:
 
         Raises ``InvalidInput`` for states outside the lattice and for times beyond the horizon.
         """
-        return self._read(states, time_to_go)[0]
+        return self.read(states, time_to_go)[0]
 
     def gradient(self, states: Floats, time_to_go: float | None = None) -> Floats:
         """Gradient (..., 2 m) of the joined value by the state; raises as :meth:`value`."""
-        return self._read(states, time_to_go)[1]
+        return self.read(states, time_to_go)[1]
 
     def answer(self, states: Floats, time_to_go: float | None = None) -> Floats:
         """:class:`Answer` (...) of states (..., 2 m): the bounds at the very state first, then the grid.
@@ -110,7 +110,8 @@ class Tube:
         states = np.concatenate([mesh, np.broadcast_to(np.asarray(velocity, float), mesh.shape)], axis=-1)
         return axes, self.value(states)
 
-    def _read(self, states: Floats, time_to_go: float | None) -> tuple[Floats, Floats]:
+    def read(self, states: Floats, time_to_go: float | None) -> tuple[Floats, Floats]:
+        """Both at once; raises as :meth:`value`."""
         time = self.horizon_s if time_to_go is None else time_to_go
         if not 0.0 <= time <= self.horizon_s:
             raise invalid("time_to_go", f"0 to {self.horizon_s:g} s", time)

@@ -19,6 +19,7 @@ _SPECS = {
     "benchmark": "safestart.processes.benchmark.spec",
     "passive-safety": "safestart.processes.passive_safety.spec",
     "safe-abort-map": "safestart.processes.safe_abort_map.spec",
+    "collision-avoidance": "safestart.processes.collision_avoidance.spec",
     "inclusion-chain": "safestart.processes.inclusion_chain.spec",
     "sweep": "safestart.processes.sweep.spec",
     "trade-study": "safestart.processes.trade_study.spec",

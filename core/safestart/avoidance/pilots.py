@@ -1,0 +1,72 @@
+"""What Player 1 does: evade by the value function, burn an escape mode, follow the PD law, or coast.
+
+The gradient of a value on a grid does not tell left from right near a head-on course: the two ways out are worth
+the same there and differ by less than a cell. ``certified`` therefore flies the best constant sum u + d whenever it is
+proved to keep the distance (:func:`~safestart.avoidance.certified.witness`), and the gradient elsewhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from safestart.avoidance.certified import witness
+from safestart.avoidance.escape import MODES
+from safestart.avoidance.feedback import EVASIVE, Slot, command
+from safestart.avoidance.game import Game
+from safestart.avoidance.sight import Moment
+from safestart.scenario import Floats
+
+Pilot = Callable[[Moment], Floats]
+"""u (N, m) at a moment."""
+
+TITLES = {
+    "certified": "HJ joined with the certified bound",
+    "hj": "HJ, gradient alone",
+    "supervisor": "supervisor",
+    **{mode.name: f"escape mode {mode.title}" for mode in MODES},
+    "pd": "PD, evasive gains",
+    "coast": "coast",
+}
+PILOTS = tuple(name for name in TITLES if name != "supervisor")
+
+
+def pilot(name: str, game: Game, slot: Slot, fuel_price: float = 0.0) -> Pilot:
+    """The memoryless pilot of that name.
+
+    ``hj`` raises the value as fast as it can, and coasts where that is not worth ``fuel_price`` (m per m/s); a
+    mode burns at full thrust all the time; ``pd`` follows the evasive PD law to the slot.
+    """
+    if name == "certified":
+        return lambda moment: evade(game, moment)
+    if name == "hj":
+        return lambda moment: climb(game, moment, fuel_price)
+    if name == "pd":
+        return lambda moment: command(moment.states, slot, EVASIVE, game.control)
+    for mode in MODES:
+        if mode.name == name:
+            push = game.control.extreme(np.array(mode.direction))
+            return lambda moment: np.broadcast_to(push, (len(moment.states), game.channels))
+    return lambda moment: np.zeros((len(moment.states), game.channels))
+
+
+def climb(game: Game, moment: Moment, fuel_price: float = 0.0) -> Floats:
+    """The u (N, m) that raises the value fastest; none where that gains no more than the price."""
+    slope = moment.gradient[:, game.channels :]
+    push = game.control.extreme(slope)
+    for part in game.control.parts:
+        gain = np.linalg.norm(slope[:, part.begin : part.end], axis=1, keepdims=True)
+        push[:, part.begin : part.end] *= gain > fuel_price
+    return push
+
+
+def evade(game: Game, moment: Moment) -> Floats:
+    """Thrust (N, m) along the best constant sum that is proved to keep the distance; the climb where none is."""
+    push = climb(game, moment)
+    if game.realisable is None or moment.to_go <= 0.0:
+        return push
+    found = witness(game, moment.states, moment.to_go, effort=0)
+    proved = found.margin_m > 0.0
+    push[proved] = game.control.extreme(found.inputs[proved, 0])
+    return push

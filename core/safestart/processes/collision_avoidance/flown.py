@@ -1,0 +1,153 @@
+"""The encounters of a job: every pilot against every adversary, and the supervised flights."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from safestart.avoidance.adversary import adversary, until
+from safestart.avoidance.encounter import Clock, Flights, fly
+from safestart.avoidance.feedback import Slot
+from safestart.avoidance.pilots import Pilot, pilot
+from safestart.avoidance.sight import Sight
+from safestart.avoidance.starts import approaching, certified_unsafe, near_boundary
+from safestart.avoidance.supervisor import Guards, Mode, Supervisor
+from safestart.errors import InvalidInput
+from safestart.metrics import wilson
+from safestart.processes.collision_avoidance.spec import CollisionAvoidanceInputs
+from safestart.progress import Context
+from safestart.scenario import Floats
+
+CLEARANCE = 0.1
+"""Share of the keep-out distance above the grid error at which an evasion ends."""
+SHOWN = 12
+"""Flights whose paths are kept for the pictures."""
+RANDOM_HOLD_S = 10.0
+
+
+@dataclass
+class Flown:
+    """Rows for the wire, paths (K, n, 4) for the pictures by name, and what the supervisor did."""
+
+    rows: list[dict[str, Any]] = field(default_factory=list)
+    paths: dict[str, Floats] = field(default_factory=dict)
+    supervisor: dict[str, int] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+
+    def drawn(self, draw: Callable[[], Floats]) -> Floats | None:
+        """Starts, or None with a note where the problem has too few of them."""
+        try:
+            return draw()
+        except InvalidInput as error:
+            if error.field != "encounters":
+                raise
+            self.notes.append(error.detail)
+            return None
+
+    def add(self, starts: str, pilot: str, opponent: str, flights: Flights, sight: Sight) -> None:
+        """Count one batch."""
+        keep_out, error = sight.game.keep_out_m, sight.tube.grid_error_m
+        lost, count = int(flights.lost(keep_out).sum()), len(flights.separation_m)
+        low, high = wilson(lost, count) or (0.0, 1.0)
+        self.rows.append(
+            {
+                "starts": starts,
+                "pilot": pilot,
+                "adversary": opponent,
+                "encounters": count,
+                "lost": lost,
+                "lost_beyond_error": int(flights.lost(keep_out - error).sum()),
+                "breach_probability": lost / count,
+                "breach_low": low,
+                "breach_high": high,
+                "least_separation_m": float(flights.separation_m.min()),
+                "mean_delta_v_m_s": float(flights.delta_v_m_s.mean()),
+            }
+        )
+
+
+def encounters(inputs: CollisionAvoidanceInputs, sight: Sight, slot: Slot, context: Context) -> Flown:
+    """Fly everything the inputs ask for."""
+    flown = Flown()
+    quiet = Context(cancelled=context.cancelled)
+    game, count, seed = sight.game, inputs.encounters, inputs.seed
+    guards = Guards(sight.tube.grid_error_m, CLEARANCE * game.keep_out_m)
+    hold = max(1, round(RANDOM_HOLD_S / inputs.period_s))
+    clock = Clock(inputs.period_s, inputs.horizon_s)
+    sets: dict[str, tuple[Floats | None, Sequence[str]]] = {
+        "outside": (flown.drawn(lambda: near_boundary(sight, count, inputs.band_m, seed, quiet)), inputs.adversaries),
+        # Only these two play for the loss of a start that is proved lost.
+        "inside": (
+            flown.drawn(lambda: certified_unsafe(sight, count, seed + 1, quiet)),
+            [name for name in inputs.adversaries if name in ("worst", "mirror")],
+        ),
+    }  # fmt: skip
+
+    def flier(name: str) -> Pilot:
+        return (
+            Supervisor(sight, slot, guards, inputs.period_s)
+            if name == "supervisor"
+            else pilot(name, game, slot)
+        )
+
+    batches = [
+        (kind, starts, name, other)
+        for kind, (starts, others) in sets.items()
+        if starts is not None
+        for name in inputs.pilots
+        for other in others
+    ]
+    total = len(batches) + (len(batches) / 4.0 if inputs.supervised else 0.0)
+    for index, (kind, starts, name, other) in enumerate(batches):
+        context.step(index, total, f"{name} against {other}, {kind}")
+        opponent = adversary(other, game, inputs.horizon_s, len(starts), seed + 2, hold)
+        when = Clock(clock.period_s, clock.duration_s, receding=name == "supervisor")
+        shown = kind == "outside" and other == inputs.adversaries[0] and name in ("certified", "hj", "pd")
+        flights = fly(sight, starts, flier(name), opponent, when, quiet, keep_path=shown)
+        flown.add(kind, name, other, flights, sight)
+        if flights.path is not None:
+            worst = np.argsort(flights.separation_m)[:SHOWN]
+            flown.paths[name] = flights.path[:, worst]
+    if inputs.supervised:
+        context.step(len(batches), total, "supervised flights")
+        _supervised(inputs, sight, slot, guards, hold, flown, quiet)
+    return flown
+
+
+def _supervised(
+    inputs: CollisionAvoidanceInputs,
+    sight: Sight,
+    slot: Slot,
+    guards: Guards,
+    hold: int,
+    flown: Flown,
+    quiet: Context,
+) -> None:
+    """Flights on the way to a close pass: Player 2 acts at first, then the chaser is to come back to its slot."""
+    game, count = sight.game, inputs.supervised
+    radius = 1.5 * max(float(np.hypot(*slot.centre[:2])), 3.0 * game.keep_out_m)
+    speed = float(sight.tube.lattice.high[-1])
+    starts = flown.drawn(
+        lambda: approaching(sight, radius, speed, count, guards.level_m, inputs.seed + 3, quiet)
+    )
+    if starts is None:
+        return
+    supervisor = Supervisor(sight, slot, guards, inputs.period_s)
+    name = inputs.adversaries[0]
+    opponent = adversary(name, game, inputs.horizon_s, count, inputs.seed + 4, hold)
+    quiet_from = round(inputs.threat_s / inputs.period_s)
+    clock = Clock(inputs.period_s, inputs.supervised_s, receding=True)
+    flights = fly(sight, starts, supervisor, until(opponent, quiet_from), clock, quiet, keep_path=True)
+    flown.add("approaching", "supervisor", name, flights, sight)
+    assert flights.path is not None
+    flown.paths["supervisor"] = flights.path
+    flown.supervisor = {
+        "nominal_to_evasive": int(supervisor.switches[Mode.NOMINAL, Mode.EVASIVE]),
+        "evasive_to_recovery": int(supervisor.switches[Mode.EVASIVE, Mode.RECOVERY]),
+        "recovery_to_evasive": int(supervisor.switches[Mode.RECOVERY, Mode.EVASIVE]),
+        "recovery_to_nominal": int(supervisor.switches[Mode.RECOVERY, Mode.NOMINAL]),
+        "in_slot_at_the_end": int(slot.holds(flights.states).sum()),
+    }

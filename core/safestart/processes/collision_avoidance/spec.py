@@ -1,0 +1,195 @@
+"""collision-avoidance: unsafe set, capture set, escape modes and closed-loop encounters of paper 001."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from safestart.processes.base import ProcessSpec, WireModel
+from safestart.processes.wire import Seed, Thrust
+from safestart.scenario import MAX_ACCELERATION, MAX_MEAN_MOTION
+
+PilotName = Literal["certified", "hj", "supervisor", "mode1", "mode2", "mode3", "mode4", "pd", "coast"]
+AdversaryName = Literal["worst", "mirror", "pursuit", "random", "none"]
+Speed = Annotated[float, Field(ge=-100, le=100)]
+Velocity = Annotated[list[Speed], Field(min_length=2, max_length=2)]
+
+MAX_FLIGHTS = 1_000_000
+MAX_NODES = 3_000_000
+
+
+class BoxInput(WireModel):
+    """Half-widths of the box of states that the grid covers; absent ones are sized from the problem."""
+
+    position_m: float = Field(450.0, gt=0, le=100_000, description="Half-width of x and y, m.")
+    speed_m_s: float = Field(6.0, gt=0, le=100, description="Half-width of the speeds, m/s.")
+
+
+class GridInput(WireModel):
+    """The grid of the level set."""
+
+    nodes_position: int = Field(31, ge=7, le=101, description="Nodes along x and along y.")
+    nodes_speed: int = Field(15, ge=5, le=61, description="Nodes along each speed.")
+    accuracy: Literal["low", "medium", "high", "very_high"] = Field(
+        "very_high", description="First order, ENO2, WENO3 or WENO5."
+    )
+    kept: int = Field(7, ge=2, le=31, description="Times to go at which the value is kept.")
+    box: BoxInput | None = Field(
+        default_factory=lambda: BoxInput.model_validate({}),
+        description="Half-widths; null: sized so that no motion leaves it, which makes a coarse grid.",
+    )
+
+
+class SlotInput(WireModel):
+    """The recovery box, eq. (19): where the chaser keeps station."""
+
+    x_m: float = Field(1000.0, ge=-100_000, le=100_000, description="Tangential stand-off, m.")
+    y_m: float = Field(0.0, ge=-100_000, le=100_000, description="Radial offset, m.")
+    half_x_m: float = Field(50.0, gt=0, le=10_000)
+    half_y_m: float = Field(25.0, gt=0, le=10_000)
+    half_speed_m_s: float = Field(0.01, gt=0, le=10, description="Half-width of both speeds, m/s.")
+
+
+class CollisionAvoidanceInputs(WireModel):
+    """Game, grid, recovery, and the encounters to fly; the defaults are the paper's where it has any."""
+
+    mean_motion_rad_s: float = Field(1.1e-3, ge=0, le=MAX_MEAN_MOTION, description="Mean motion, rad/s.")
+    keep_out_m: float = Field(100.0, gt=0, le=10_000, description="Separation to be kept (d_FCC), m.")
+    horizon_s: float = Field(60.0, ge=1, le=600, description="Horizon of the game, s.")
+    thrust_m_s2: Thrust = 0.1
+    disturbance_m_s2: float = Field(
+        0.05, ge=0, le=MAX_ACCELERATION, description="Largest acceleration of Player 2, m/s^2."
+    )
+    shape: Literal["box", "disk"] = Field(
+        "box", description="Both players' sets: bounds by axis (the paper), or on the size."
+    )
+    players: Literal["avoid", "paper"] = Field(
+        "avoid",
+        description="avoid: Player 1 evades. paper: eq. (12) as printed, where it seeks the disk; no encounters.",
+    )
+    grid: GridInput = Field(default_factory=lambda: GridInput.model_validate({}))
+    slices_m_s: Annotated[list[Velocity], Field(min_length=1, max_length=6)] = Field(
+        [[0.0, 0.0], [-4.0, 0.0], [-3.0, -3.0]],
+        description="Relative velocities (tangential, radial) at which the unsafe set is drawn, m/s.",
+    )
+    slot: SlotInput = Field(default_factory=lambda: SlotInput.model_validate({}))
+    capture_horizon_s: float = Field(1100.0, ge=10, le=5000, description="Horizon of the capture set, s.")
+    capture_radial_m_s: Annotated[list[Speed], Field(min_length=1, max_length=4)] = Field(
+        [-4.0, 0.0, 4.0], description="Radial speeds at which the capture set is drawn, m/s."
+    )
+    burn_s: float = Field(60.0, gt=0, le=3600, description="Burn of the escape modes in their picture, s.")
+    encounters: int = Field(300, ge=10, le=20_000, description="Starts per set: outside and inside.")
+    supervised: int = Field(60, ge=0, le=2000, description="Supervised flights, with recovery; 0: none.")
+    threat_s: float = Field(300.0, ge=0, le=3600, description="How long Player 2 acts in those, s.")
+    supervised_s: float = Field(1800.0, ge=60, le=7200, description="How long those last, s.")
+    band_m: float = Field(20.0, gt=0, le=1000, description="Values up to which a start counts as near, m.")
+    period_s: float = Field(1.0, ge=0.1, le=10, description="Control period, s.")
+    pilots: Annotated[list[PilotName], Field(min_length=1)] = Field(
+        ["certified", "hj", "supervisor", "mode1", "mode2", "mode3", "mode4", "pd", "coast"]
+    )
+    adversaries: Annotated[list[AdversaryName], Field(min_length=1)] = Field(
+        ["worst", "mirror", "pursuit", "random", "none"]
+    )
+    seed: Seed = 0
+
+    @model_validator(mode="after")
+    def _sizes(self) -> CollisionAvoidanceInputs:
+        for name in ("pilots", "adversaries"):
+            chosen = getattr(self, name)
+            if len(set(chosen)) != len(chosen):
+                raise ValueError(f"{name}: each at most once")
+        if self.grid.nodes_position**2 * self.grid.nodes_speed**2 > MAX_NODES:
+            raise ValueError(f"grid: at most {MAX_NODES} nodes in all")
+        if self.period_s > self.horizon_s:
+            raise ValueError("period_s: at most horizon_s")
+        flights = 2 * self.encounters * len(self.pilots) * len(self.adversaries)
+        if flights > MAX_FLIGHTS:
+            raise ValueError(f"encounters: at most {MAX_FLIGHTS} flights in all, received {flights}")
+        if self.disturbance_m_s2 > self.thrust_m_s2:
+            raise ValueError("disturbance_m_s2: at most thrust_m_s2, or Player 1 can promise nothing")
+        return self
+
+
+class EncounterRow(WireModel):
+    """One pilot against one adversary from one set of starts."""
+
+    starts: Literal["outside", "inside", "approaching"]
+    pilot: PilotName
+    adversary: AdversaryName
+    encounters: int
+    lost: int = Field(description="Came within the keep-out distance.")
+    lost_beyond_error: int = Field(description="Came within it by more than the grid error.")
+    breach_probability: float
+    breach_low: float = Field(description="Wilson interval, 95 %.")
+    breach_high: float
+    least_separation_m: float = Field(description="At all times, between control periods too.")
+    mean_delta_v_m_s: float
+
+
+class RequirementRow(WireModel):
+    """One statement about the encounters; HELD, BROKEN, or UNDECIDED where nothing was flown."""
+
+    requirement: str
+    verdict: Literal["HELD", "BROKEN", "UNDECIDED"]
+    encounters: int
+    broken: int
+    probability: float | None
+    low: float | None = Field(description="Wilson interval, 95 %.")
+    high: float | None
+
+
+class EscapeRow(WireModel):
+    """What one escape mode comes to: one burn, then free motion."""
+
+    mode: str
+    paper_says: str
+    drift_m_s: float = Field(description="Mean tangential speed after the burn.")
+    altitude_m: float = Field(description="Mean radial position after the burn.")
+    overtakes_s: float | None = Field(description="When it comes back past its start; null: not in an orbit.")
+
+
+class CaptureRow(WireModel):
+    """One slice of the capture set."""
+
+    radial_m_s: float
+    captured_percent: float = Field(description="Of the drawn positions, by flight.")
+    median_s: float | None = Field(description="Median time of those that arrive.")
+
+
+class CollisionAvoidanceOutputs(WireModel):
+    """Verdicts, encounters, and what is known of the sets."""
+
+    failure: str = Field(
+        description="Why the value cannot be trusted; empty otherwise. Then nothing is called safe."
+    )
+    requirements: list[RequirementRow]
+    encounters: list[EncounterRow]
+    grid_error_m: float | None = Field(description="Largest error of the grid near the boundary.")
+    nodes: dict[str, int] = Field(
+        description="Nodes by what is proved of them and what the grid called them."
+    )
+    unsafe_percent: float | None = Field(description="Unsafe share of the grid's box.")
+    supervisor: dict[str, int] = Field(description="Transitions and recoveries of the supervised flights.")
+    escape: list[EscapeRow]
+    capture: list[CaptureRow]
+    capture_level_set: dict[str, int | str] = Field(
+        description="Nodes by what flight and level set say of capture; the flight is right."
+    )
+    notes: list[str]
+
+
+SPEC = ProcessSpec(
+    id="collision-avoidance",
+    title="Collision avoidance between two satellites",
+    description=(
+        "The game of paper 001: the states from which separation cannot be kept (proved, and by a level set whose "
+        "error is measured), the capture set of the recovery slot, the escape modes, and closed-loop encounters "
+        "with breach probabilities for every pilot and adversary."
+    ),
+    inputs=CollisionAvoidanceInputs,
+    outputs=CollisionAvoidanceOutputs,
+    run="safestart.processes.collision_avoidance.run:run",
+    keywords=("collision avoidance", "Hamilton-Jacobi", "game", "closed loop"),
+    example={"encounters": 100, "supervised": 20, "grid": {"nodes_position": 21, "nodes_speed": 11}},
+)
