@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from safestart.avoidance.warm import warm as warm_avoidance
 from safestart.engines.base import Problem
 from safestart.engines.registry import ENGINE_NAMES, engine
 from safestart.guidance.worlds import CwhWorld
@@ -22,3 +23,4 @@ def warm() -> None:
         engine(name).solve(problem, Context())
     CwhWorld(problem.scenario, np.array([0.0, 30.0, 0.0, 0.0, 0.0, 0.0]), problem.dt).fly(np.zeros(2))
     warm_levelset("float64")
+    warm_avoidance()

@@ -91,7 +91,7 @@ def fly(
         # The acceleration changes little within a period: its larger end and a tenth stand for all of it.
         ends = [np.linalg.norm(x @ matrix.T + total, axis=1) for x in (states, after)]
         sag = 1.1 * np.maximum(*ends) * clock.period_s**2 / 8.0
-        least = np.minimum(least, _chord(states[:, :m], after[:, :m]) - sag)
+        least = np.minimum(least, np.maximum(_chord(states[:, :m], after[:, :m]) - sag, 0.0))
         for part in game.control.parts:
             spent += np.linalg.norm(u[:, part.begin : part.end], axis=1) * clock.period_s
         states = after

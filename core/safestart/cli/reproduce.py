@@ -8,7 +8,7 @@ from typing import Any
 import typer
 
 from safestart import published
-from safestart.cli import chain, passive_safety, table3
+from safestart.cli import avoidance, chain, passive_safety, table3
 from safestart.cli.console import Json, Justify, number, out, print_json, reporting, seconds, table_of
 from safestart.processes.execute import execute
 
@@ -69,6 +69,7 @@ def register(app: typer.Typer) -> None:
     table3.register(group)
     passive_safety.register(group)
     chain.register(group)
+    avoidance.register(group)
 
     @group.command("all")
     def everything(as_json: Json = False) -> None:
@@ -84,6 +85,7 @@ def register(app: typer.Typer) -> None:
                     "table3": table3.table3_document(),
                     "passive_safety": passive_safety.passive_safety_document(),
                     "chain": chain.chain_document(list(published.TABLE2)),
+                    "collision_avoidance": avoidance.collision_avoidance_document(),
                 }
             )
             return
@@ -92,6 +94,7 @@ def register(app: typer.Typer) -> None:
         table3.show(table3.table3_document())
         passive_safety.print_passive_safety()
         chain.show(chain.chain_document(list(published.TABLE2)))
+        avoidance.show(avoidance.collision_avoidance_document())
 
 
 def table1_cells() -> list[dict[str, float]]:

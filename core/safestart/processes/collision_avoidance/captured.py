@@ -16,17 +16,23 @@ from safestart.progress import Context
 from safestart.scenario import Floats
 
 HALF_WIDTH_M, SPEED_M_S, POINTS = 2000.0, 8.0, 61
+BEYOND = 1.3
+"""Flown for so many horizons, so that the edge of the set can be drawn between the points."""
 # Coarse on purpose: it runs next to the flights to show what a grid makes of the paper's thin box.
 _SHAPE, _STATES = (21, 21, 13, 13), 4000
 
 
 @dataclass(frozen=True, slots=True)
 class Captured:
-    """``times`` (S, POINTS, POINTS): arrival from [x, y] at rest but for the slice's radial speed, inf: none."""
+    """``times`` (S, POINTS, POINTS): arrival from [x, y] at rest but for the slice's radial speed, inf: none.
+
+    Captured are those within ``horizon``; ``times`` go beyond it.
+    """
 
     x: Floats
     y: Floats
     times: Floats
+    horizon: float
     agreement: dict[str, Any]
     note: str
 
@@ -34,7 +40,7 @@ class Captured:
         """One row per slice."""
         found = []
         for speed, times in zip(radial, self.times, strict=True):
-            arrived = times[np.isfinite(times)]
+            arrived = times[times <= self.horizon]
             median = float(np.median(arrived)) if arrived.size else None
             share = 100.0 * arrived.size / times.size
             found.append({"radial_m_s": speed, "captured_percent": share, "median_s": median})
@@ -53,7 +59,7 @@ def captured(inputs: CollisionAvoidanceInputs, game: Game, slot: Slot, context: 
     for index, speed in enumerate(inputs.capture_radial_m_s):
         context.step(index, len(inputs.capture_radial_m_s) + 2, "flights")
         states = np.concatenate([places, np.broadcast_to([0.0, speed], places.shape)], axis=-1)
-        times.append(arrival_times(game, slot, RECOVERY, states, inputs.capture_horizon_s))
+        times.append(arrival_times(game, slot, RECOVERY, states, BEYOND * inputs.capture_horizon_s))
     ends = np.array([HALF_WIDTH_M, HALF_WIDTH_M, SPEED_M_S, SPEED_M_S])
     centre = np.array(slot.centre)
     lattice = Lattice.of(centre - ends, centre + ends, _SHAPE)
@@ -68,9 +74,9 @@ def captured(inputs: CollisionAvoidanceInputs, game: Game, slot: Slot, context: 
     agreement = {"failure": solution.failure} if counts is None else asdict(counts)
     thin = min(np.array(slot.half) / lattice.spacing)
     note = (
-        f"Capture: the recovery box is {thin:.2g} cells thin on the level set's grid (21 x 21 x 13 x 13), which loses it; "
-        "the flights are exact."
+        f"Capture: the recovery box is {thin:.2g} cells thin on the level set's grid (21 x 21 x 13 x 13), which "
+        "loses it; the flights are exact."
         if thin < 0.5
         else ""
     )
-    return Captured(x, y, np.array(times), agreement, note)
+    return Captured(x, y, np.array(times), inputs.capture_horizon_s, agreement, note)

@@ -36,8 +36,8 @@ def matrix_picture(rows: Sequence[dict[str, Any]]) -> Artifact:
             at = pilots.index(row["pilot"]), others.index(row["adversary"])
             share[at] = row["breach_probability"]
             text = (
-                f"{100 * row['breach_probability']:.3g} %\n"
-                f"[{100 * row['breach_low']:.2g}, {100 * row['breach_high']:.3g}]"
+                f"{100 * row['breach_probability']:.1f} %\n"
+                f"[{100 * row['breach_low']:.1f}, {100 * row['breach_high']:.1f}]"
             )
             dark = row["breach_probability"] > 0.6
             panel.text(

@@ -19,7 +19,7 @@ from safestart.avoidance.game import Game, Players
 from safestart.avoidance.tube import Tube
 from safestart.levelset import ValueField
 from safestart.processes.base import Artifact
-from safestart.processes.collision_avoidance.captured import HALF_WIDTH_M, Captured
+from safestart.processes.collision_avoidance.captured import BEYOND, HALF_WIDTH_M, Captured
 from safestart.processes.collision_avoidance.spec import CollisionAvoidanceInputs
 from safestart.processes.plotting import figure, png
 from safestart.scenario import Floats
@@ -59,8 +59,9 @@ def slices(inputs: CollisionAvoidanceInputs, tube: Tube) -> list[Slice]:
 
 def unsafe_picture(inputs: CollisionAvoidanceInputs, drawn: Sequence[Slice], tube: Tube) -> Artifact:
     """Where separation cannot be kept, by velocity: proved (filled) and the level set alone (line)."""
-    drawing = figure(0.6 + 4.3 * max(1, len(drawn)), 5.3)
+    drawing = figure(0.6 + 4.3 * max(1, len(drawn)), 5.6)
     panels = drawing.subplots(1, max(1, len(drawn)), sharex=True, sharey=True, squeeze=False)[0]
+    reach = max((_extent(one) for one in drawn), default=1.0)
     for axes, one in zip(panels, drawn, strict=False):
         x = one.axis
         if one.above is not None and one.below is not None:
@@ -72,13 +73,15 @@ def unsafe_picture(inputs: CollisionAvoidanceInputs, drawn: Sequence[Slice], tub
         vx, vy = one.velocity
         size = float(np.hypot(vx, vy))
         if size > 0.0:
-            length = 0.28 * x[-1]
-            start = -0.93 * x[-1], 0.85 * x[-1] if vy <= 0.0 else 0.5 * x[-1]
+            length = 0.28 * reach
+            start = -0.93 * reach, 0.85 * reach if vy <= 0.0 else 0.5 * reach
             start = (start[0] + (length if vx < 0.0 else 0.0), start[1])
             end = (start[0] + length * vx / size, start[1] + length * vy / size)
             axes.annotate("", end, start, arrowprops={"arrowstyle": "-|>", "color": SAFE, "lw": 2})
         axes.set_title(f"relative velocity ({vx:g}, {vy:g}) m/s", fontsize=10)
         _frame(axes)
+        axes.set_xlim(-reach, reach)
+        axes.set_ylim(-reach, reach)
     panels[0].set_ylabel("y radial [m]")
     handles: list[Any] = [
         Line2D([], [], color=LINE, linestyle="--", label="keep-out distance"),
@@ -92,9 +95,16 @@ def unsafe_picture(inputs: CollisionAvoidanceInputs, drawn: Sequence[Slice], tub
     drawing.legend(handles=handles, loc="outside lower center", ncol=len(handles), fontsize=9, frameon=False)
     what = "eq. (12) as printed: Player 1 seeks the disk" if inputs.players == "paper" else "unsafe set"
     drawing.suptitle(
-        f"Positions of the {what} within {inputs.horizon_s:g} s; arrow: the way it moves", fontsize=11
+        f"Positions of the {what} within {inputs.horizon_s:g} s (arrow: direction of motion)", fontsize=11
     )
     return png("unsafe.png", drawing)
+
+
+def _extent(one: Slice) -> float:
+    """Half-width of a picture that shows all of what is not safe."""
+    unsafe = one.raw <= 0.0 if one.above is None else (one.above <= 0.0) | (one.raw <= 0.0)
+    far = np.abs(one.axis)[unsafe.any(axis=0) | unsafe.any(axis=1)].max(initial=0.0)
+    return float(min(1.5 * far, one.axis[-1]) or one.axis[-1])
 
 
 def capture_picture(inputs: CollisionAvoidanceInputs, taken: Captured) -> Artifact:
@@ -102,7 +112,7 @@ def capture_picture(inputs: CollisionAvoidanceInputs, taken: Captured) -> Artifa
     count = len(taken.times)
     drawing = figure(1.6 + 4.0 * count, 4.7)
     panels = drawing.subplots(1, count, sharex=True, sharey=True, squeeze=False)[0]
-    arrived = taken.times[np.isfinite(taken.times)]
+    arrived = taken.times[taken.times <= taken.horizon]
     levels = np.linspace(0.0, inputs.capture_horizon_s, 12)
     if arrived.size:
         least = 50.0 * np.floor(np.quantile(arrived, 0.01) / 50.0)
@@ -110,9 +120,9 @@ def capture_picture(inputs: CollisionAvoidanceInputs, taken: Captured) -> Artifa
     shown = None
     for axes, times, speed in zip(panels, taken.times, inputs.capture_radial_m_s, strict=True):
         axes.set_facecolor("#D9D9D9")
-        held = np.ma.masked_invalid(times.T)
-        if held.count():
-            shown = axes.contourf(taken.x, taken.y, held, levels=levels, cmap="viridis_r", extend="min")
+        if (times <= taken.horizon).any():
+            flown = np.minimum(times.T, BEYOND * taken.horizon)
+            shown = axes.contourf(taken.x, taken.y, flown, levels=levels, cmap="viridis_r", extend="min")
         slot = inputs.slot
         corner = (slot.x_m - slot.half_x_m, slot.y_m - slot.half_y_m)
         axes.add_patch(Rectangle(corner, 2 * slot.half_x_m, 2 * slot.half_y_m, color=LOST, zorder=4))
@@ -121,11 +131,12 @@ def capture_picture(inputs: CollisionAvoidanceInputs, taken: Captured) -> Artifa
         _frame(axes)
         axes.set_xlim(taken.x[0], taken.x[-1])
         axes.set_ylim(taken.y[0], taken.y[-1])
+        axes.locator_params(nbins=5)
     panels[0].set_ylabel("y radial [m]")
     if shown is not None:
-        drawing.colorbar(shown, ax=list(panels), shrink=0.85).set_label("time to the slot [s]")
+        drawing.colorbar(shown, ax=list(panels), shrink=0.85, format="%.0f").set_label("time to the slot [s]")
     drawing.suptitle(
-        f"Capture set of the recovery slot (orange) within {inputs.capture_horizon_s:g} s, by flight; grey: not captured",
+        f"Capture set of the recovery slot (orange) in {inputs.capture_horizon_s:g} s, by flight; grey: not captured",
         fontsize=11,
     )
     return png("capture.png", drawing)
@@ -142,15 +153,16 @@ def capture_space_picture(inputs: CollisionAvoidanceInputs, game: Game, slot: Sl
         axes: Any = drawing.add_subplot(1, count, index + 1, projection="3d")
         for speed in speeds:
             states = np.concatenate([place, np.broadcast_to([speed, radial], place.shape)], axis=-1)
-            times = arrival_times(game, slot, RECOVERY, states, inputs.capture_horizon_s)
-            inside = np.isfinite(times).astype(np.float64).T
-            if inside.mean() > 0.0:
-                padded = np.pad(inside, 1)
+            longest = BEYOND * inputs.capture_horizon_s
+            times = arrival_times(game, slot, RECOVERY, states, longest).T
+            left = inputs.capture_horizon_s - np.minimum(times, longest)
+            if (left > 0.0).any():
+                # A rim of not captured closes the outlines at the picture's edge.
+                rim = np.pad(left, 1, constant_values=-1e-3)
                 wide = [np.concatenate([[v[0] - 1.0], v, [v[-1] + 1.0]]) for v in (x, y)]
-                axes.contourf(
-                    *wide, padded, levels=[0.5, 1.5], colors=[SAFE], alpha=0.25, zdir="z", offset=speed
-                )
-                axes.contour(*wide, padded, levels=[0.5], colors=[SAFE], zdir="z", offset=speed, linewidths=1)
+                level: Any = {"zdir": "z", "offset": speed}
+                axes.contourf(*wide, rim, levels=[0.0, longest], colors=[SAFE], alpha=0.25, **level)
+                axes.contour(*wide, rim, levels=[0.0], colors=[SAFE], linewidths=1, **level)
         axes.set_xlim(x[0], x[-1])
         axes.set_ylim(y[0], y[-1])
         axes.set_zlim(speeds[0], speeds[-1])
@@ -158,6 +170,7 @@ def capture_space_picture(inputs: CollisionAvoidanceInputs, game: Game, slot: Sl
         axes.set_ylabel("y [m]", fontsize=8)
         axes.set_zlabel("tangential speed [m/s]", fontsize=8)
         axes.tick_params(labelsize=7)
+        axes.locator_params(nbins=4)
         axes.set_box_aspect(None, zoom=0.86)
         axes.set_title(f"radial speed {radial:g} m/s", fontsize=10)
     drawing.suptitle(

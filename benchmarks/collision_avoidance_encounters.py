@@ -1,0 +1,69 @@
+"""Encounters of the avoid game by the thousand: ``python -m benchmarks.collision_avoidance_encounters [COUNT]``.
+
+Starts near the boundary of the unsafe set, outside it, and starts proved unsafe, by every pilot against every
+adversary. Exit status 1 if the certified evasion loses one from outside by more than the grid error, or a start
+proved unsafe is not lost to the mirror.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+
+import numpy as np
+
+from safestart.avoidance.adversary import ADVERSARIES, adversary
+from safestart.avoidance.encounter import Clock, fly
+from safestart.avoidance.feedback import Slot
+from safestart.avoidance.game import Game
+from safestart.avoidance.inputs import InputSet
+from safestart.avoidance.pilots import PILOTS, pilot
+from safestart.avoidance.sight import Sight
+from safestart.avoidance.starts import certified_unsafe, near_boundary
+from safestart.avoidance.supervisor import Guards, Supervisor
+from safestart.avoidance.tube import solve_tube
+from safestart.avoidance.tube_settings import TubeSettings
+from safestart.metrics import wilson
+from safestart.progress import Context
+
+HORIZON_S, BAND_M, SEED = 60.0, 20.0, 0
+GAME = Game(0.0011, InputSet("box", (0.1, 0.1)), InputSet("box", (0.05, 0.05)), 100.0)
+SETTINGS = TubeSettings("very_high", (31, 15), (450.0, 6.0), kept=7)
+
+
+def study(count: int) -> int:
+    """Print one line per pilot, adversary and set of starts."""
+    tube = solve_tube(GAME, HORIZON_S, SETTINGS)
+    sight, slot, error = Sight(GAME, tube), Slot(), tube.grid_error_m
+    print(f"grid error {error:.2f} m, keep-out {GAME.keep_out_m:g} m, {count} starts each", flush=True)
+    outside = near_boundary(sight, count, BAND_M, SEED, Context())
+    inside = certified_unsafe(sight, count, SEED + 1, Context())
+    failed = 0
+    for kind, starts, others in (("outside", outside, ADVERSARIES), ("inside", inside, ("worst", "mirror"))):
+        for name in (*PILOTS[:2], "supervisor", *PILOTS[2:]):
+            for other in others:
+                begin = time.process_time()
+                opponent = adversary(other, GAME, HORIZON_S, count, SEED + 2, 10)
+                supervised = name == "supervisor"
+                flier = (
+                    Supervisor(sight, slot, Guards(error, 10.0), 1.0)
+                    if supervised
+                    else pilot(name, GAME, slot)
+                )
+                flights = fly(sight, starts, flier, opponent, Clock(1.0, HORIZON_S, supervised))
+                lost = int(flights.lost(GAME.keep_out_m).sum())
+                beyond = int(flights.lost(GAME.keep_out_m - error).sum())
+                low, high = wilson(lost, count) or (0.0, 1.0)
+                print(
+                    f"{kind:8} {name:10} {other:8} lost {lost:6} [{100 * low:.3f}, {100 * high:.3f}] %, "
+                    f"beyond the error {beyond:6}, least {flights.separation_m.min():7.2f} m, "
+                    f"{np.mean(flights.delta_v_m_s):5.2f} m/s, {time.process_time() - begin:.1f} s",
+                    flush=True,
+                )
+                failed |= kind == "outside" and name == "certified" and beyond > 0
+                failed |= kind == "inside" and other == "mirror" and lost < count
+    return int(failed)
+
+
+if __name__ == "__main__":
+    sys.exit(study(int(sys.argv[1]) if len(sys.argv) > 1 else 10_000))
