@@ -17,18 +17,9 @@ from safestart.store.cache import Cache
 from safestart.store.database import Database
 from safestart.store.jobs import JobRepository
 from tests.contract.service_client import assert_problem, jobs_of, service
-from tests.contract.store_backends import BACKENDS, fresh_url
 
 POINT = {"omega_t_deg_s": 2.0, "a_max_m_s2": 0.05}
 SLIVER = {"x_m": 9.364, "y_m": 81.044}
-
-
-@pytest.fixture(params=BACKENDS)
-def database(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Database]:
-    found = Database(fresh_url(request.param, tmp_path))
-    found.migrate()
-    yield found
-    found.close()
 
 
 @pytest.fixture

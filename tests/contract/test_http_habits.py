@@ -6,7 +6,6 @@ import csv
 import io
 import threading
 import time
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,7 +14,7 @@ import pytest
 from safestart.errors import SafestartError
 from safestart_service.formats import OFFERED, RECORD, npz_file, ogc_results, tables_of
 from safestart_service.negotiation import chosen
-from tests.contract.service_client import POINT, assert_problem, finish, jobs_of, service, submit
+from tests.contract.service_client import POINT, assert_problem, finish, submit
 from tests.contract.store_backends import pass_time
 from tests.waiting import PATIENCE_S
 
@@ -37,12 +36,6 @@ OUTPUTS = {
     "horizon_s": None,
     "bounds": {"lower": 1.0},
 }
-
-
-@pytest.fixture
-def queue(tmp_path: Path):
-    with service(tmp_path) as client:
-        yield client, jobs_of(tmp_path)
 
 
 @pytest.fixture

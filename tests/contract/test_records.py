@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import json
 import zipfile
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -35,14 +34,6 @@ INPUTS: dict[str, Any] = {
     "grid": {"nx": 9, "ny": 9, "y_max_m": 150},
     "engines": ["analytical", "exact"],
 }
-
-
-@pytest.fixture(params=BACKENDS)
-def database(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Database]:
-    database = Database(fresh_url(request.param, tmp_path))
-    database.migrate()
-    yield database
-    database.close()
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,100 @@
+"""Processes over the API: their descriptions, execution at once and queued."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from tests.contract.service_client import (
+    HEAVY,
+    POINT,
+    assert_problem,
+    service,
+    submit,
+)
+
+
+def test_process_list_and_description(client):
+    listed = client.get("/processes").json()["processes"]
+    assert [entry["id"] for entry in listed][:2] == ["go-no-go", "certificate"]
+    for entry in listed:
+        described = client.get(f"/processes/{entry['id']}").json()
+        assert described["inputs"]
+        assert described["outputs"]
+        assert "$ref" not in json.dumps(described), "each schema stands alone"
+        assert ("sync-execute" in described["jobControlOptions"]) == (
+            entry["id"] in ("go-no-go", "certificate", "safe-region", "flight", "thrust-map")
+        )
+    required = client.get("/processes/certificate").json()["inputs"]
+    assert required["omega_t_deg_s"]["minOccurs"] == 1
+    assert required["grid"]["minOccurs"] == 0
+
+
+def test_descriptions_accept_their_own_examples(client):
+    import jsonschema
+
+    for entry in client.get("/processes").json()["processes"]:
+        described = client.get(f"/processes/{entry['id']}").json()
+        for name, value in described["example"].items():
+            jsonschema.validate(value, described["inputs"][name]["schema"])
+
+
+def test_sync_execution_and_output_selection(client):
+    inputs = {**POINT, "states": [{"x_m": 5, "y_m": 40}]}
+    url = "/processes/go-no-go/execution"
+    assert client.post(url, json={"inputs": inputs}).json()["verdict"] == ["GO"]
+    chosen = client.post(url, json={"inputs": inputs, "outputs": {"verdict": {"transmissionMode": "value"}}})
+    assert chosen.json() == {"verdict": ["GO"]}
+    raw = client.post(url, json={"inputs": inputs, "outputs": {"verdict": {}}, "response": "raw"})
+    assert raw.json() == ["GO"]
+    assert_problem(client.post(url, json={"inputs": inputs, "outputs": {"nope": {}}}), 422, "outputs")
+    assert_problem(client.post(url, json={"inputs": inputs, "response": "raw"}), 422, "response")
+
+
+def test_heavy_execution_is_queued_with_its_certificate(queue):
+    client, jobs = queue
+    answer = client.post("/processes/benchmark/execution", json=HEAVY)
+    assert answer.status_code == 201
+    body = answer.json()
+    assert answer.headers["location"] == f"http://testserver/jobs/{body['jobID']}"
+    assert body["status"] == "accepted"
+    assert body["position"] == 1
+    assert "no worker" in body["reason"]
+    assert np.array(body["certificate"]["mask"]).shape == (5, 5)
+    assert body["certificate"]["r_sync_m"] == pytest.approx(72.9513, abs=1e-4)
+    jobs.heartbeat("tester", 1, 0)
+    second = client.get(f"/jobs/{submit(client)}").json()
+    assert second["position"] == 2
+    assert second["reason"].startswith("1 job ahead")
+
+
+def test_light_execution_can_be_queued(queue):
+    client, _ = queue
+    answer = client.post(
+        "/processes/certificate/execution",
+        json={"inputs": POINT},
+        headers={"Prefer": "respond-async; wait=10"},
+    )
+    assert answer.status_code == 201
+    assert answer.headers["preference-applied"] == "respond-async"
+
+
+def test_idempotency_key(queue):
+    client, jobs = queue
+    first = submit(client, **{"Idempotency-Key": "abc"})
+    assert submit(client, **{"Idempotency-Key": "abc"}) == first
+    other = client.post(
+        "/processes/coverage/execution", json={"inputs": {}}, headers={"Idempotency-Key": "abc"}
+    )
+    assert_problem(other, 422, "Idempotency-Key")
+    assert jobs.counts()["accepted"] == 1
+
+
+def test_queue_cap(tmp_path):
+    with service(tmp_path, max_queued=1) as client:
+        submit(client)
+        answer = client.post("/processes/benchmark/execution", json=HEAVY)
+        assert_problem(answer, 429)
+        assert int(answer.headers["retry-after"]) > 0
