@@ -92,6 +92,20 @@ class ScenarioInput(WireModel):
         return Scenario(target, Chaser(self.a_max_m_s2), self.corridor.shape())
 
 
+class Confusion(WireModel):
+    """A certificate (positive: certified) against what is so (actual); shares without a case are null."""
+
+    tp: int
+    fp: int
+    fn: int
+    tn: int
+    precision: float | None
+    recall: float | None
+    accuracy: float
+    f1: float | None
+    mcc: float | None
+
+
 def finite(value: float) -> float | None:
     """A float for JSON: None instead of infinity or NaN."""
     return float(value) if math.isfinite(value) else None

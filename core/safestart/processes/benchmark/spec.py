@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, model_validator
 
 from safestart.processes.base import ProcessSpec, WireModel
-from safestart.processes.wire import DISTINCT, GridInput, Horizon, ScenarioInput, Seed
+from safestart.processes.wire import DISTINCT, Confusion, GridInput, Horizon, ScenarioInput, Seed
 from safestart.scenario import Rest, SetKind
 
 EngineName = Literal["analytical", "exact", "backward", "forward", "hamilton_jacobi", "monte_carlo"]
@@ -66,20 +66,6 @@ class BenchmarkInputs(ScenarioInput):
         return self
 
 
-class Confusion(WireModel):
-    """Certificate (positive: certified) against an engine (actual: in its set), over the corridor's cells."""
-
-    tp: int
-    fp: int
-    fn: int
-    tn: int
-    precision: float | None
-    recall: float | None
-    accuracy: float
-    f1: float | None
-    mcc: float | None
-
-
 class PublishedRow(WireModel):
     """What paper 000 prints for this engine in Table 2 (0.10 m/s^2; 1, 3 and 5 deg/s)."""
 
@@ -102,7 +88,9 @@ class EngineRow(WireModel):
     iou_vs_exact: float | None
     violation_vs_hj: float | None = Field(description="|A minus HJ| / |A|.")
     violation_vs_exact: float | None = Field(description="|A minus exact| / |A|.")
-    confusion: Confusion | None = Field(description="The certificate against this engine.")
+    confusion: Confusion | None = Field(
+        description="The certificate against this engine (actual: in its set), over the corridor's cells."
+    )
     run_s: float
     compile_s: float
     speedup_vs_hj: float | None

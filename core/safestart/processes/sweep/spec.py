@@ -8,7 +8,16 @@ from pydantic import Field, model_validator
 
 from safestart.processes.base import ProcessSpec, WireModel
 from safestart.processes.sharding import Sharding
-from safestart.processes.wire import DISTINCT, DT_S, CorridorInput, Horizon, Seed, Thrust, TumbleRate
+from safestart.processes.wire import (
+    DISTINCT,
+    DT_S,
+    Confusion,
+    CorridorInput,
+    Horizon,
+    Seed,
+    Thrust,
+    TumbleRate,
+)
 from safestart.scenario import MAX_MEAN_MOTION, MAX_RANGE
 
 Controller = Literal["filter", "filter_fine", "sequence"]
@@ -141,18 +150,9 @@ class Rates95(WireModel):
     false_positive_rate: list[float] | None
 
 
-class SweepConfusion(WireModel):
+class SweepConfusion(Confusion):
     """A certificate (positive: certified) against a controller (actual: flown without violation)."""
 
-    tp: int
-    fp: int
-    fn: int
-    tn: int
-    precision: float | None
-    recall: float | None
-    accuracy: float
-    f1: float | None
-    mcc: float | None
     false_positive_rate: float | None = Field(description="fp / (fp + tn).")
     false_positive_share: float | None = Field(description="fp / all, which paper 000 calls a rate.")
     wilson_95: Rates95
