@@ -132,7 +132,7 @@ def drift_excess(
         return out
 
     far = aborts <= crossing
-    worst = strays(reach.far, Clock(0.0, np.zeros(0), 0.0), aborts, far)
+    worst = strays(reach.far, reach.clock, aborts, far)
     per_branch = [
         np.max([strays(tube, branch.clock, aborts - crossing, ~far) for tube in branch.tubes], axis=0)
         for branch in reach.branches

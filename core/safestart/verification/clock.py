@@ -9,7 +9,10 @@ from safestart.scenario import Floats
 
 @dataclass(frozen=True, slots=True)
 class Clock:
-    """Abort time of a node of a tube: its own time plus ``offset`` + ``gens`` (g,) . xi +- ``radius`` (min)."""
+    """Abort time of a node of a tube: its own time plus ``offset`` + ``gens`` (g,) . xi +- ``radius`` (min).
+
+    The xi are the first symbols of the tube; those that follow are remainders.
+    """
 
     offset: float
     gens: Floats

@@ -1,12 +1,16 @@
 """From mode 1 to mode 2: every state on one plane of the guard at the first entry, with the time of crossing.
 
-The flow is expanded about one time t*: with z = z(t*), f = A c*, delta = t_c - t* and e the remainder,
+The flow is expanded about one time t*: with z = z* + w the state there (z* of the centre), f = A z*, q = A^2 z* and
+delta = t_c - t*,
 
-    z(t_c) = z + delta f + e,   |e| <= D |A G*| 1 + D^2/2 sup |A^2 z| + d,   |delta| <= D,
+    z(t_c) = z + delta f + e,   e = delta A w + delta^2/2 q + r,   |r| <= D^2/2 |A^2 w| + D^3/6 sup |A^3 z|,
 
-d the deviation of the nonlinear motion from its linear part, and h.z(t_c) = b - sag gives delta, affine in the symbols
-of the start, in e and in the sag; then z(t_c) is the projection of z + e along f onto the plane, shifted by the sag.
-So the crossing time is one more affine coordinate of the crossing set.
+where |delta| <= D. Now h.z(t_c) = b - sag gives delta = d - h.e/(h.f), with d affine in the symbols of the start and in
+the sag; so z(t_c) is the projection of z + e along f onto the plane, shifted by the sag. With d instead of delta, e is
+of second order in the symbols: that part is kept, each product of two symbols as a symbol of its own, in which the time
+of crossing has its share. What is left, |delta - d| |A w| and the like, is of third order: a box, with the deviation of
+the nonlinear motion from the linear one. (Mode 2 soon brings all starts to nearly the same speed; a box of second order
+would not shrink with them.)
 """
 
 from __future__ import annotations
@@ -22,12 +26,15 @@ from safestart.verification.rounding import SLACK, UP
 
 _ROUNDS = 4
 
+REMAINDERS = 4
+"""Generators of the box of remainders, the last ones of a crossing set."""
+
 
 @dataclass(frozen=True, slots=True)
 class Crossing:
-    """Crossing set of one plane: ``centre`` (4,), ``gens`` (m, 4), the last four a box of remainders.
+    """Crossing set of one plane: ``centre`` (4,), ``gens`` (m + 4, 4), the last four a box of remainders.
 
-    Crossing time (min): ``time`` + ``time_gens`` (k,) . xi +- ``time_radius`` with xi those of the first k generators,
+    Crossing time (min): ``time`` + ``time_gens`` (m,) . xi +- ``time_radius`` with xi those of the first m generators,
     and in [``first``, ``last``]. ``normal`` (2,) points out of the guard; ``name`` says where.
     """
 
@@ -46,8 +53,8 @@ class Crossing:
 class Passage:
     """What is known of the flight around the crossing: between ``first`` and ``last`` (min), expanded at ``middle``.
 
-    ``centre`` (4,) and ``gens`` (g, 4) of mode 1 at time 0; ``second`` (4,) bounds |A^2 z| in between, ``strays`` (4,)
-    the deviation from the linear motion.
+    ``centre`` (4,) and ``gens`` (g, 4) of mode 1 at time 0; ``second`` and ``third`` (4,) bound |A^2 z| and |A^3 z| in
+    between, ``strays`` (4,) the deviation from the linear motion.
     """
 
     motion: Motion
@@ -57,12 +64,54 @@ class Passage:
     middle: float
     last: float
     second: Floats
+    third: Floats
     strays: Floats
 
 
-def remainder(widest: float, rates: Floats, second: Floats) -> Floats:
-    """Bound (4,) on e from the expansion in time: |delta| <= ``widest``, ``rates`` (g, 4) = A G*."""
-    result: Floats = widest * np.abs(rates).sum(axis=0) + 0.5 * widest**2 * second
+@dataclass(frozen=True, slots=True)
+class Quadratic:
+    """A vector that is quadratic in symbols: ``constant`` (4,), ``linear`` (k, 4), ``products`` (k (k + 1)/2, 4).
+
+    The products are symbols in [-1, 1] of their own: xi_i xi_j, and 2 xi_i^2 - 1.
+    """
+
+    constant: Floats
+    linear: Floats
+    products: Floats
+
+    @property
+    def whole(self) -> Floats:
+        """Linear part and products, (k + k (k + 1)/2, 4)."""
+        result: Floats = np.vstack([self.linear, self.products])
+        return result
+
+
+def second_order(offset: float, slopes: Floats, rates: Floats, jerk: Floats) -> Quadratic:
+    """d A w + d^2/2 q, d = ``offset`` + ``slopes`` (k,) . xi, A w = xi . ``rates`` (k, 4), q = ``jerk`` (4,)."""
+    i, j = np.triu_indices(len(slopes), 1)
+    squares = slopes[:, None] * rates + 0.5 * slopes[:, None] ** 2 * jerk
+    mixed = slopes[i, None] * rates[j] + slopes[j, None] * rates[i] + (slopes[i] * slopes[j])[:, None] * jerk
+    return Quadratic(
+        0.5 * offset**2 * jerk + 0.5 * squares.sum(axis=0),
+        offset * (rates + slopes[:, None] * jerk),
+        np.vstack([0.5 * squares, mixed]),
+    )
+
+
+def first_order(widest: float, passage: Passage, rates: Floats) -> Floats:
+    """Bound (4,) on e, |delta| <= ``widest``."""
+    result: Floats = widest * np.abs(rates).sum(axis=0) + 0.5 * widest**2 * passage.second
+    return result
+
+
+def remainder(widest: float, stray: float, passage: Passage, rates: Floats, jerk: Floats) -> Floats:
+    """Bound (4,) on e less its second order: |delta| <= ``widest``, |delta - d| <= ``stray`` (min)."""
+    a = matrix(passage.motion)
+    result: Floats = (
+        stray * (np.abs(rates).sum(axis=0) + (widest + 0.5 * stray) * np.abs(jerk))
+        + 0.5 * widest**2 * np.abs(rates @ a.T).sum(axis=0)
+        + widest**3 / 6.0 * passage.third
+    )
     return result
 
 
@@ -73,32 +122,57 @@ def cross_plane(passage: Passage, name: str, normal: Floats, limit: float, sag: 
     phi, _ = flow_at(passage.motion, middle)
     nominal, spread = phi @ passage.centre, passage.gens @ phi.T
     flow = a @ nominal
+    jerk = a @ flow
     fall = float(row @ flow)
-    size = np.abs(phi) @ (np.abs(passage.centre) + np.abs(passage.gens).sum(axis=0))
-    size = size + np.abs(a) @ size * (1.0 + high - low)
     offset = (limit - float(row @ nominal)) / fall
-    slopes = -(spread @ row) / fall
-    shift = sag / fall
+    slopes, known = (
+        -(spread @ row) / fall,
+        np.abs(phi) @ (np.abs(passage.centre) + np.abs(passage.gens).sum(axis=0)),
+    )
+    if sag > 0.0:
+        slopes, spread = np.append(slopes, sag / fall), np.vstack([spread, np.zeros(4)])
+    rates = spread @ a.T
     widest = max(high - middle, middle - low)
+    pace = np.abs(a) @ known
+    # Round-off of the states, and of the times that are quotients of them.
+    late = SLACK * (1.0 + abs(middle) + widest + (float(np.abs(row) @ known) + abs(limit) + sag) / abs(fall))
+    rounded = SLACK * (known + (1.0 + widest) * (pace + widest * np.abs(a) @ pace))
+    rounded += late * (pace + widest * np.abs(a) @ pace)
+    # A bound of first order on e, and how late it may make the crossing.
     for _ in range(_ROUNDS):
-        error = UP * (remainder(widest, spread @ a.T, passage.second) + passage.strays) + SLACK * size
-        radius = UP * float(np.abs(row) @ error) / abs(fall) + SLACK * (1.0 + abs(middle) + widest)
-        widest = min(widest, UP * (abs(offset) + float(np.abs(slopes).sum()) + abs(shift) + radius))
+        error = UP * (first_order(widest, passage, rates) + passage.strays) + rounded
+        stray = UP * float(np.abs(row) @ error) / abs(fall) + late
+        widest = min(widest, UP * (abs(offset) + float(np.abs(slopes).sum()) + stray))
+    # The expansion may take any affine time; in the middle of the second order it leaves least.
+    lead = offset - float(row @ second_order(offset, slopes, rates, jerk).constant) / fall
+    bent = second_order(lead, slopes, rates, jerk)
+    least = abs(offset - lead - float(row @ bent.constant) / fall) + float(
+        np.abs(bent.whole @ row).sum()
+    ) / abs(fall)
+    closer, finer = stray + abs(offset - lead), error
+    for _ in range(_ROUNDS):
+        finer = UP * (remainder(widest, closer, passage, rates, jerk) + passage.strays) + rounded
+        closer = min(closer, UP * (least + float(np.abs(row) @ finer) / abs(fall)) + late)
+    # Sets so wide that the second order is no help get the box of first order alone.
+    curve = Quadratic(np.zeros(4), np.zeros((len(slopes), 4)), np.zeros((0, 4)))
+    if closer < stray:
+        curve, error = bent, finer
     project = np.eye(4) - np.outer(flow, row) / fall
     # A second helping of round-off for the projection itself, whose entries are |f| |h| / |h f| at most.
     stretch = np.abs(np.eye(4)) + np.outer(np.abs(flow), np.abs(row)) / abs(fall)
-    box = UP * (np.abs(project) @ error) + SLACK * (stretch @ (size + abs(limit)))
-    symbols, times = spread @ project.T, slopes
-    if sag > 0.0:
-        symbols, times = np.vstack([symbols, flow * shift]), np.append(slopes, shift)
+    box = UP * (np.abs(project) @ error) + SLACK * (stretch @ (known + pace + abs(limit) + sag))
+    # A symbol moves the state by w and, since it moves the time, along f: together in the plane, but for the sag.
+    symbols = spread + slopes[:, None] * flow
+    count = len(slopes)
+    bends, shifts = curve.whole @ project.T, curve.whole @ row / fall
     return Crossing(
         name,
         normal,
-        nominal + flow * offset,
-        np.vstack([symbols, np.diag(box)]),
-        middle + offset,
-        times,
-        radius,
+        nominal + flow * offset + project @ curve.constant,
+        np.vstack([symbols + bends[:count], bends[count:], np.diag(box)]),
+        middle + offset - float(row @ curve.constant) / fall,
+        np.append(slopes, np.zeros(len(shifts) - count)) - shifts,
+        UP * float(np.abs(row) @ error) / abs(fall) + late,
         low,
         high,
     )

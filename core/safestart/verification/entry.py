@@ -118,5 +118,5 @@ def _passage(tube: Tube, centre: Floats, gens: Floats, first: int, last: int, he
     low, high = tube.time(first), tube.time(last)
     # The nominal root, roughly: any time of the period would do, this one keeps the remainder small.
     middle = float(np.interp(0.0, -heights, np.linspace(low, high, last - first + 1)))
-    second, strays = tube.second[first:last].max(axis=0), tube.noise[last]
-    return Passage(tube.motion, centre, gens, low, middle, high, second, strays)
+    second, third = tube.second[first:last].max(axis=0), tube.third[first:last].max(axis=0)
+    return Passage(tube.motion, centre, gens, low, middle, high, second, third, tube.noise[last])

@@ -43,7 +43,8 @@ def depth(guard: Guard, positions: Floats) -> Floats:
     if guard is Guard.CIRCLE:
         circle: Floats = np.hypot(positions[..., 0], positions[..., 1]) - GAP_GUARD
         return circle
-    result: Floats = (positions @ FACES.T - FACE_LIMITS).max(axis=-1)
+    x, y = np.abs(positions[..., 0]), np.abs(positions[..., 1])
+    result: Floats = np.maximum(np.maximum(x, y) - GAP_GUARD, x + y - GAP_DIAGONAL)
     return result
 
 

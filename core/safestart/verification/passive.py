@@ -99,15 +99,18 @@ def make_bins(tube: Tube, clock: Clock, level: int, blocks: Cells) -> Bins:
     move, extra = sweep((low, first), (high, last), bend)
     centre, spread = 0.5 * (low + high), 0.5 * (first + last)
     rounded = SLACK * (np.abs(centre) + np.abs(spread).sum(axis=1) + np.abs(move))
+    # Remainders have no share in the clock: they go into the box, where they cost nothing.
+    known = len(clock.gens)
+    extra = UP * (extra + np.abs(spread[:, known:]).sum(axis=1))
     # The deviation held in the noise grows along the tube, so that its end covers the bin.
     box = UP * (extra + np.maximum(tube.noise[i], tube.noise[j]) + rounded)
-    count, known = len(blocks), first.shape[1]
-    gens = np.concatenate([spread, move[:, None, :], box[:, None, :] * np.eye(4)], axis=1)
+    count = len(blocks)
+    late = np.zeros((count, 1, 4))
+    gens = np.concatenate([spread[:, :known], move[:, None, :], box[:, None, :] * np.eye(4), late], axis=1)
     time_gens = np.zeros((count, known + 6))
-    time_gens[:, : len(clock.gens)] = clock.gens
+    time_gens[:, :known] = clock.gens
     time_gens[:, known] = 0.5 * length
     time_gens[:, -1] = clock.radius
-    gens = np.concatenate([gens, np.zeros((count, 1, 4))], axis=1)
     time: Floats = clock.offset + tube.start + 0.5 * tube.step * (i + j).astype(np.float64)
     return Bins(Motion(Mode.PASSIVE, tube.motion.dynamics), centre, gens, time, time_gens)
 

@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass
 from fractions import Fraction
 
+import numpy as np
+
 from safestart.verification.clock import Clock
 from safestart.verification.crossing import Crossing
 from safestart.verification.entry import Entry, find_entry
@@ -44,6 +46,11 @@ class Reach:
     far: Tube
     entry: Entry
     branches: tuple[Branch, ...]
+
+    @property
+    def clock(self) -> Clock:
+        """Abort time of a state of mode 1: its own time."""
+        return Clock(0.0, np.zeros(self.far.gens.shape[1]), 0.0)
 
 
 def reach(question: Question) -> Reach:

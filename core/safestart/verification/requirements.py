@@ -24,8 +24,10 @@ from safestart.verification.reach import Branch, Reach
 from safestart.verification.rounding import SLACK, UP
 from safestart.verification.tube import Tube
 
-_SPEED_ROWS, _SPEED_LIMITS = octagon(MAX_SPEED, MAX_SPEED * math.sqrt(2.0))
-_SPEED_STATE_ROWS = np.hstack([np.zeros((8, 2)), _SPEED_ROWS]) * (MAX_SPEED / _SPEED_LIMITS)[:, None]
+SPEED_FACES, SPEED_LIMITS = octagon(MAX_SPEED, MAX_SPEED * math.sqrt(2.0))
+"""Velocity octagon of paper 003 around the disc: rows (8, 2) on the velocity, limits (8,) in m/min."""
+
+_SPEED_STATE_ROWS = np.hstack([np.zeros((8, 2)), SPEED_FACES]) * (MAX_SPEED / SPEED_LIMITS)[:, None]
 _CONE = np.array([[LOS_SLOPE, 1.0, 0.0, 0.0], [LOS_SLOPE, -1.0, 0.0, 0.0]])
 
 

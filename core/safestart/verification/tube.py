@@ -16,9 +16,9 @@ from fractions import Fraction
 import numpy as np
 
 from safestart.scenario import Floats
-from safestart.verification import interpolation
+from safestart.verification import interpolation, tube_kernel
 from safestart.verification.flow import flow_table, growth
-from safestart.verification.model import Motion
+from safestart.verification.model import Motion, matrix
 from safestart.verification.nonlinear import deviation, influence, is_nonlinear
 from safestart.verification.rounding import SLACK, UP
 
@@ -38,6 +38,7 @@ class Tube:
     gens: Floats
     noise: Floats
     second: Floats
+    third: Floats
 
     @property
     def steps(self) -> int:
@@ -59,6 +60,7 @@ class Tube:
             gens=self.gens[nodes],
             noise=self.noise[nodes],
             second=self.second[:steps],
+            third=self.third[:steps],
         )
 
     def time(self, node: int) -> float:
@@ -66,13 +68,28 @@ class Tube:
         return self.start + node * self.step
 
     def upper(self, rows: Floats) -> Floats:
-        """Upper bounds (n, r) of ``rows`` (r, 4) times the state, over each segment; rounded outwards."""
-        size = np.abs(self.centre) + np.abs(self.gens).sum(axis=1)
-        noise = (self.noise + SLACK * size) @ np.abs(rows.T)
-        node = self.centre @ rows.T + np.abs(self.gens @ rows.T).sum(axis=1)
-        between = np.maximum(noise[:-1], noise[1:]) + UP * (self.bend @ np.abs(rows.T))
-        result: Floats = np.maximum(node[:-1], node[1:]) + UP * between
-        return result
+        """Upper bounds (n, r) of ``rows`` (r, 4) times the state, over each segment; rounded outwards.
+
+        The greater of both nodes and ``bend``; where that is more than a hair of the width, a closer bound on the
+        excess: a value that only rises or only falls is greatest at a node; a convex one stays below its chord; and one
+        that leaves a node at a rate of at most p and is concave by c at least gains at most p^2 / 2c. Rates and
+        curvatures of a row r are rows themselves, r A and r A^2; ``third`` says how far they stray between nodes.
+        """
+        a = matrix(self.motion)
+        once = np.abs(rows) @ np.abs(a)
+        return tube_kernel.upper(
+            np.ascontiguousarray(rows),
+            np.stack([rows @ a, rows @ a @ a]),
+            np.stack([once, once @ np.abs(a)]),
+            self.centre,
+            self.gens,
+            self.noise,
+            self.bend,
+            self.third,
+            self.step,
+            _NOTABLE,
+            SLACK,
+        )
 
     def node_upper(self, rows: Floats, node: int) -> Floats:
         """Upper bounds (r,) of ``rows`` times the state at one node."""
@@ -89,6 +106,9 @@ class Tube:
 
 
 _PLACES = np.eye(2, 4)
+
+_NOTABLE = 1e-2
+"""Share of the width of a set from which on the chord's error is looked at more closely."""
 
 
 def propagate(
@@ -107,9 +127,14 @@ def propagate(
     table = flow_table(motion, start, step, steps)
     size = np.abs(centre) + np.abs(gens).sum(axis=0)
     bounds = growth(motion, step)
-    speed = np.abs(table.psi @ centre) + np.abs(np.matmul(gens, table.psi.transpose(0, 2, 1))).sum(axis=1)
-    speed += SLACK * (np.abs(table.psi) @ size)
-    second = UP * (speed[:-1] @ bounds.T)
+
+    def fastest(rate: Floats, terms: Floats) -> Floats:
+        """Bound (n, 4) on |``rate`` (n+1, 4, 4) times the state at the start| between the nodes."""
+        at = np.abs(rate @ centre) + np.abs(np.matmul(gens, rate.transpose(0, 2, 1))).sum(axis=1)
+        between: Floats = UP * ((at + SLACK * (terms @ size))[:-1] @ bounds.T)
+        return between
+
+    a = matrix(motion)
     tube = Tube(
         motion,
         float(start),
@@ -117,7 +142,8 @@ def propagate(
         table.phi @ centre,
         np.matmul(gens, table.phi.transpose(0, 2, 1)),
         SLACK * (np.abs(table.phi) @ size),
-        second,
+        fastest(table.psi, np.abs(table.psi)),
+        fastest(a @ table.psi, np.abs(a) @ np.abs(table.psi)),
     )
     if not is_nonlinear(motion):
         return tube

@@ -86,7 +86,7 @@ def prove_separation(question: Question, tubes: Reach, context: Context | None =
 
 def drift_sources(tubes: Reach) -> list[tuple[Tube, Clock, int]]:
     """Tubes that passive starts come from, with the clock of their abort times and the level of the coarsest bins."""
-    sources = [(tubes.far, Clock(0.0, np.zeros(0), 0.0), FAR_LEVEL)]
+    sources = [(tubes.far, tubes.clock, FAR_LEVEL)]
     for branch in tubes.branches:
         sources += [(tube, branch.clock, NEAR_LEVEL) for tube in branch.tubes]
     return sources

@@ -2,24 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
-from matplotlib.patches import Circle, Polygon, Rectangle
+from matplotlib.lines import Line2D
+from matplotlib.patches import Circle, Patch, Polygon, Rectangle
 
 from safestart.processes.base import Artifact
 from safestart.processes.passive_safety.outlines import outlines
 from safestart.processes.plotting import figure, png
 from safestart.progress import Context
 from safestart.scenario import Floats
+from safestart.verification.flights import simulate
 from safestart.verification.guard import FACE_LIMITS, FACES, GAP_GUARD, Guard
 from safestart.verification.model import LOS_SLOPE, MAX_SPEED, MAX_THRUST, NEWTON, gain
 from safestart.verification.passive import cell_positions, flow_steps, make_bins, prove_drift
 from safestart.verification.reach import Reach
+from safestart.verification.requirements import SPEED_FACES, SPEED_LIMITS
 from safestart.verification.tube import Tube
 from safestart.verification.verify import Verification, drift_sources
 
-_FAR, _NEAR, _DRIFT, _BAD = "#0072B2", "#009E73", "#CC79A7", "#D55E00"
+_FAR, _NEAR, _DRIFT, _BAD, _CONE = "#0072B2", "#009E73", "#CC79A7", "#D55E00", "#F0E442"
 
 
 def powered_picture(answer: Verification) -> Artifact:
@@ -28,25 +34,32 @@ def powered_picture(answer: Verification) -> Artifact:
     drawing = figure(10.4, 8.0)
     (whole, close), (speed, force) = drawing.subplots(2, 2)
     for axes in (whole, close):
-        _frame(axes, answer.question.system.guard)
+        frame(axes, answer.question.system.guard)
         _fill(axes, _nodes(reach.far, slice(0, 2)), _FAR)
         for branch in reach.branches:
             for tube in branch.tubes:
                 _fill(axes, _nodes(tube, slice(0, 2)), _NEAR)
     whole.autoscale_view()
     whole.set_title("positions", fontsize=10)
+    whole.legend(handles=_POWERED_LEGEND, fontsize=8, loc="best")
     close.set_xlim(-115, 15)
     close.set_ylim(-75, 75)
-    close.set_title("positions in mode 2; guard, line-of-sight cone", fontsize=10)
+    close.set_title("positions near the target", fontsize=10)
     for branch in reach.branches:
         for tube in branch.tubes:
             _fill(speed, _nodes(tube, slice(2, 4)) / 60.0, _NEAR)
-    speed.add_patch(Circle((0, 0), MAX_SPEED / 60.0, fill=False, color="#333333", linestyle=":"))
+    limit = MAX_SPEED / 60.0
+    speed.add_patch(Circle((0, 0), limit, fill=False, color="#333333", linestyle=":", label="true disc"))
+    octagon = _ring(SPEED_FACES, SPEED_LIMITS / 60.0)
+    speed.add_patch(
+        Polygon(octagon, fill=False, edgecolor="#666666", linestyle="--", label="published octagon")
+    )
+    speed.legend(fontsize=8, loc="lower left")
     speed.autoscale_view()
     speed.set_aspect("equal")
     speed.set_xlabel("vx [m/s]")
     speed.set_ylabel("vy [m/s]")
-    speed.set_title("velocities in mode 2; limit 0.05 m/s", fontsize=10)
+    speed.set_title("velocities in mode 2; limits of 0.05 m/s", fontsize=10)
     _thrust(force, reach)
     system = answer.question.system
     gains = "published" if system.design is None else "own"
@@ -63,26 +76,37 @@ def drift_picture(answer: Verification) -> Artifact:
     drawing = figure(10.4, 4.6)
     whole, close = drawing.subplots(1, 2)
     cells, middles = _drifts(answer)
+    box = question.box
+    _guard(whole, question.system.guard)
     for axes in (whole, close):
-        _frame(axes, answer.question.system.guard)
+        _name(axes)
         for polygons, colour in cells:
             _fill(axes, polygons, colour, 0.35)
-        box = question.box
-        axes.add_patch(Rectangle((-box, -box), 2 * box, 2 * box, color="#000000", zorder=5))
+        axes.add_patch(
+            Rectangle((-box, -box), 2 * box, 2 * box, fill=False, edgecolor="#000000", lw=1.5, zorder=5)
+        )
+    whole.plot(0.0, 0.0, marker="s", color="#333333", markersize=3, zorder=6)
+    handles = list(_DRIFT_LEGEND)
+    example = answer.findings["separation"].counter_example
+    if example is not None:
+        handles += _contact(close, answer, example)
+    close.legend(handles=handles, fontsize=8, loc="upper right")
     # The first minutes of mode 1 make wide cells: the picture shows where the middles go.
-    reach_x, reach_y = 1.1 * np.abs(middles).max(axis=0) + 10.0
+    reach_x, reach_y = 1.1 * np.abs(middles).max(axis=0) + 10.0 * box
     whole.set_xlim(-reach_x, reach_x)
     whole.set_ylim(-reach_y, reach_y)
     whole.set_aspect("auto")
-    close.set_xlim(-20 * question.box, 20 * question.box)
-    close.set_ylim(-20 * question.box, 20 * question.box)
+    close.set_xlim(-20 * box, 20 * box)
+    close.set_ylim(-20 * box, 20 * box)
+    close.set_aspect("equal")
     assert question.window is not None
     first, last = question.window
-    whole.set_title("drifts", fontsize=10)
+    when = f"at {first:g} min" if first == last else f"between {first:g} and {last:g} min"
+    whole.set_title("all drifts", fontsize=10)
     verdict = answer.findings["separation"].verdict.value
-    close.set_title(f"near the target's box of half-width {question.box:g} m: {verdict}", fontsize=10)
+    close.set_title(f"near the target, half-width {box:g} m: {verdict}", fontsize=10)
     drawing.suptitle(
-        f"Aborts in [{first:g}, {last:g}] min, {question.horizon:g} min in all: cells of the proof (orange: open)",
+        f"Where the chaser drifts after an abort {when}, until {question.horizon:g} min",
         fontsize=11,
     )
     return png("after_abort.png", drawing)
@@ -139,46 +163,82 @@ def _drifts(answer: Verification) -> tuple[list[tuple[Floats, str]], Floats]:
     return cells, np.concatenate(middles)
 
 
+def _contact(axes: Axes, answer: Verification, example: Mapping[str, Any]) -> list[Line2D]:
+    """The drift of a counter-example, from its abort to its contact, and its handles for the legend."""
+    times = np.linspace(example["abort_min"], example["contact_min"], 200)
+    start, abort = np.array([example["start"]]), np.array([example["abort_min"]])
+    states, _ = simulate(answer.question.system, start, abort, times[None, :])
+    path = axes.plot(*states[0, :, :2].T, color=_BAD, lw=1.5, zorder=7, label="counter-example")
+    return path + axes.plot(
+        *states[0, -1, :2], "x", color=_BAD, markersize=9, zorder=8, ls="", label="contact"
+    )
+
+
 def _thrust(axes: Axes, reach: Reach) -> None:
-    offset = reach.branches[0].crossing.time if reach.branches else 0.0
+    """Over the time since the mode began: all that is to be seen is in the first minutes of each."""
     for name, tube in _named(reach):
         near = name != "mode1"
-        times = (offset if near else 0.0) + tube.start + tube.step * np.arange(tube.steps)
+        times = tube.start + tube.step * np.arange(tube.steps)
         rows = gain(tube.motion)
-        for axis, style in ((0, "-"), (1, "--")):
+        for axis, alpha in ((0, 0.6), (1, 0.3)):
             upper = tube.upper(-rows)[:, axis] / NEWTON
             lower = -tube.upper(rows)[:, axis] / NEWTON
             colour = _NEAR if near else _FAR
-            axes.fill_between(times, lower, upper, color=colour, alpha=0.35, linewidth=0.8, linestyle=style)
+            first = tube.start == 0.0 and name in ("mode1", "mode2_0_part0")
+            label = f"mode {1 + near}, F{'xy'[axis]}" if first else None
+            axes.fill_between(
+                times, lower, upper, color=colour, alpha=alpha, linewidth=0.8, label=label, step="post"
+            )
     for limit in (-MAX_THRUST, MAX_THRUST):
         axes.axhline(limit / NEWTON, color="#333333", linestyle=":")
-    axes.set_xlabel("time [min], mode 2 from the nominal crossing")
+    axes.set_xscale("symlog", linthresh=0.1)
+    axes.set_xlim(0.0, None)
+    axes.legend(fontsize=8, loc="lower right")
+    axes.set_xlabel("time since the mode began [min]")
     axes.set_ylabel("thrust per axis [N]")
-    axes.set_title("thrust (Fx, Fy); limit 10 N", fontsize=10)
+    axes.set_title("thrust; limit 10 N", fontsize=10)
 
 
-def _frame(axes: Axes, guard: Guard) -> None:
-    if guard is Guard.CIRCLE:
-        axes.add_patch(Circle((0, 0), GAP_GUARD, fill=False, edgecolor="#666666", linestyle="--"))
-    else:
-        corners = [
-            np.linalg.solve(FACES[[i, j]], FACE_LIMITS[[i, j]])
-            for i, j in zip(_RING, _RING[1:] + _RING[:1], strict=True)
-        ]
-        axes.add_patch(Polygon(corners, fill=False, edgecolor="#666666", linestyle="--"))
-    axes.add_patch(
-        Polygon(
-            [(0, 0), (-100, -100 * LOS_SLOPE), (-100, 100 * LOS_SLOPE)], color="#F0E442", alpha=0.35, zorder=0
-        )
-    )
+def frame(axes: Axes, guard: Guard) -> None:
+    """Guard, line-of-sight cone, target and the names of the axes."""
+    _guard(axes, guard)
+    cone = [(0, 0), (-100, -100 * LOS_SLOPE), (-100, 100 * LOS_SLOPE)]
+    axes.add_patch(Polygon(cone, color=_CONE, alpha=0.35, zorder=0))
     axes.plot(0.0, 0.0, marker="s", color="#333333", markersize=3, zorder=6)
     axes.set_aspect("equal")
+    _name(axes)
+
+
+def _name(axes: Axes) -> None:
     axes.set_xlabel("x radial [m]")
     axes.set_ylabel("y along-track [m]")
 
 
-_RING = [0, 4, 2, 7, 1, 5, 3, 6]
-"""Faces of the guard in the order of their normals."""
+def _guard(axes: Axes, guard: Guard) -> None:
+    shape: Patch = Circle((0, 0), GAP_GUARD) if guard is Guard.CIRCLE else Polygon(_ring(FACES, FACE_LIMITS))
+    shape.set(fill=False, edgecolor="#666666", linestyle="--")
+    axes.add_patch(shape)
+
+
+def _ring(faces: Floats, limits: Floats) -> Floats:
+    """Corners (8, 2) of an octagon in order."""
+    order = np.array([0, 4, 2, 7, 1, 5, 3, 6])
+    pairs = np.stack([order, np.roll(order, -1)], axis=1)
+    corners: Floats = np.linalg.solve(faces[pairs], limits[pairs][..., None])[..., 0]
+    return corners
+
+
+_POWERED_LEGEND = (
+    Patch(color=_FAR, alpha=0.6, label="mode 1"),
+    Patch(color=_NEAR, alpha=0.6, label="mode 2"),
+    Patch(color=_CONE, alpha=0.35, label="line-of-sight cone"),
+    Line2D([], [], color="#666666", ls="--", label="guard: mode 2 begins"),
+)
+_DRIFT_LEGEND = (
+    Patch(color=_DRIFT, alpha=0.6, label="proved apart"),
+    Patch(color=_BAD, alpha=0.6, label="not proved"),
+    Line2D([], [], color="#000000", label="target's box"),
+)
 
 
 def _fill(axes: Axes, polygons: Floats, colour: str, alpha: float = 0.6) -> None:

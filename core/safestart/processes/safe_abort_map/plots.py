@@ -9,14 +9,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import BoundaryNorm
-from matplotlib.patches import Circle, Polygon
 
 from safestart.processes.base import Artifact
+from safestart.processes.passive_safety.plots import frame
 from safestart.processes.plotting import figure, png
 from safestart.processes.safe_abort_map.spec import SafeAbortMapInputs
 from safestart.scenario import Floats
-from safestart.verification.guard import GAP_GUARD
-from safestart.verification.model import LOS_SLOPE
+from safestart.verification.guard import Guard
 
 _STEPS = 12
 
@@ -49,18 +48,17 @@ def map_picture(inputs: SafeAbortMapInputs, document: dict[str, Any]) -> Artifac
         shown.set_edgecolor("face")
         shown.set_linewidth(0.3)
         place.add_collection(shown, autolim=True)
-        _target(place)
+        frame(place, Guard(inputs.guard))
         place.autoscale_view()
-        place.set_aspect("equal")
-        place.set_xlabel("x radial [m]")
         place.set_title(title, fontsize=10)
-    axes[0].set_ylabel("y along-track [m]")
+    axes[1].set_ylabel("")
     bar = drawing.colorbar(shown, ax=list(axes), shrink=0.85, ticks=levels[::2])
     bar.set_label("every abort until then is proved safe [min]")
     what = f"{inputs.model} dynamics, {inputs.gains} gains, guard {inputs.guard}"
+    grey = "; grey: no start" if np.isnan(values["safe_abort_until_min"]).any() else ""
     drawing.suptitle(
         f"Safe-abort map, box of half-width {inputs.box_half_width_m:g} m, each start +-{inputs.half_width_m:g} m "
-        f"({what}; grey: no start)",
+        f"({what}{grey})",
         fontsize=11,
     )
     return png("map.png", drawing)
@@ -94,10 +92,3 @@ def _cells(inputs: SafeAbortMapInputs) -> Floats:
     out = radius + np.array([-deep, -deep, deep, deep])
     result: Floats = np.stack([out * np.cos(around), out * np.sin(around)], axis=-1)
     return result
-
-
-def _target(axes: Axes) -> None:
-    axes.add_patch(Circle((0, 0), GAP_GUARD, fill=False, edgecolor="#666666", linestyle="--"))
-    cone = [(0, 0), (-GAP_GUARD, -GAP_GUARD * LOS_SLOPE), (-GAP_GUARD, GAP_GUARD * LOS_SLOPE)]
-    axes.add_patch(Polygon(cone, color="#F0E442", alpha=0.5))
-    axes.plot(0.0, 0.0, marker="s", color="#333333", markersize=3)
