@@ -40,7 +40,7 @@ def study(count: int) -> int:
     inside = certified_unsafe(sight, count, SEED + 1, Context())
     failed = 0
     for kind, starts, others in (("outside", outside, ADVERSARIES), ("inside", inside, ("worst", "mirror"))):
-        for name in (*PILOTS[:2], "supervisor", *PILOTS[2:]):
+        for name in (*PILOTS, "supervisor"):
             for other in others:
                 begin = time.process_time()
                 opponent = adversary(other, GAME, HORIZON_S, count, SEED + 2, 10)

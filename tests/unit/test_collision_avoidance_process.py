@@ -80,14 +80,17 @@ def test_the_papers_players_are_drawn_and_not_flown() -> None:
 
 
 def test_too_few_starts_are_a_note_and_no_verdict() -> None:
-    """With equal players hardly a state is threatened and safe within so narrow a band."""
+    """Hardly a start lies within so narrow a band; and a slice beyond the box is not drawn. Disks, this time."""
     chosen = QUICK | {
         "band_m": 1e-6,
         "supervised": 0,
+        "shape": "disk",
+        "slices_m_s": [[9, 0]],
         "grid": {"nodes_position": 9, "nodes_speed": 7, "kept": 2},
     }
     outputs = execute("collision-avoidance", chosen).document["outputs"]
     assert any("starts near the boundary" in note for note in outputs["notes"])
+    assert any("not drawn" in note for note in outputs["notes"])
     verdicts = [row["verdict"] for row in outputs["requirements"]]
     assert verdicts == ["UNDECIDED", "UNDECIDED", "HELD"]
 

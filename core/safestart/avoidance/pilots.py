@@ -62,11 +62,15 @@ def climb(game: Game, moment: Moment, fuel_price: float = 0.0) -> Floats:
 
 
 def evade(game: Game, moment: Moment) -> Floats:
-    """Thrust (N, m) along the best constant sum that is proved to keep the distance; the climb where none is."""
-    push = climb(game, moment)
-    if game.realisable is None or moment.to_go <= 0.0:
+    """Thrust (N, m) for the best constant sum that is proved to keep the distance; the climb where none is."""
+    push, left = climb(game, moment), game.realisable
+    if left is None or moment.to_go <= 0.0:
         return push
+    # What is asked of the sum, stretched to Player 1's own set: whatever d takes, the sum goes at least that way.
+    stretch = np.ones(game.channels)
+    for own, part in zip(game.control.parts, left.parts, strict=True):
+        stretch[part.begin : part.end] = own.radius / part.radius if part.radius > 0.0 else 0.0
     found = witness(game, moment.states, moment.to_go, effort=0)
     proved = found.margin_m > 0.0
-    push[proved] = game.control.extreme(found.inputs[proved, 0])
+    push[proved] = stretch * found.inputs[proved, 0]
     return push

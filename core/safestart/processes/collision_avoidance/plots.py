@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch, Rectangle
 
@@ -25,7 +26,7 @@ from safestart.processes.plotting import figure, png
 from safestart.scenario import Floats
 
 LOST, SAFE, OPEN, LINE = "#D55E00", "#0072B2", "#F0E442", "#333333"
-_POINTS = 101
+_POINTS = 141
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +67,9 @@ def unsafe_picture(inputs: CollisionAvoidanceInputs, drawn: Sequence[Slice], tub
         x = one.axis
         if one.above is not None and one.below is not None:
             state = np.where(one.above <= 0.0, 2.0, np.where(one.below > 0.0, 0.0, 1.0))
-            axes.contourf(x, x, state.T, levels=[0.5, 1.5, 2.5], colors=[OPEN, LOST], alpha=0.55)
+            # Cells, not contours: between lost and safe there is no third kind to draw.
+            shades = ListedColormap(["white", OPEN, LOST])
+            axes.pcolormesh(x, x, state.T, cmap=shades, vmin=0.0, vmax=2.0, alpha=0.55, shading="nearest")
         if np.isfinite(one.raw).all() and one.raw.min() < 0.0 < one.raw.max():
             axes.contour(x, x, one.raw.T, levels=[0.0], colors=LINE, linewidths=1.2)
         axes.add_patch(Circle((0, 0), inputs.keep_out_m, fill=False, edgecolor=LINE, linestyle="--"))

@@ -89,7 +89,10 @@ def run(inputs: CollisionAvoidanceInputs, context: Context) -> ProcessOutput:
         flown = encounters(inputs, Sight(game, tube), slot, context.part(0.5, 0.4, 1.0, "encounters"))
     context.step(0.9, 1.0, "pictures")
     drawn = slices(inputs, tube)
-    artifacts = [unsafe_picture(inputs, drawn, tube)]
+    artifacts = [unsafe_picture(inputs, drawn, tube)] if drawn else []
+    missing = len(inputs.slices_m_s) - len(drawn)
+    if missing:
+        flown.notes.append(f"{missing} of the slices: faster than the grid's box, not drawn.")
     if flown.rows:
         artifacts += [matrix_picture(flown.rows), flights_picture(inputs, flown)]
     artifacts += [
