@@ -63,7 +63,9 @@ class Worker:
         self._owner = owner
         self._capacity = 0
         self._last_beat = 0.0
+        self._likely = False  # the latest claim found a job, so the next one probably does
         self._herd: dict[asyncio.Task[None], Shepherd] = {}
+        self._freed = asyncio.Event()
         cluster.listen(self._on_report)
 
     async def run(self, stopping: asyncio.Event) -> None:
@@ -82,7 +84,10 @@ class Worker:
             if self._cluster.lost:
                 log.error("%s", self._cluster.lost)
                 break
-            await asyncio.wait({stop, *self._herd}, timeout=pause, return_when=asyncio.FIRST_COMPLETED)
+            freed = asyncio.ensure_future(self._freed.wait())
+            await asyncio.wait({stop, freed}, timeout=pause, return_when=asyncio.FIRST_COMPLETED)
+            freed.cancel()
+            self._freed.clear()
             self._collect()
         stopping.set()
         stop.cancel()
@@ -90,16 +95,27 @@ class Worker:
             await asyncio.wait(self._herd)
             self._collect()
 
+    @property
+    def _busy(self) -> int:
+        """Jobs that compute. While the end of one is written, its place is free for the next."""
+        return sum(shepherd.computes for shepherd in self._herd.values())
+
     async def _claim(self, stopping: asyncio.Event) -> None:
-        while len(self._herd) < self._capacity and not stopping.is_set():
-            options = self._options
+        options = self._options
+        # No more ends than places wait to be written, for a database that takes claims and no results.
+        while (
+            self._busy < self._capacity and len(self._herd) < 2 * self._capacity and not stopping.is_set()
+        ):
             claim = await asyncio.to_thread(
-                self._jobs.claim, self._owner, options.lease_s, options.max_attempts
+                self._jobs.claim, self._owner, options.lease_s, options.max_attempts, likely=self._likely
             )
+            self._likely = claim is not None
             if claim is None:
                 return
-            shepherd = Shepherd(claim, self._jobs, self._cluster, options.rules)
-            self._herd[asyncio.create_task(shepherd.run(stopping))] = shepherd
+            shepherd = Shepherd(claim, self._jobs, self._cluster, options.rules, self._freed.set)
+            task = asyncio.create_task(shepherd.run(stopping))
+            task.add_done_callback(lambda _: self._freed.set())
+            self._herd[task] = shepherd
 
     async def _beat(self) -> None:
         """Say that this worker is alive, and see how many jobs the cluster can run."""
@@ -110,7 +126,7 @@ class Worker:
         # A process that is being replaced is back before the queue notices: the embedded size is fixed.
         wanted = self._options.processes
         self._capacity = wanted if self._cluster.embedded else min(threads, wanted or threads)
-        await asyncio.to_thread(self._jobs.heartbeat, self._owner, self._capacity, len(self._herd))
+        await asyncio.to_thread(self._jobs.heartbeat, self._owner, self._capacity, self._busy)
         self._last_beat = now
 
     def _collect(self) -> None:

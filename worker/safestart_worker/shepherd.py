@@ -53,7 +53,14 @@ class Rules:
 class Shepherd:
     """Watches one job: reports, renewals, time limit, dismissal, end."""
 
-    def __init__(self, claim: Claim, jobs: JobRepository, cluster: Cluster, rules: Rules) -> None:
+    def __init__(
+        self,
+        claim: Claim,
+        jobs: JobRepository,
+        cluster: Cluster,
+        rules: Rules,
+        on_over: Callable[[], None] = lambda: None,
+    ) -> None:
         self.claim = claim
         self.key = f"job-{claim.job_id}-{claim.token}"
         self._jobs = jobs
@@ -63,6 +70,9 @@ class Shepherd:
         self._signs = Signs(cluster, rules.silence_s)
         self._work: Work | None = None
         self._shown = False
+        self._on_over = on_over
+        self.computes = True
+        """False once its computation is over, while its end is written."""
 
     def on_report(self, data: dict[str, Any]) -> None:
         """Take in a report of one of its tasks."""
@@ -77,6 +87,7 @@ class Shepherd:
         outcome = asyncio.ensure_future(work.run())
         # A task that was ended on purpose ends with an error that nobody else looks at.
         outcome.add_done_callback(lambda task: task.cancelled() or task.exception())
+        outcome.add_done_callback(self._over)
         try:
             await self._watch(work, outcome, stopping)
         except LeaseLost as lost:
@@ -84,6 +95,10 @@ class Shepherd:
             await work.stop(outcome)
         finally:
             work.forget()
+
+    def _over(self, _: asyncio.Task[Outcome]) -> None:
+        self.computes = False
+        self._on_over()
 
     def _begin(self) -> Work:
         try:

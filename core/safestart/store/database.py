@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
+from threading import Lock
 
 from sqlalchemy import Connection, Engine, create_engine, text
 from sqlalchemy.engine import URL, make_url
@@ -40,6 +41,7 @@ class Database:
         prepare(self._engine)
         # Same pool; the option makes SQLite take the write lock at the start of the transaction.
         self._writer = self._engine.execution_options(safestart_write=True)
+        self._writing = Lock()
 
     @contextmanager
     def session(self, *, write: bool = False) -> Iterator[Session]:
@@ -48,6 +50,7 @@ class Database:
         A session that changes anything says ``write=True``.
         """
         with (
+            self._turn() if write and self.one_writer else nullcontext(),
             self._translated(),
             Session(self._writer if write else self._engine, expire_on_commit=False) as session,
             session.begin(),
@@ -87,6 +90,16 @@ class Database:
     def close(self) -> None:
         """Close every pooled connection."""
         self._engine.dispose()
+
+    @contextmanager
+    def _turn(self) -> Iterator[None]:
+        """Threads that write to SQLite wait here in turn: there they would sleep and look again, ever more rarely."""
+        mine = self._writing.acquire(timeout=BUSY_TIMEOUT_S)  # then SQLite itself says that it is busy
+        try:
+            yield
+        finally:
+            if mine:
+                self._writing.release()
 
     @contextmanager
     def _translated(self) -> Iterator[None]:
