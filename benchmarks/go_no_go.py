@@ -50,8 +50,8 @@ def measure(seconds: float = 2.0, repeats: int = 5) -> dict[str, Any]:
         keyed_url = f"sqlite:///{Path(folder) / 'keyed.sqlite3'}"
         key = _key(keyed_url)
         with (
-            _server("safestart_service.app:create_app", "/healthz", SAFESTART_DATABASE_URL=url) as ours,
-            _server(
+            server("safestart_service.app:create_app", "/healthz", SAFESTART_DATABASE_URL=url) as ours,
+            server(
                 "safestart_service.app:create_app",
                 "/healthz",
                 SAFESTART_DATABASE_URL=keyed_url,
@@ -60,7 +60,7 @@ def measure(seconds: float = 2.0, repeats: int = 5) -> dict[str, Any]:
         ):
             with urllib.request.urlopen(f"http://127.0.0.1:{ours}{QUESTION}") as answer:
                 document = json.loads(answer.read())
-            peer = _server(
+            peer = server(
                 "benchmarks.peers.constant_service:app", "/encoded", CONSTANT_DOCUMENT=json.dumps(document)
             )
             with peer as bare:
@@ -114,7 +114,7 @@ def _compare(ours: int, bare: int, keyed: int, key: str, seconds: float, repeats
 
 
 @contextmanager
-def _server(target: str, probe: str, **environment: str) -> Iterator[int]:
+def server(target: str, probe: str, **environment: str) -> Iterator[int]:
     """A uvicorn process on a free loopback port that answers ``probe``; ended on leaving."""
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))

@@ -1,4 +1,8 @@
-"""A closed-loop HTTP load of keep-alive connections, in process: each sends its next request when it has its answer."""
+"""An HTTP load of keep-alive connections, in process: each sends its next request when it has its answer, or at a pace.
+
+At a pace the time of an answer counts from when its request was due, also where the answer before it came later than
+that: a slow server cannot hide behind clients that wait for it.
+"""
 
 from __future__ import annotations
 
@@ -9,14 +13,18 @@ from time import perf_counter
 from typing import cast
 
 PATIENCE_S = 20.0
+# Paced connections are made before the first of them has to ask.
+CONNECTING_S = 1.0
 
 
 class _Connection(asyncio.Protocol):
     """Counts complete answers by their Content-Length; anything but 200 is an error."""
 
-    def __init__(self, requests: Iterator[bytes], stop_at: float) -> None:
+    def __init__(self, requests: Iterator[bytes], due: float, stop_at: float, gap_s: float) -> None:
         self.requests = requests
+        self.due = due
         self.stop_at = stop_at
+        self.gap_s = gap_s
         self.times: list[float] = []
         self.error: Exception | None = None
         self.done: asyncio.Future[None] = asyncio.get_running_loop().create_future()
@@ -24,10 +32,16 @@ class _Connection(asyncio.Protocol):
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         self._transport = cast(asyncio.Transport, transport)  # uvloop's is none of asyncio's classes
-        self._ask()
+        self._ask_when_due()
+
+    def _ask_when_due(self) -> None:
+        wait = self.due - perf_counter()
+        if wait > 0.0:
+            asyncio.get_running_loop().call_later(wait, self._ask)
+        else:
+            self._ask()
 
     def _ask(self) -> None:
-        self._asked = perf_counter()
         self._transport.write(next(self.requests))
 
     def data_received(self, data: bytes) -> None:
@@ -45,9 +59,10 @@ class _Connection(asyncio.Protocol):
             return
         self._buffer = b""
         now = perf_counter()
-        self.times.append(now - self._asked)
-        if now < self.stop_at:
-            self._ask()
+        self.times.append(now - self.due)
+        self.due = self.due + self.gap_s if self.gap_s else now
+        if self.due < self.stop_at:
+            self._ask_when_due()
         else:
             self._transport.close()
 
@@ -58,16 +73,20 @@ class _Connection(asyncio.Protocol):
 
 
 async def _load(
-    port: int, paths: Sequence[str], seconds: float, connections: int, more: str
+    port: int, paths: Sequence[str], seconds: float, connections: int, more: str, per_s: float = 0.0
 ) -> tuple[list[float], float]:
     loop = asyncio.get_running_loop()
     lines = f" HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nAccept: application/json\r\n{more}\r\n"
     requests = cycle([f"GET {path}{lines}".encode() for path in paths])
-    start = perf_counter()
+    gap_s = connections / per_s if per_s else 0.0
+    start = perf_counter() + (CONNECTING_S if per_s else 0.0)
     made = []
-    for _ in range(connections):
+    for number in range(connections):
+        due = start + gap_s * number / connections
         _, protocol = await loop.create_connection(
-            lambda: _Connection(requests, start + seconds), "127.0.0.1", port
+            lambda due=due: _Connection(requests, due if per_s else perf_counter(), start + seconds, gap_s),  # type: ignore[misc]
+            "127.0.0.1",
+            port,
         )
         made.append(protocol)
     await asyncio.wait_for(asyncio.gather(*(connection.done for connection in made)), seconds + PATIENCE_S)
@@ -87,8 +106,10 @@ def requests_per_second(
     return len(times) / took
 
 
-def latencies(port: int, paths: Sequence[str], seconds: float, connections: int) -> list[float]:
-    """Seconds that each answer took."""
+def latencies(
+    port: int, paths: Sequence[str], seconds: float, connections: int, per_s: float = 0.0
+) -> list[float]:
+    """Seconds that each answer took; ``per_s`` requests in all per second, or (0) each as soon as its client can."""
     import uvloop
 
-    return uvloop.run(_load(port, paths, seconds, connections, ""))[0]
+    return uvloop.run(_load(port, paths, seconds, connections, "", per_s))[0]

@@ -1,9 +1,14 @@
 """The platform under load, by hand: ``python -m benchmarks.queue [--database-url URL] [--only NAME] [--jobs N]``.
 
+Where others use the machine, ``chrt -f 1 python -m benchmarks.queue ...`` (root) measures as if they did not.
+
 pickup    median time from the 201 to ``running`` (target 0.3 s)
 tiny      jobs per second of one worker on jobs that compute nearly nothing (target 50)
 list      95th percentile of GET /jobs with 10 000 waiting jobs (target 50 ms)
-clients   200 clients on GET /go-no-go for 60 s: errors (0), 99th percentile over the unloaded median (target 10)
+clients   200 clients on GET /go-no-go for 60 s, 1 000 requests per second in all: errors (0: one ends the run), 99th
+          percentile over the unloaded median (target 10); beside a bare FastAPI endpoint
+crowd     the same, each client asking again as soon as it has its answer: the last in line waits for all the others, so
+          that 200 is the least ratio that one process can have
 memory    growth of the worker's and the service's memory over --jobs tiny jobs (target 5 % over 20 000)
 """
 
@@ -147,24 +152,37 @@ def list_page(url: str, waiting: int = 10_000, repeats: int = 200) -> dict[str, 
     return {"median_s": median(taken), "p95_s": quantiles(taken, n=20)[-1]}
 
 
-def clients(url: str, number: int = 200, seconds: float = 60.0) -> dict[str, float]:
-    """Clients that each ask again as soon as they have an answer."""
+def clients(url: str, per_s: float = 1000.0, number: int = 200, seconds: float = 60.0) -> dict[str, Any]:
+    """Many clients, ``per_s`` requests per second in all (0: each asks as soon as it can), beside a bare endpoint."""
+    from benchmarks.go_no_go import server
+
+    document = json.dumps({"verdict": "GO"})
+    with (
+        platform(url, worker=False) as (client, _),
+        server("benchmarks.peers.constant_service:app", "/encoded", CONSTANT_DOCUMENT=document) as bare,
+    ):
+        ours = client.base_url.port
+        assert ours is not None
+        return {
+            "service": _crowd(ours, QUESTION, number, seconds, per_s),
+            "bare": _crowd(bare, "/constant", number, seconds, per_s),
+        }
+
+
+def _crowd(port: int, path: str, number: int, seconds: float, per_s: float) -> dict[str, float]:
     from benchmarks.load import latencies
 
-    with platform(url, worker=False) as (client, _):
-        port = client.base_url.port
-        assert port is not None
-        alone = latencies(port, [QUESTION], 2.0, 1)
-        taken = latencies(port, [QUESTION], seconds, number)
-    p99 = quantiles(taken, n=100)[-1]
-    unloaded = median(alone)
+    alone = median(latencies(port, [path], 2.0, 1))
+    taken = latencies(port, [path], seconds, number, per_s)
+    parts = quantiles(taken, n=100)
     return {
         "answers": len(taken),
-        "unloaded_median_s": unloaded,
-        "p99_s": p99,
-        "ratio": p99 / unloaded,
-        # Where the clients share the machine with the service: the time that they stand in line for it.
-        "queueing_s": number * unloaded,
+        "per_s": per_s,
+        "unloaded_median_s": alone,
+        "median_s": parts[49],
+        "p99_s": parts[98],
+        "ratio": parts[98] / alone,
+        "load": os.getloadavg()[0],
     }
 
 
@@ -223,6 +241,7 @@ def main() -> None:
         "tiny": tiny,
         "list": list_page,
         "clients": clients,
+        "crowd": lambda url: clients(url, per_s=0.0),
         "memory": lambda url: memory(url, chosen.jobs),
     }
     for name, run in runs.items():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import ipaddress
 import socket
 from contextlib import suppress
@@ -77,6 +78,9 @@ def _serve(overrides: dict[str, object]) -> None:
             timeout_graceful_shutdown=3,  # event streams never end by themselves
         )
         server = uvicorn.Server(config)
+        # What is there now stays: a full collection would look at all of it again, and every answer waits meanwhile.
+        gc.collect()
+        gc.freeze()
         shown = f"[{chosen.host}]" if ":" in chosen.host else chosen.host
         base = f"http://{shown}:{listener.getsockname()[1]}"
         # The socket listens already: what connects from here on is answered as soon as the loop runs.

@@ -8,7 +8,7 @@ from typing import Any
 
 from safestart.errors import NotFound
 from safestart.processes.registry import PROCESS_IDS, process
-from safestart.store.records import Crew, Job, JobStatus, Wait
+from safestart.store.records import Crew, Job, JobEntry, JobStatus, Wait
 from safestart_service.answers import link
 from safestart_service.errors import NoSuchJob
 from safestart_service.state import Services
@@ -29,7 +29,7 @@ def known_job(services: Services, job_id: str) -> Job:
         raise NoSuchJob(error.detail, field="jobID", required="the id of a job", received=job_id) from None
 
 
-def status_infos(services: Services, jobs: Sequence[Job], base: str) -> list[dict[str, Any]]:
+def status_infos(services: Services, jobs: Sequence[JobEntry], base: str) -> list[dict[str, Any]]:
     """statusInfo of each job of a list, with its place in the queue and without the estimates of waiting ones."""
     places = services.jobs.positions(job.id for job in jobs if job.status is JobStatus.ACCEPTED)
     crew = services.jobs.crew()
@@ -43,7 +43,7 @@ def status_info(services: Services, job: Job, base: str) -> dict[str, Any]:
     return _status_info(job, base, wait, services.jobs.crew())
 
 
-def _status_info(job: Job, base: str, wait: Wait | None, crew: Crew) -> dict[str, Any]:
+def _status_info(job: JobEntry, base: str, wait: Wait | None, crew: Crew) -> dict[str, Any]:
     return {
         "jobID": job.id,
         "processID": job.process_id,
@@ -97,7 +97,7 @@ def _many(number: int, what: str) -> str:
     return f"{number} {what}{'' if number == 1 else 's'}"
 
 
-def _links(job: Job, base: str) -> list[dict[str, str]]:
+def _links(job: JobEntry, base: str) -> list[dict[str, str]]:
     here = f"{base}/jobs/{job.id}"
     links = [
         link(here, "self", "this job"),

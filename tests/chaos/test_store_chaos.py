@@ -141,7 +141,7 @@ def test_the_disk_is_full(tmp_path: Path) -> None:
             assert sum(herd.jobs.counts().values()) == accepted
             ballast.unlink()
             for job in herd.jobs.list(limit=1000).jobs:
-                if "text" in job.inputs:  # what happened to fit, by then claimed or not
+                if "text" in herd.jobs.get(job.id).inputs:  # what happened to fit, by then claimed or not
                     herd.ids = [known for known in herd.ids if known != job.id]
                     herd.insist(lambda job=job: herd.jobs.dismiss(job.id))
             until(lambda: all(herd.jobs.get(job).status.ended for job in herd.ids), "the end of every job")

@@ -103,9 +103,7 @@ class Worker:
     async def _claim(self, stopping: asyncio.Event) -> None:
         options = self._options
         # No more ends than places wait to be written, for a database that takes claims and no results.
-        while (
-            self._busy < self._capacity and len(self._herd) < 2 * self._capacity and not stopping.is_set()
-        ):
+        while self._busy < self._capacity and len(self._herd) < 2 * self._capacity and not stopping.is_set():
             claim = await asyncio.to_thread(
                 self._jobs.claim, self._owner, options.lease_s, options.max_attempts, likely=self._likely
             )

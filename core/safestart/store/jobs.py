@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import builtins
 from base64 import urlsafe_b64decode, urlsafe_b64encode
+from dataclasses import fields
 from datetime import datetime
+from typing import Any
 
-from sqlalchemy import func, select
+from sqlalchemy import Row, func, select
 from sqlalchemy.orm import Session
 
 from safestart.errors import InvalidInput, invalid
@@ -15,16 +16,17 @@ from safestart.store.conditions import conditions
 from safestart.store.dialect import after
 from safestart.store.events import EventLog
 from safestart.store.filters import EVERY, JobFilter
-from safestart.store.models import JobRow
+from safestart.store.models import JobRow, table
 from safestart.store.presence import Presence, crew_of
 from safestart.store.queue import Queue, runs
-from safestart.store.records import Job, JobPage, JobStatus, Vitals
+from safestart.store.records import Job, JobEntry, JobPage, JobStatus, Vitals
 from safestart.store.shards import Shards
 from safestart.store.submissions import Submissions, find
 from safestart.store.tally import tallies
 
 MAX_PAGE = 1000
 _CURSOR = "before:"
+_ENTRY = tuple(table(JobRow).c[name] for name in ("seq", *(field.name for field in fields(JobEntry))))
 
 
 class JobRepository(Submissions, Claims, Shards, Queue, EventLog, Presence):
@@ -49,14 +51,14 @@ class JobRepository(Submissions, Claims, Shards, Queue, EventLog, Presence):
         """
         if not 1 <= limit <= MAX_PAGE:
             raise invalid("limit", f"an integer in [1, {MAX_PAGE}]", limit)
-        query = select(JobRow).where(*conditions(wanted)).order_by(JobRow.seq.desc()).limit(limit + 1)
+        query = select(*_ENTRY).where(*conditions(wanted)).order_by(JobRow.seq.desc()).limit(limit + 1)
         if cursor is not None:
             query = query.where(JobRow.seq < _decode(cursor))
         with self._database.session() as session:
-            rows: builtins.list[JobRow] = builtins.list(session.scalars(query))
-            more = len(rows) > limit
-            rows = rows[:limit]
-            return JobPage(tuple(row.record() for row in rows), _encode(rows[-1].seq) if more else None)
+            rows = session.execute(query).all()
+        more = len(rows) > limit
+        entries = tuple(_entry(row) for row in rows[:limit])
+        return JobPage(entries, _encode(rows[limit - 1].seq) if more else None)
 
     def vitals(self) -> Vitals:
         """What the metrics tell, in one look."""
@@ -90,6 +92,11 @@ class JobRepository(Submissions, Claims, Shards, Queue, EventLog, Presence):
         )
         with self._database.session() as session:
             return session.scalar(query)
+
+
+def _entry(row: Row[Any]) -> JobEntry:
+    values = {field.name: getattr(row, field.name) for field in fields(JobEntry)}
+    return JobEntry(**values | {"status": JobStatus(row.status)})
 
 
 def counts(session: Session) -> dict[str, int]:

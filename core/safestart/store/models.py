@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from datetime import datetime
 from typing import Any
 
@@ -84,29 +85,8 @@ class JobRow(Base):
 
     def record(self) -> Job:
         """The frozen record of this row."""
-        return Job(
-            id=self.id,
-            process_id=self.process_id,
-            status=JobStatus(self.status),
-            inputs=self.inputs,
-            instant=self.instant,
-            progress=self.progress,
-            message=self.message,
-            eta_s=self.eta_s,
-            attempts=self.attempts,
-            cancel_requested=self.cancel_requested,
-            timeout_s=self.timeout_s,
-            priority=self.priority,
-            submitter=self.submitter,
-            owner=self.owner,
-            lease_expires_at=self.lease_expires_at,
-            created_at=self.created_at,
-            started_at=self.started_at,
-            finished_at=self.finished_at,
-            updated_at=self.updated_at,
-            problem=self.problem,
-            versions=self.versions,
-        )
+        values = {field.name: getattr(self, field.name) for field in fields(Job)}
+        return Job(**values | {"status": JobStatus(self.status)})
 
 
 class ResultRow(Base):

@@ -9,14 +9,15 @@ from sqlalchemy import ColumnElement, func, or_, select
 from sqlalchemy.orm import Session
 
 from safestart.store.database import Database
-from safestart.store.models import JobRow
+from safestart.store.models import JobRow, table
 from safestart.store.presence import crew_of
 from safestart.store.records import JobStatus, Run, Wait
 from safestart.store.submissions import find
 
 # Run times are taken from this many jobs that ended last.
 RECENT = 200
-_WAITS = JobRow.status == JobStatus.ACCEPTED.value
+_JOBS = table(JobRow)
+_WAITS = _JOBS.c.status == JobStatus.ACCEPTED.value
 
 
 class Queue:
@@ -34,14 +35,33 @@ class Queue:
         wanted = list(job_ids)
         if not wanted:
             return {}
-        order = (JobRow.priority.desc(), JobRow.turn, JobRow.seq)
-        # Read off the queue's index alone; the ids are looked up for the few that are asked for.
-        queue = (
-            select(JobRow.seq, func.row_number().over(order_by=order).label("position")).where(_WAITS)
-        ).subquery()
-        query = select(JobRow.id, queue.c.position).join(queue, queue.c.seq == JobRow.seq)
+        # By their ids alone: their status is looked at afterwards, or SQLite would read all that wait instead.
+        ends = select(_JOBS.c.priority, _JOBS.c.turn, _JOBS.c.status).where(_JOBS.c.id.in_(wanted))
         with self._database.session() as session:
-            return {job: place for job, place in session.execute(query.where(JobRow.id.in_(wanted)))}
+            rows = session.execute(ends).all()
+            asked = sorted(
+                (-row.priority, row.turn) for row in rows if row.status == JobStatus.ACCEPTED.value
+            )
+            if not asked:
+                return {}
+            (first, first_turn), (last, last_turn) = asked[0], asked[-1]
+            between = _JOBS.c.priority.between(-last, -first)
+            ahead = select(func.count()).where(_WAITS, _JOBS.c.priority > -first)
+            if first == last:
+                same = _JOBS.c.priority == -first
+                between = same & _JOBS.c.turn.between(first_turn, last_turn)
+                # Two counts, as each is read off the queue's index.
+                before = select(func.count()).where(_WAITS, same, _JOBS.c.turn < first_turn)
+                ahead = select(ahead.scalar_subquery() + before.scalar_subquery())
+            # Numbered are only those between the first and the last that are asked for, which on a page of the list are
+            # few; read off the index alone, too, and the ids are looked up for the few.
+            order = (_JOBS.c.priority.desc(), _JOBS.c.turn, _JOBS.c.seq)
+            place = func.row_number().over(order_by=order).label("place")
+            queue = select(_JOBS.c.seq, place).where(_WAITS, between).subquery()
+            query = select(_JOBS.c.id, queue.c.place).join(queue, queue.c.seq == _JOBS.c.seq)
+            found = session.execute(query.where(_JOBS.c.id.in_(wanted))).all()
+            number = session.scalar(ahead) or 0
+            return {job: number + place for job, place in found}
 
     def wait(self, job_id: str) -> Wait | None:
         """Place of a waiting job and the estimates for it; None unless it waits. Raises ``NotFound``.

@@ -26,20 +26,17 @@ class JobStatus(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Job:
-    """One submitted job as the database has it.
+class JobEntry:
+    """One submitted job as a list has it: all but its documents.
 
     ``progress`` is 0..100; ``eta_s`` the estimated seconds left while it runs; ``problem`` a problem document
-    (RFC 9457 members) when it failed; ``instant`` the answer given at submission; ``versions`` the package
-    versions, git revision and machine that produced the result; ``submitter`` who submitted it, "" where nobody
-    is asked for a name; ``attempts`` how often it was started and neither ended nor given back.
+    (RFC 9457 members) when it failed; ``submitter`` who submitted it, "" where nobody is asked for a name;
+    ``attempts`` how often it was started and neither ended nor given back.
     """
 
     id: str
     process_id: str
     status: JobStatus
-    inputs: dict[str, Any]
-    instant: dict[str, Any] | None
     progress: float
     message: str
     eta_s: float | None
@@ -55,6 +52,18 @@ class Job:
     finished_at: datetime | None
     updated_at: datetime
     problem: dict[str, Any] | None
+
+
+@dataclass(frozen=True, slots=True)
+class Job(JobEntry):
+    """One submitted job as the database has it.
+
+    ``instant`` is the answer given at submission; ``versions`` the package versions, git revision and machine that
+    produced the result.
+    """
+
+    inputs: dict[str, Any]
+    instant: dict[str, Any] | None
     versions: dict[str, Any] | None
 
 
@@ -123,7 +132,7 @@ class Vitals:
 class JobPage:
     """One page of jobs, newest first, and the cursor of the next page (None on the last)."""
 
-    jobs: tuple[Job, ...]
+    jobs: tuple[JobEntry, ...]
     next_cursor: str | None
 
 
