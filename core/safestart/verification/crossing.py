@@ -32,10 +32,11 @@ REMAINDERS = 4
 
 @dataclass(frozen=True, slots=True)
 class Crossing:
-    """Crossing set of one plane: ``centre`` (4,), ``gens`` (m + 4, 4), the last four a box of remainders.
+    """Crossing set of one plane: ``centre`` (4,), ``gens`` (m, 4), the last four a box of remainders.
 
-    Crossing time (min): ``time`` + ``time_gens`` (m,) . xi +- ``time_radius`` with xi those of the first m generators,
-    and in [``first``, ``last``]. ``normal`` (2,) points out of the guard; ``name`` says where.
+    Crossing time (min): ``time`` + ``time_gens`` (k,) . xi +- ``time_radius`` with xi those of the first k generators,
+    and in [``first``, ``last``]; k is m - 4 where the remainders are so small that their symbols need not be kept.
+    ``normal`` (2,) points out of the guard; ``name`` says where.
     """
 
     name: str
@@ -153,10 +154,11 @@ def cross_plane(passage: Passage, name: str, normal: Floats, limit: float, sag: 
     for _ in range(_ROUNDS):
         finer = UP * (remainder(widest, closer, passage, rates, jerk) + passage.strays) + rounded
         closer = min(closer, UP * (least + float(np.abs(row) @ finer) / abs(fall)) + late)
-    # Sets so wide that the second order is no help get the box of first order alone.
+    # Sets so wide that the second order is no help get the box of first order alone, large enough to keep its symbols.
+    spare = np.zeros(REMAINDERS)
     curve = Quadratic(np.zeros(4), np.zeros((len(slopes), 4)), np.zeros((0, 4)))
     if closer < stray:
-        curve, error = bent, finer
+        curve, error, spare = bent, finer, np.zeros(0)
     project = np.eye(4) - np.outer(flow, row) / fall
     # A second helping of round-off for the projection itself, whose entries are |f| |h| / |h f| at most.
     stretch = np.abs(np.eye(4)) + np.outer(np.abs(flow), np.abs(row)) / abs(fall)
@@ -171,7 +173,7 @@ def cross_plane(passage: Passage, name: str, normal: Floats, limit: float, sag: 
         nominal + flow * offset + project @ curve.constant,
         np.vstack([symbols + bends[:count], bends[count:], np.diag(box)]),
         middle + offset - float(row @ curve.constant) / fall,
-        np.append(slopes, np.zeros(len(shifts) - count)) - shifts,
+        np.concatenate([slopes - shifts[:count], -shifts[count:], spare]),
         UP * float(np.abs(row) @ error) / abs(fall) + late,
         low,
         high,
