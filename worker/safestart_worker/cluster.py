@@ -23,7 +23,7 @@ Answer = TypeVar("Answer")
 
 CONNECT_TIMEOUT_S = 10.0
 # How long a task that polls gets to stop by itself, and how long a replaced process may take to come back.
-STOP_GRACE_S = 1.0
+STOP_GRACE_S = 2.0
 RESTART_TIMEOUT_S = 30.0
 # What a stopping worker spends at most on its tasks on a cluster that stays.
 LEAVE_TIMEOUT_S = 4.0
