@@ -1,6 +1,7 @@
 """The collision-avoidance process: its document, pictures and arrays, refusals, and nothing to fly."""
 
 import io
+import math
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,13 @@ QUICK: dict[str, Any] = {
     "adversaries": ["worst", "mirror"],
     "slices_m_s": [[-4, 0]],
     "capture_radial_m_s": [0],
+    "states": [
+        [150, 0, -6, 0],
+        [150, 0, 0, -6, 0, 0],
+        [400, 300, 0, 0],
+        [0, 0, 300, 0, 0, 0],
+        [150, 0, 130, -6, 0, 0],
+    ],
 }
 
 
@@ -43,6 +51,28 @@ def test_document_fits_its_schema_and_its_verdicts_follow_from_its_rows(done: Ex
     assert outputs["nodes"]["unsafe_called_safe_joined"] == 0
     assert outputs["supervisor"]["in_slot_at_the_end"] == 6
     assert outputs["capture"][0]["captured_percent"] == pytest.approx(47.0, abs=1.0)
+
+
+def test_states_are_judged_in_the_plane_and_in_space(done: Execution) -> None:
+    """Head-on at 6 m/s nobody evades, in no dimension; far away, or far above, there is no need to."""
+    rows = done.document["outputs"]["states"]
+    assert [row["state"] for row in rows] == QUICK["states"]
+    assert [row["answer"] for row in rows] == ["PROVED_UNSAFE"] * 2 + ["PROVED_SAFE"] * 3
+    assert all(row["least_m"] <= row["most_m"] for row in rows)
+    # Nobody can get farther away in the plane than in space, where there is one direction more.
+    assert rows[0]["most_m"] <= rows[1]["most_m"] <= 0.0
+
+
+def test_a_price_of_fuel_saves_some() -> None:
+    only = {"pilots": ["hj"], "adversaries": ["none"], "supervised": 0, "states": []}
+    grid = {"grid": {"nodes_position": 9, "nodes_speed": 7, "kept": 2}}
+    spent = [
+        execute("collision-avoidance", QUICK | only | grid | {"fuel_price_s": price}).document["outputs"][
+            "encounters"
+        ][0]["mean_delta_v_m_s"]
+        for price in (0.0, 5.0)
+    ]
+    assert 0.0 < spent[1] < 0.95 * spent[0]
 
 
 def test_artifacts_open(done: Execution) -> None:
@@ -127,6 +157,10 @@ def test_dismissal_and_progress() -> None:
           "adversaries": ["worst", "mirror", "pursuit", "random", "none"]}, "body"),
         ({"period_s": 10, "horizon_s": 5}, "body"),
         ({"slot": {"half_x_m": 0}}, "slot.half_x_m"),
+        ({"states": [[1, 2, 3, 4, 5]]}, "body"),
+        ({"states": [[1, 2, 3]]}, "states.0"),
+        ({"states": [[0, 0, 0, math.inf]]}, "states.0.3"),
+        ({"fuel_price_s": -1}, "fuel_price_s"),
         ({"unknown": 1}, "unknown"),
     ],
 )  # fmt: skip

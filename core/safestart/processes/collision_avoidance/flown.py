@@ -90,7 +90,7 @@ def encounters(inputs: CollisionAvoidanceInputs, sight: Sight, slot: Slot, conte
         return (
             Supervisor(sight, slot, guards, inputs.period_s)
             if name == "supervisor"
-            else pilot(name, game, slot)
+            else pilot(name, game, slot, inputs.fuel_price_s)
         )
 
     batches = [

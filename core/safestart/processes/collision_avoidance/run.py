@@ -21,6 +21,7 @@ from safestart.processes.base import ProcessOutput
 from safestart.processes.collision_avoidance.captured import Captured, captured
 from safestart.processes.collision_avoidance.encounter_plots import flights_picture, matrix_picture
 from safestart.processes.collision_avoidance.flown import Flown, encounters
+from safestart.processes.collision_avoidance.judged import judge
 from safestart.processes.collision_avoidance.plots import (
     capture_picture,
     capture_space_picture,
@@ -46,11 +47,13 @@ NOTES = [
 ]
 
 
-def game_of(inputs: CollisionAvoidanceInputs) -> Game:
-    """The game in SI units."""
+def game_of(inputs: CollisionAvoidanceInputs, *, in_space: bool = False) -> Game:
+    """The game in SI units; a disk in the plane is a cylinder's section in space, which keeps z decoupled."""
+    shape = {"box": "box", "disk": "cylinder" if in_space else "disk"}[inputs.shape]
+    numbers = {"box": 3 if in_space else 2, "disk": 1, "cylinder": 2}[shape]
 
     def bound(size: float) -> InputSet:
-        return InputSet(inputs.shape, (size,) * (2 if inputs.shape == "box" else 1))
+        return InputSet(shape, (size,) * numbers)
 
     return Game(
         inputs.mean_motion_rad_s, bound(inputs.thrust_m_s2), bound(inputs.disturbance_m_s2), inputs.keep_out_m
@@ -73,6 +76,7 @@ def tube_of(inputs: CollisionAvoidanceInputs, game: Game, context: Context) -> T
         None if grid.box is None else (grid.box.position_m, grid.box.speed_m_s),
         kept=grid.kept,
         players=Players(inputs.players),
+        fuel_price=inputs.fuel_price_s,
     )
     return solve_tube(game, inputs.horizon_s, settings, context)
 
@@ -87,7 +91,8 @@ def run(inputs: CollisionAvoidanceInputs, context: Context) -> ProcessOutput:
     flown = Flown()
     if not tube.failure and inputs.players == "avoid":
         flown = encounters(inputs, Sight(game, tube), slot, context.part(0.5, 0.4, 1.0, "encounters"))
-    context.step(0.9, 1.0, "pictures")
+    judged = judge(inputs, tube, game_of(inputs, in_space=True), context.part(0.9, 0.05, 1.0, "states"))
+    context.step(0.95, 1.0, "pictures")
     drawn = slices(inputs, tube)
     artifacts = [unsafe_picture(inputs, drawn, tube)] if drawn else []
     missing = len(inputs.slices_m_s) - len(drawn)
@@ -105,6 +110,7 @@ def run(inputs: CollisionAvoidanceInputs, context: Context) -> ProcessOutput:
     document = {
         "failure": tube.failure,
         "requirements": _requirements(inputs, flown),
+        "states": judged,
         "encounters": flown.rows,
         "grid_error_m": finite(tube.grid_error_m),
         "nodes": {} if check is None else {k: v for k, v in check.document().items() if isinstance(v, int)},

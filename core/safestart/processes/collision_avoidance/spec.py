@@ -14,7 +14,10 @@ PilotName = Literal["certified", "hj", "supervisor", "mode1", "mode2", "mode3", 
 AdversaryName = Literal["worst", "mirror", "pursuit", "random", "none"]
 Speed = Annotated[float, Field(ge=-100, le=100)]
 Velocity = Annotated[list[Speed], Field(min_length=2, max_length=2)]
+Number = Annotated[float, Field(ge=-1e6, le=1e6)]
+State = Annotated[list[Number], Field(min_length=4, max_length=6)]
 
+MAX_STATES = 1000
 MAX_FLIGHTS = 1_000_000
 MAX_NODES = 3_000_000
 
@@ -68,7 +71,17 @@ class CollisionAvoidanceInputs(WireModel):
         "avoid",
         description="avoid: Player 1 evades. paper: eq. (12) as printed, where it seeks the disk; no encounters.",
     )
+    fuel_price_s: float = Field(
+        0.0,
+        ge=0,
+        le=1000,
+        description="Running cost: metres of separation that 1 m/s of fuel is worth; hj coasts where thrust gains less.",
+    )
     grid: GridInput = Field(default_factory=lambda: GridInput.model_validate({}))
+    states: Annotated[list[State], Field(max_length=MAX_STATES)] = Field(
+        [],
+        description="States to be judged: (x, y, vx, vy), or in space (x, y, z, vx, vy, vz), m and m/s; x tangential.",
+    )
     slices_m_s: Annotated[list[Velocity], Field(min_length=1, max_length=6)] = Field(
         [[0.0, 0.0], [-4.0, 0.0], [-3.0, -3.0]],
         description="Relative velocities (tangential, radial) at which the unsafe set is drawn, m/s.",
@@ -101,6 +114,8 @@ class CollisionAvoidanceInputs(WireModel):
                 raise ValueError(f"{name}: each at most once")
         if self.grid.nodes_position**2 * self.grid.nodes_speed**2 > MAX_NODES:
             raise ValueError(f"grid: at most {MAX_NODES} nodes in all")
+        if any(len(state) == 5 for state in self.states):
+            raise ValueError("states: each of 4 numbers, or of 6 in space")
         if self.period_s > self.horizon_s:
             raise ValueError("period_s: at most horizon_s")
         flights = 2 * self.encounters * len(self.pilots) * len(self.adversaries)
@@ -109,6 +124,19 @@ class CollisionAvoidanceInputs(WireModel):
         if self.disturbance_m_s2 > self.thrust_m_s2:
             raise ValueError("disturbance_m_s2: at most thrust_m_s2, or Player 1 can promise nothing")
         return self
+
+
+class JudgedRow(WireModel):
+    """What is known of one of the states asked about."""
+
+    state: list[float]
+    answer: Literal["PROVED_UNSAFE", "UNSAFE", "UNDECIDED", "SAFE", "PROVED_SAFE"] = Field(
+        description="Proved for the linear model, or called so by the grid beyond its measured error."
+    )
+    least_m: float | None = Field(
+        description="The separation above the keep-out one can keep, no less than this."
+    )
+    most_m: float = Field(description="The same, no more than this.")
 
 
 class EncounterRow(WireModel):
@@ -164,6 +192,7 @@ class CollisionAvoidanceOutputs(WireModel):
         description="Why the value cannot be trusted; empty otherwise. Then nothing is called safe."
     )
     requirements: list[RequirementRow]
+    states: list[JudgedRow]
     encounters: list[EncounterRow]
     grid_error_m: float | None = Field(description="Largest error of the grid near the boundary.")
     nodes: dict[str, int] = Field(

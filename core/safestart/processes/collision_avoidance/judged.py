@@ -1,0 +1,67 @@
+"""The states asked about: bounds first, in the plane or in space, then the grid where it reaches."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from safestart.avoidance.certified import lower, upper
+from safestart.avoidance.game import Game, Players
+from safestart.avoidance.space import SpaceTube
+from safestart.avoidance.tube import Answer, Tube, solve_tube
+from safestart.processes.collision_avoidance.spec import CollisionAvoidanceInputs
+from safestart.processes.wire import finite
+from safestart.progress import Context
+from safestart.scenario import Floats
+
+_FINER = 4
+"""Nodes per axis of the normal motion's grid, of two axes, for one of the plane's, of four."""
+
+
+def judge(
+    inputs: CollisionAvoidanceInputs, tube: Tube, in_space: Game, context: Context
+) -> list[dict[str, Any]]:
+    """One row per state, in their order. The bounds are of the avoid game, whichever players were drawn."""
+    rows: list[dict[str, Any]] = [{}] * len(inputs.states)
+    for length, game in ((4, tube.game), (6, in_space)):
+        chosen = [k for k, state in enumerate(inputs.states) if len(state) == length]
+        if not chosen:
+            continue
+        states = np.array([inputs.states[k] for k in chosen])
+        reader = tube if length == 4 else _space(tube, in_space, context)
+        least = lower(game, states, inputs.horizon_s)
+        most = upper(game, states, inputs.horizon_s)
+        for k, answer, low, high in zip(
+            chosen, _answers(reader, states, least, most), least, most, strict=True
+        ):
+            rows[k] = {
+                "state": inputs.states[k],
+                "answer": Answer(int(answer)).name,
+                "least_m": finite(low),
+                "most_m": float(high),
+            }
+    return rows
+
+
+def _space(tube: Tube, game: Game, context: Context) -> SpaceTube:
+    """The plane's tube is there; the normal motion's is small."""
+    nodes = (_FINER * tube.settings.shape[0], _FINER * tube.settings.shape[1])
+    settings = replace(tube.settings, shape=nodes)
+    return SpaceTube(game, tube, solve_tube(game.restricted(2, 3), tube.horizon_s, settings, context))
+
+
+def _answers(reader: Tube | SpaceTube, states: Floats, least: Floats, most: Floats) -> Floats:
+    """:class:`Answer` by the bounds; the grid is asked where they leave it open and it reaches."""
+    found = np.where(
+        most <= 0.0, Answer.PROVED_UNSAFE, np.where(least > 0.0, Answer.PROVED_SAFE, Answer.UNDECIDED)
+    )
+    parts = (reader,) if isinstance(reader, Tube) else (reader.plane, reader.normal)
+    # Of a grid that failed, or of other players, nothing can be read.
+    if any(part.failure or part.settings.players is not Players.AVOID for part in parts):
+        return np.asarray(found, dtype=np.int8)
+    open_ = (found == Answer.UNDECIDED) & reader.covers(states)
+    if open_.any():
+        found[open_] = reader.answer(states[open_])
+    return np.asarray(found, dtype=np.int8)
