@@ -75,7 +75,7 @@ class CollisionAvoidanceInputs(WireModel):
         0.0,
         ge=0,
         le=1000,
-        description="Running cost: metres of separation that 1 m/s of fuel is worth; hj coasts where thrust gains less.",
+        description="Running cost, metres of separation that 1 m/s of fuel is worth; hj coasts where thrust pays less.",
     )
     grid: GridInput = Field(default_factory=lambda: GridInput.model_validate({}))
     states: Annotated[list[State], Field(max_length=MAX_STATES)] = Field(
