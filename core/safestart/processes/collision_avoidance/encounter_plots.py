@@ -62,7 +62,7 @@ def flights_picture(inputs: CollisionAvoidanceInputs, flown: Flown) -> Artifact:
     around = [name for name in flown.paths if name != "supervisor"]
     supervised = "supervisor" in flown.paths
     count = max(1, len(around) + supervised)
-    drawing = figure(4.1 * count + 0.4, 4.6)
+    drawing = figure(4.1 * count + 0.4, 5.0)
     panels = drawing.subplots(1, count, squeeze=False)[0]
     reach = max((float(np.abs(flown.paths[name][..., :2]).max()) for name in around), default=1.0)
     for panel, name in zip(panels, around, strict=False):
@@ -72,6 +72,7 @@ def flights_picture(inputs: CollisionAvoidanceInputs, flown: Flown) -> Artifact:
         )
     if supervised:
         _over_time(panels[-1], flown.paths["supervisor"], inputs)
+    drawing.suptitle("Dots: starts; orange: came within the keep-out distance", fontsize=11)
     return png("flights.png", drawing)
 
 
