@@ -279,7 +279,7 @@ def test_states_without_content_and_without_service(visit: Visit) -> None:
     expect(page.locator(".empty")).to_contain_text("two or more")
     page = visit.go("/dashboard/jobs/00000000-0000-0000-0000-000000000000")
     expect(page.locator(".problem")).to_contain_text("no job")
-    page = visit.go("/dashboard/jobs?status=dismissed&process=coverage")
+    page = visit.go("/dashboard/jobs?status=failed&process=atlas")
     expect(page.locator(".empty")).to_contain_text("No jobs here yet")
     page = explore(visit)
     page.context.set_offline(True)
