@@ -17,7 +17,8 @@ from safestart.logs import about
 from safestart.store.database import Database
 from safestart.store.jobs import JobRepository
 from safestart.store.retention import Retention
-from safestart_worker.cluster import Cluster, open_cluster
+from safestart_worker.cluster import Cluster
+from safestart_worker.opening import open_cluster
 from safestart_worker.shepherd import Rules, Shepherd
 
 log = logging.getLogger("safestart.worker")
