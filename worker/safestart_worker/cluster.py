@@ -12,7 +12,7 @@ from typing import Any, TypeVar, cast
 import psutil
 from distributed import Client, Future, LocalCluster, Nanny
 
-from safestart.warmup import warm
+from safestart.warmup import PARTS, warm
 from safestart_worker.task import load, request_stop
 
 Answer = TypeVar("Answer")
@@ -141,13 +141,21 @@ class Cluster:
             with suppress(TimeoutError, OSError):
                 await asyncio.wait_for(self.stop(job, futures, outcome), LEAVE_TIMEOUT_S)
 
-    async def warm_up(self) -> None:
-        """Load the processes everywhere; compile in one task process, whose cache on disk serves the others."""
+    async def warm_up(self, say: Callable[[str], None]) -> None:
+        """Load the processes everywhere; compile each part somewhere and say which is done; then warm all of them."""
         addresses = list(await self._client.nthreads())
-        for function, group in ((load, addresses), (warm, addresses[:1]), (warm, addresses[1:])):
-            tasks = [self._client.submit(function, workers=[a], pure=False) for a in group]
-            for task in tasks:  # not gather: it logs stack traces when it is interrupted
-                await cast(Awaitable[None], task.result())
+        await self._all([self._client.submit(load, workers=[a], pure=False) for a in addresses])
+
+        async def compiled(part: str) -> None:
+            await self._all([self._client.submit(warm, part, pure=False)])
+            say(part)
+
+        await asyncio.gather(*map(compiled, PARTS))
+        await self._all([self._client.submit(warm, workers=[a], pure=False) for a in addresses])
+
+    async def _all(self, tasks: Sequence[Future[Any]]) -> None:
+        for task in tasks:  # not the client's gather: it logs stack traces when it is interrupted
+            await cast(Awaitable[None], task.result())
 
     async def close(self) -> None:
         """End the embedded task processes at once, busy ones too: their jobs are back in the queue."""

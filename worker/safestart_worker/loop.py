@@ -212,7 +212,7 @@ async def _announce(jobs: JobRepository, owner: str) -> None:
 async def _warm(cluster: Cluster, stopping: asyncio.Event) -> None:
     print("warming up kernels ... ", end="", flush=True)
     start = time.monotonic()
-    warming = asyncio.create_task(cluster.warm_up())
+    warming = asyncio.create_task(cluster.warm_up(lambda part: print(part, end=", ", flush=True)))
     stop = asyncio.create_task(stopping.wait())
     patience = WARM_S if cluster.embedded else WARM_SHARED_S
     await asyncio.wait({warming, stop}, timeout=patience, return_when=asyncio.FIRST_COMPLETED)
