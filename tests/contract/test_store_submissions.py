@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from datetime import UTC, datetime, timedelta
+from threading import Barrier
+from typing import Any
 
 import pytest
 
@@ -17,6 +20,7 @@ from safestart.store.filters import JobFilter
 from safestart.store.jobs import JobRepository
 from safestart.store.records import JobStatus
 from tests.contract.store_jobs import claimed, submit
+from tests.waiting import PATIENCE_S
 
 
 def test_a_submitted_job_reads_back_as_it_was_given(jobs: JobRepository) -> None:
@@ -62,10 +66,40 @@ def test_the_same_key_with_another_body_is_refused(jobs: JobRepository, other: d
 
 
 def test_one_key_from_many_threads_is_one_job(jobs: JobRepository) -> None:
-    with ThreadPoolExecutor(8) as pool:
-        found = list(pool.map(lambda _: submit(jobs, idempotency_key="k").id, range(24)))
+    found = at_once(lambda _: submit(jobs, idempotency_key="k").id, 12)
     assert len(set(found)) == 1
     assert jobs.counts()["accepted"] == 1
+
+
+def at_once(call: Callable[[int], Any], times: int) -> list[Any]:
+    """Results of calls that all begin at the same moment."""
+    start = Barrier(times)
+
+    def one(number: int) -> Any:
+        start.wait(PATIENCE_S)
+        return call(number)
+
+    with ThreadPoolExecutor(times) as pool:
+        return list(pool.map(one, range(times)))
+
+
+def test_many_at_once_do_not_overfill_the_queue(jobs: JobRepository) -> None:
+    def accepted(_: int) -> bool:
+        try:
+            submit(jobs, max_queued=5)
+        except QueueFull:
+            return False
+        return True
+
+    assert sum(at_once(accepted, 15)) == 5
+    assert jobs.counts()["accepted"] == 5
+
+
+def test_many_at_once_take_a_turn_each(jobs: JobRepository) -> None:
+    flood = at_once(lambda _: submit(jobs, submitter="a").id, 12)
+    late = submit(jobs, submitter="b").id
+    assert jobs.positions([late]) == {late: 2}, "after one of the others, not after all that came at once"
+    assert sorted(jobs.positions(flood).values()) == [1, *range(3, 14)]
 
 
 @pytest.mark.parametrize("key", ["", "k" * 256])

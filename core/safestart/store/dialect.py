@@ -22,6 +22,7 @@ from sqlalchemy.types import Float, TypeDecorator
 BUSY_TIMEOUT_S = 30.0
 STOPPED_S = 10.0
 _SCHEMA_LOCK = 0x5AFE57A27
+_QUEUE_LOCK = 0x5AFE57A28
 # SQLite keeps times as text; this layout is what SQLAlchemy writes, so that text order is time order.
 _SQLITE_TIME = "'%Y-%m-%d %H:%M:%f000', 'now'"
 
@@ -153,6 +154,16 @@ def _on_sqlite_begin(connection: Connection) -> None:
 
 
 def lock_schema(connection: Connection) -> None:
-    """Wait until no other process migrates, for this transaction (on SQLite BEGIN IMMEDIATE did that)."""
+    """Wait until no other process migrates, for this transaction."""
+    _wait_for(connection, _SCHEMA_LOCK)
+
+
+def lock_queue(connection: Connection) -> None:
+    """Wait until nobody else submits, for this transaction: what is counted before a job is added stays true."""
+    _wait_for(connection, _QUEUE_LOCK)
+
+
+def _wait_for(connection: Connection, key: int) -> None:
+    # On SQLite BEGIN IMMEDIATE did that.
     if connection.dialect.name == "postgresql":
-        connection.execute(text("SELECT pg_advisory_xact_lock(:key)"), {"key": _SCHEMA_LOCK})
+        connection.execute(text("SELECT pg_advisory_xact_lock(:key)"), {"key": key})

@@ -17,10 +17,17 @@ from safestart.store.records import JobStatus
 
 def next_turn(session: Session, submitter: str, priority: int) -> int:
     """The turn of a job that ``submitter`` submits at ``priority``."""
-    waits = (JobRow.status == JobStatus.ACCEPTED.value, JobRow.priority == priority)
-    runs = (JobRow.status == JobStatus.RUNNING.value, JobRow.priority == priority)
-    served = session.scalar(select(func.min(JobRow.turn)).where(*waits))
+    turn, among = JobRow.turn, JobRow.priority == priority
+    waits = among & (JobRow.status == JobStatus.ACCEPTED.value)
+    runs = among & (JobRow.status == JobStatus.RUNNING.value)
+    # One statement: other submissions wait meanwhile.
+    served, running, own = session.execute(
+        select(
+            select(func.min(turn)).where(waits).scalar_subquery(),
+            select(func.max(turn)).where(runs).scalar_subquery(),
+            select(func.max(turn)).where(waits, JobRow.submitter == submitter).scalar_subquery(),
+        )
+    ).one()
     if served is None:  # nobody waits: a running job that comes back to the queue must not come last
-        served = session.scalar(select(func.max(JobRow.turn)).where(*runs)) or 0
-    own = session.scalar(select(func.max(JobRow.turn)).where(*waits, JobRow.submitter == submitter))
-    return served if own is None else max(served, own + 1)
+        served = running or 0
+    return int(served if own is None else max(served, own + 1))

@@ -7,7 +7,6 @@ from typing import Any
 from uuid import uuid4
 
 from sqlalchemy import func, or_, select, update
-from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from safestart.access import Caller
@@ -15,7 +14,7 @@ from safestart.comparable import canonical
 from safestart.errors import Conflict, IdempotencyMismatch, InvalidInput, NotFound, QueueFull
 from safestart.store.audit import add_audit
 from safestart.store.database import Database
-from safestart.store.dialect import after
+from safestart.store.dialect import after, lock_queue
 from safestart.store.events import add_event, add_status
 from safestart.store.fairness import next_turn
 from safestart.store.lease import expired
@@ -66,6 +65,7 @@ class Submissions:
             )
         idempotency_key = _own_key(submitter, idempotency_key)
         with self._database.session(write=True) as session:
+            lock_queue(session.connection())  # else two at once would both find room, no such key, the same turn
             first = _by_key(session, idempotency_key)
             if first is not None:
                 return _same(first, request)
@@ -86,15 +86,8 @@ class Submissions:
                 created_at=after(),
                 updated_at=after(),
             )
-            try:
-                # Savepoint: on PostgreSQL another submission with this key can commit since we looked.
-                with session.begin_nested():
-                    session.add(row)
-            except IntegrityError:
-                first = _by_key(session, idempotency_key)
-                if first is None:
-                    raise
-                return _same(first, request)
+            session.add(row)
+            session.flush()
             add_status(session, row.id, JobStatus.ACCEPTED)
             if by is not None:
                 add_audit(session, by, "submit", row.id, {"process": process_id})
