@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import os
+from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from platformdirs import user_config_path, user_data_path
 from pydantic import Field, ValidationError
@@ -16,7 +17,8 @@ from pydantic_settings import (
     TomlConfigSettingsSource,
 )
 
-from safestart.validation import validation_error
+from safestart.errors import invalid
+from safestart.validation import refusal
 
 
 class Settings(BaseSettings):
@@ -78,8 +80,7 @@ class Settings(BaseSettings):
         file_secret_settings: PydanticBaseSettingsSource,
     ) -> tuple[PydanticBaseSettingsSource, ...]:
         """Arguments first, then the environment, then the file."""
-        path = Path(os.environ.get("SAFESTART_CONFIG") or user_config_path("safestart") / "safestart.toml")
-        return init_settings, env_settings, TomlConfigSettingsSource(settings_cls, toml_file=path)
+        return init_settings, env_settings, _file(settings_cls)
 
     def url(self) -> str:
         """The database URL; the default directory is made when it is not there."""
@@ -90,10 +91,34 @@ class Settings(BaseSettings):
         return f"sqlite:///{folder / 'safestart.sqlite3'}"
 
 
+def _file(kind: type[BaseSettings]) -> TomlConfigSettingsSource:
+    """The settings of the file; raises ``InvalidInput`` for one that is named and is not there, or is no TOML."""
+    named = os.environ.get("SAFESTART_CONFIG")
+    path = Path(named) if named else user_config_path("safestart") / "safestart.toml"
+    if named and not path.is_file():
+        raise invalid("SAFESTART_CONFIG", "the path of a TOML file", named)
+    try:
+        return TomlConfigSettingsSource(kind, toml_file=path)
+    except (OSError, ValueError) as error:  # what is not TOML or not UTF-8 is a ValueError
+        raise invalid(str(path), "a readable TOML file in UTF-8", str(error)) from None
+
+
 @cache
 def settings() -> Settings:
     """The process-wide settings; raises ``InvalidInput`` that names the wrong setting."""
     try:
         return Settings()  # type: ignore[call-arg, unused-ignore]
     except ValidationError as error:
-        raise validation_error(error, prefix="settings.") from None
+        raise refusal([_fit(report) for report in error.errors(include_url=False)], "settings.") from None
+
+
+def _fit(report: Any) -> dict[str, Any]:
+    """A report of pydantic's that says which names there are, and nothing of what a table or an array holds."""
+    fit = dict(report)
+    if fit["type"] == "extra_forbidden":
+        near = get_close_matches(str(fit["loc"][0]), Settings.model_fields, n=1)
+        like = f", such as {near[0]}" if near else ""
+        fit |= {"type": "value_error", "ctx": {"error": f"the name of a setting{like} (docs/settings.md)"}}
+    if isinstance(fit.get("input"), dict | list):  # a URL with its password may be in there
+        fit["input"] = type(fit["input"])
+    return fit

@@ -9,9 +9,10 @@ from pathlib import Path
 import pytest
 from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
-from sqlalchemy import text
+from sqlalchemy import make_url, text
 
 from safestart.errors import (
+    Away,
     InvalidInput,
     Unavailable,
 )
@@ -19,6 +20,7 @@ from safestart.store import schema
 from safestart.store.database import Database
 from safestart.store.jobs import JobRepository
 from safestart.store.models import Base
+from tests.contract.store_backends import NO_SERVER, POSTGRESQL
 from tests.contract.store_jobs import submit
 from tests.waiting import PATIENCE_S
 
@@ -64,6 +66,11 @@ def test_ping_answers(database: Database) -> None:
         ("sqlite:////nonexistent/folder/file.sqlite3", Unavailable, "existing, writable directory"),
         ("sqlite:////", Unavailable, "existing, writable directory"),
         ("postgresql://user:hunter2@127.0.0.1:9/name", Unavailable, "postgresql"),
+        ("postgresql://user@127.0.0.1:9/name?password=hunter2", Unavailable, "password=***"),
+        ("postgresql://user:of@hunter2@host/name", InvalidInput, "two @"),
+        ("postgresql://user:hunter2@host:99999/name", InvalidInput, "port 99999"),
+        ("postgresql+psycopg2://user:hunter2@host/name", InvalidInput, "received postgresql+psycopg2"),
+        ("postgresql+psycopg_async://user:hunter2@host/name", InvalidInput, "required sqlite:///PATH"),
     ],
 )
 def test_a_database_that_cannot_be_says_what_is_required(
@@ -73,6 +80,28 @@ def test_a_database_that_cannot_be_says_what_is_required(
         Database(wrong).migrate()
     assert said in str(caught.value)
     assert "hunter2" not in str(caught.value)
+
+
+@pytest.mark.skipif(not POSTGRESQL, reason=NO_SERVER)
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"database": "nonexistent"}, "does not exist"),
+        ({"username": "nobody_here"}, "nobody_here"),
+        ({"query": {"sslmode": "rubbish"}}, "invalid sslmode"),
+        ({"query": {"rubbish": "1"}}, "invalid connection option"),
+    ],
+)
+def test_a_server_that_refuses_us_is_not_waited_for(change: dict, said: str) -> None:
+    url = make_url(POSTGRESQL).set(**change).render_as_string(hide_password=False)
+    with pytest.raises(Unavailable, match=said) as caught:
+        Database(url).migrate()
+    assert not isinstance(caught.value, Away)
+
+
+def test_a_server_that_does_not_answer_is_waited_for() -> None:
+    with pytest.raises(Away):
+        Database("postgresql://user@127.0.0.1:9/name").ping()
 
 
 def test_a_file_that_is_no_database_is_unavailable(tmp_path: Path) -> None:

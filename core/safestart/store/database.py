@@ -9,18 +9,14 @@ from pathlib import Path
 from threading import Lock
 
 from sqlalchemy import Connection, Engine, create_engine, text
-from sqlalchemy.engine import URL, make_url
+from sqlalchemy.engine import URL
 from sqlalchemy.exc import ArgumentError, DBAPIError, OperationalError, SQLAlchemyError
 from sqlalchemy.orm import Session
 
-from safestart.errors import Away, InvalidInput, Unavailable
+from safestart.errors import Away, Unavailable
 from safestart.store import schema
 from safestart.store.dialect import BUSY_TIMEOUT_S, prepare
-
-_REQUIRED = (
-    "sqlite:///PATH of a file in an existing, writable directory, or postgresql://USER:PASSWORD@HOST/NAME"
-)
-
+from safestart.store.url import REQUIRED, parse, refused, shown, without_secrets
 
 # A server that is gone without a word is noticed; libpq waits for ever by itself.
 _POSTGRESQL = {
@@ -29,14 +25,25 @@ _POSTGRESQL = {
     "keepalives_idle": 10,
     "keepalives_interval": 5,
 }
+# What libpq says where waiting would not help: at that stage there is no code to tell it by.
+_REFUSALS = (
+    "authentication failed",
+    "no password supplied",
+    "does not exist",
+    "no pg_hba.conf entry",
+    "permission denied",
+    "not permitted",
+    "does not support SSL",
+    "invalid",
+)
 
 
 class Database:
     """An SQLAlchemy URL with sessions; connecting happens at first use."""
 
     def __init__(self, url: str) -> None:
-        self._url = _parse(url)
-        self.shown = self._url.render_as_string(hide_password=True)
+        self._url = parse(url)
+        self.shown = shown(self._url)
         self._engine = _engine(self._url)
         prepare(self._engine)
         # Same pool; the option makes SQLite take the write lock at the start of the transaction.
@@ -111,14 +118,12 @@ class Database:
     def _unavailable(self, error: SQLAlchemyError) -> Unavailable:
         # Never str(error): it holds the statement and its parameters.
         reason = str(error.orig) if isinstance(error, DBAPIError) else type(error).__name__
-        reason = " ".join(reason.split())
-        if self._url.password:
-            reason = reason.replace(str(self._url.password), "***")
+        reason = without_secrets(" ".join(reason.split()), self._url)
         kind = Away if self._url.get_backend_name() == "postgresql" and _away(error) else Unavailable
         return kind(
-            f"the database {self.shown} did not do what was asked: {reason}; required: {_REQUIRED}",
+            f"the database {self.shown} did not do what was asked: {reason}; required: {REQUIRED}",
             field="database_url",
-            required=_REQUIRED,
+            required=REQUIRED,
             received=self.shown,
         )
 
@@ -130,34 +135,7 @@ def _away(error: SQLAlchemyError) -> bool:
     state = getattr(error.orig, "sqlstate", None)
     if state is not None:
         return str(state)[:2] == "08" or str(state)[:3] in ("57P", "533")
-    said = str(error.orig)
-    return not any(
-        words in said for words in ("authentication failed", "does not exist", "no pg_hba.conf entry")
-    )
-
-
-def _parse(url: str) -> URL:
-    try:
-        parsed = make_url(url)
-    except (ArgumentError, ValueError):
-        # What cannot be parsed may hold a password, so it is not repeated.
-        raise _refused("something that is no URL") from None
-    if parsed.get_backend_name() == "postgresql" and parsed.drivername == "postgresql":
-        parsed = parsed.set(drivername="postgresql+psycopg")
-    if parsed.get_backend_name() not in ("sqlite", "postgresql"):
-        raise _refused(parsed.render_as_string(hide_password=True))
-    if parsed.get_backend_name() == "sqlite" and parsed.database in (None, "", ":memory:"):
-        raise _refused("a SQLite database in memory, which service and worker could not share")
-    return parsed
-
-
-def _refused(shown: str) -> InvalidInput:
-    return InvalidInput(
-        f"database_url: required {_REQUIRED}, received {shown}",
-        field="database_url",
-        required=_REQUIRED,
-        received=shown,
-    )
+    return not any(words in str(error.orig) for words in _REFUSALS)
 
 
 def _dumps(value: object) -> str:
@@ -166,12 +144,10 @@ def _dumps(value: object) -> str:
 
 def _engine(url: URL) -> Engine:
     sqlite = url.get_backend_name() == "sqlite"
+    options = {"timeout": BUSY_TIMEOUT_S} if sqlite else _POSTGRESQL
+    ours = {name: value for name, value in options.items() if name not in url.query}
     try:
-        return create_engine(
-            url,
-            json_serializer=_dumps,
-            connect_args={"timeout": BUSY_TIMEOUT_S} if sqlite else _POSTGRESQL,
-        )
+        return create_engine(url, json_serializer=_dumps, connect_args=ours)
     except ModuleNotFoundError as error:
         raise Unavailable(
             f"a {url.get_backend_name()} database requires the package {error.name}, which is not installed",
@@ -179,4 +155,4 @@ def _engine(url: URL) -> Engine:
             required=f"the package {error.name}",
         ) from None
     except (ArgumentError, SQLAlchemyError):
-        raise _refused(url.render_as_string(hide_password=True)) from None
+        raise refused(shown(url)) from None

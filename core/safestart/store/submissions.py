@@ -65,7 +65,8 @@ class Submissions:
             )
         idempotency_key = _own_key(submitter, idempotency_key)
         with self._database.session(write=True) as session:
-            lock_queue(session.connection())  # else two at once would both find room, no such key, the same turn
+            # Else two at once would both find room, no such key, the same turn.
+            lock_queue(session.connection())
             first = _by_key(session, idempotency_key)
             if first is not None:
                 return _same(first, request)
