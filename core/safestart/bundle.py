@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 import json
+import lzma
 import zipfile
 import zlib
 from collections.abc import Mapping
@@ -17,6 +18,7 @@ from typing import Any
 
 from safestart.artifact import Artifact
 from safestart.bundle_page import page
+from safestart.bundle_parts import event_facts, job_facts, require_names, require_result
 from safestart.comparable import canonical, digest
 from safestart.errors import InvalidInput
 
@@ -85,6 +87,11 @@ def unpack(data: bytes, seal: str | None = None) -> Bundle:
         raise _refused("; ".join(wrong))
     job, events = _json(files, "job.json"), _json(files, "events.json")
     result = _json(files, "result.json") if "result.json" in files else None
+    job_facts(job)
+    event_facts(events)
+    require_names(manifest["media_types"].items())
+    if result is not None:
+        require_result(result)
     artifacts = tuple(
         Artifact(name, media_type, files[_FOLDER + name])
         for name, media_type in manifest["media_types"].items()
@@ -104,7 +111,15 @@ def _read(data: bytes) -> dict[str, bytes]:
             if len({info.filename for info in infos}) != len(infos):
                 raise _refused("a name occurs twice")
             return {info.filename: archive.read(info) for info in infos}
-    except (zipfile.BadZipFile, zlib.error, OSError, ValueError, EOFError, RuntimeError) as error:
+    except (
+        zipfile.BadZipFile,
+        zlib.error,
+        lzma.LZMAError,
+        OSError,
+        ValueError,
+        EOFError,
+        RuntimeError,
+    ) as error:
         raise _refused(f"it cannot be unpacked ({error})") from None
 
 
@@ -114,7 +129,7 @@ def _differences(manifest: Any, files: Mapping[str, bytes]) -> list[str]:
         if (manifest["format"], manifest["version"]) != (FORMAT, VERSION):
             return [f"format {manifest['format']!r} version {manifest['version']!r} is not known here"]
         listed = {name: entry["sha256"] for name, entry in manifest["files"].items()}
-        artifacts = {_FOLDER + name for name in manifest["media_types"]}
+        artifacts = {_FOLDER + name for name, _ in manifest["media_types"].items()}
     except (KeyError, TypeError, AttributeError):
         return ["its manifest is incomplete"]
     wrong = [
@@ -130,14 +145,16 @@ def _differences(manifest: Any, files: Mapping[str, bytes]) -> list[str]:
 
 def _contradictions(manifest: Any, job: Any, result: Any, artifacts: tuple[Artifact, ...]) -> list[str]:
     """Parts that do not belong together, however well each fits the manifest."""
-    if not isinstance(job, dict) or job.get("id") != manifest["job"]:
+    if job["id"] != manifest.get("job"):
         return ["job.json is of another job"]
+    if (job["status"] == "successful") is (result is None):
+        return [f"a {job['status']} job {'without' if result is None else 'with'} a result"]
     if result is None:
         return []
-    if digest(result) != manifest["result_sha256"]:
+    if digest(result) != manifest.get("result_sha256"):
         return ["result.json has another content hash than the manifest says"]
     made = result.get("provenance", {}).get("artifacts")
-    if made is None:
+    if not isinstance(made, dict):
         return []
     wrong = {item.name for item in artifacts if made.get(item.name) != item.sha256} | (
         set(made) - {item.name for item in artifacts}

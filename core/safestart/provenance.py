@@ -1,4 +1,4 @@
-"""What produced a result: package versions, Python, git revision, machine. Imports nothing heavy."""
+"""What produced a result: package versions, Python, source, machine. Imports nothing heavy."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import os
 import platform
 import sys
 from functools import cache
+from hashlib import sha256
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
@@ -22,6 +23,11 @@ PACKAGES = (
     "jaxlib",
     "hj-reachability",
     "highspy",
+    "clarabel",
+    "python-flint",
+    "matplotlib",
+    "pillow",
+    "pyarrow",
     "distributed",
     "pydantic",
     "sqlalchemy",
@@ -38,6 +44,7 @@ def _static() -> dict[str, Any]:
     return {
         "python": platform.python_version(),
         "git_revision": _git_revision(Path(__file__).resolve()),
+        "source_sha256": source_digest(Path(__file__).resolve().parent),
         "machine": {
             "cpu": _cpu_model(),
             "cores": os.cpu_count(),
@@ -56,6 +63,18 @@ def _packages() -> tuple[tuple[str, str], ...]:
         except PackageNotFoundError:
             continue
     return tuple(found)
+
+
+def source_digest(package: Path) -> str:
+    """SHA-256 over the names and bytes of a package's modules.
+
+    A revision does not tell what was changed since, and an installed package has none.
+    """
+    digest = sha256()
+    for file in sorted(package.rglob("*.py"), key=lambda file: file.relative_to(package).as_posix()):
+        content = sha256(file.read_bytes()).hexdigest()
+        digest.update(f"{file.relative_to(package).as_posix()} {content}\n".encode())
+    return digest.hexdigest()
 
 
 def _cpu_model() -> str:

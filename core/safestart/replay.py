@@ -7,6 +7,7 @@ Elsewhere the last bits of floating-point sums may differ, and each process name
 from __future__ import annotations
 
 import io
+import json
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -15,7 +16,8 @@ from typing import Any, Literal
 import numpy as np
 
 from safestart.artifact import Artifact
-from safestart.comparable import comparable
+from safestart.comparable import canonical, comparable
+from safestart.errors import invalid
 from safestart.processes.execute import execute
 from safestart.processes.registry import process
 from safestart.progress import Context
@@ -53,18 +55,23 @@ def replay(
     ``artifacts`` are the stored files by name. Raises ``NotFound`` for a process that is gone and ``InvalidInput``
     for inputs that it does not take any more.
     """
+    missing = [name for name in ("process", "inputs", "outputs", "provenance") if name not in document]
+    if missing:
+        raise invalid("result", "process, inputs, outputs and provenance", f"none of {', '.join(missing)}")
     process_id = document["process"]["id"]
     again = execute(process_id, document["inputs"], context)
+    # As the store would give it back: numbers of NumPy are plain ones there.
+    outputs = json.loads(canonical(again.document["outputs"]))
     environment = changed(document["provenance"], again.document["provenance"])
     tolerance = process(process_id).replay_tolerance if environment else None
     files = {item.name: item for item in again.artifacts}
-    exact = [*differing(document["outputs"], again.document["outputs"]), *_files(artifacts, files, None)]
+    exact = [*differing(document["outputs"], outputs), *_files(artifacts, files, None)]
     if not exact:
         return Replay("identical", True, tolerance, environment, ())
     if tolerance is None:
         return Replay("different", False, None, environment, tuple(exact[:MOST_DIFFERENCES]))
     loose = [
-        *differing(document["outputs"], again.document["outputs"], tolerance),
+        *differing(document["outputs"], outputs, tolerance),
         *_files(artifacts, files, tolerance),
     ]
     shown = tuple((loose or exact)[:MOST_DIFFERENCES])
@@ -73,17 +80,17 @@ def replay(
 
 def changed(before: Mapping[str, Any], now: Mapping[str, Any]) -> tuple[str, ...]:
     """What of the environment that computes is not as it was; empty where bit for bit is promised."""
-    pairs = [(name, before.get(name), now.get(name)) for name in ("git_revision", "python")]
+    # The revision only stands in for the source where that is not on record: it does not tell what was changed since.
+    source = "source_sha256" if before.get("source_sha256") else "git_revision"
+    pairs = [(name, before.get(name), now.get(name)) for name in (source, "python")]
     was, here = before.get("machine", {}), now.get("machine", {})
     pairs += [(name, was.get(name), here.get(name)) for name in ("cpu", "architecture")]
     was, here = before.get("packages", {}), now.get("packages", {})
     pairs += [(name, was.get(name), here.get(name)) for name in sorted({*was, *here} - _NOT_COMPUTING)]
-    # A source without a revision is not known to be the same.
-    unknown = before.get("git_revision") is None
     return tuple(
         f"{name}: {one} before, {two} here"
         for name, one, two in pairs
-        if one != two or (name == "git_revision" and unknown)
+        if one != two or (name == source and one is None)
     )
 
 
@@ -114,7 +121,8 @@ def _walk(before: Any, now: Any, tolerance: float | None, path: str) -> list[str
 
 def _equal(before: Any, now: Any, tolerance: float | None) -> bool:
     if tolerance is not None and isinstance(before, float) and isinstance(now, float):
-        return math.isclose(before, now, rel_tol=tolerance, abs_tol=tolerance)
+        close = math.isclose(before, now, rel_tol=tolerance, abs_tol=tolerance)
+        return close or (math.isnan(before) and math.isnan(now))
     return type(before) is type(now) and bool(before == now)
 
 
@@ -134,18 +142,29 @@ def _files(before: Mapping[str, bytes], now: Mapping[str, Artifact], tolerance: 
 
 
 def _close(name: str, before: bytes, now: bytes, tolerance: float | None) -> bool:
-    """Arrays by value; pictures are drawn from what is compared already."""
+    """Arrays, tables and documents by value; pictures are drawn from what is compared already."""
     if tolerance is None:
         return False
-    if name.endswith(".png"):
+    ending = name.rpartition(".")[2]
+    if ending == "png":
         return True
-    if not name.endswith(".npz"):
+    if ending == "json":
+        return not differing(json.loads(before), json.loads(now), tolerance)
+    if ending == "parquet":
+        return not differing(_table(before), _table(now), tolerance)
+    if ending != "npz":
         return False
     with np.load(io.BytesIO(before)) as old, np.load(io.BytesIO(now)) as new:
         return set(old.files) == set(new.files) and all(
             old[key].shape == new[key].shape and _arrays_close(old[key], new[key], tolerance)
             for key in old.files
         )
+
+
+def _table(data: bytes) -> Any:
+    import pyarrow.parquet as pq
+
+    return pq.read_table(io.BytesIO(data)).to_pydict()
 
 
 def _arrays_close(one: np.ndarray, two: np.ndarray, tolerance: float) -> bool:

@@ -13,7 +13,10 @@ from typing import Any
 import orjson
 
 from safestart.errors import Unavailable, invalid
+from safestart.processes.base import Table
+from safestart.processes.registry import PROCESS_IDS, process
 from safestart_service.errors import NotAcceptable
+from safestart_service.rows import Rows, columns_of, tables_of
 
 RECORD = "application/vnd.safestart.result+json"
 OGC = "application/json"
@@ -27,8 +30,6 @@ BY_NAME = {"record": RECORD, "ogc": OGC, "csv": CSV, "npz": NPZ, "parquet": PARQ
 NAME = {kind: name for name, kind in BY_NAME.items()}
 JSON = (RECORD, OGC)
 
-Rows = list[dict[str, Any]]
-
 
 def encoded(record: dict[str, Any], kind: str, table: str | None) -> bytes:
     """A record as ``kind``; raises ``InvalidInput``, ``NotAcceptable``, ``Unavailable``."""
@@ -37,7 +38,7 @@ def encoded(record: dict[str, Any], kind: str, table: str | None) -> bytes:
         return orjson.dumps(record if kind == RECORD else ogc_results(record))
     if kind == NPZ:
         return npz_file(outputs)
-    rows = chosen_table(outputs, table)
+    rows = chosen_table(tables_of(outputs, _declared(record)), table)
     return csv_file(rows) if kind == CSV else parquet_file(rows)
 
 
@@ -62,31 +63,8 @@ def ogc_results(record: dict[str, Any]) -> dict[str, Any]:
     return document
 
 
-def tables_of(outputs: dict[str, Any]) -> dict[str, Rows]:
-    """The tables among outputs: lists of objects by name; without any, lists of equal length side by side as one."""
-    found = {
-        name: [_flat(row) for row in value]
-        for name, value in outputs.items()
-        if isinstance(value, list) and value and all(isinstance(row, dict) for row in value)
-    }
-    if found:
-        return found
-    columns = {
-        name: value
-        for name, value in outputs.items()
-        if isinstance(value, list) and value and not any(isinstance(item, list | dict) for item in value)
-    }
-    if columns and len({len(column) for column in columns.values()}) == 1:
-        names = list(columns)
-        return {
-            "outputs": [dict(zip(names, row, strict=True)) for row in zip(*columns.values(), strict=True)]
-        }
-    return {}
-
-
-def chosen_table(outputs: dict[str, Any], name: str | None) -> Rows:
+def chosen_table(found: dict[str, Rows], name: str | None) -> Rows:
     """The table of this name, or the first one; raises ``InvalidInput`` or ``NotAcceptable``."""
-    found = tables_of(outputs)
     if not found:
         raise NotAcceptable(
             "this result holds no table; required application/json or application/x-npz",
@@ -103,7 +81,7 @@ def chosen_table(outputs: dict[str, Any], name: str | None) -> Rows:
 def csv_file(rows: Rows) -> bytes:
     """RFC 4180, with a header line; what has no value is empty."""
     text = io.StringIO()
-    writer = csv.DictWriter(text, _columns(rows), lineterminator="\r\n")
+    writer = csv.DictWriter(text, columns_of(rows), lineterminator="\r\n")
     writer.writeheader()
     writer.writerows(rows)
     return text.getvalue().encode()
@@ -120,7 +98,7 @@ def parquet_file(rows: Rows) -> bytes:
             required="the package pyarrow",
         ) from None
     sink = io.BytesIO()
-    columns = {name: _uniform([row.get(name) for row in rows]) for name in _columns(rows)}
+    columns = {name: _uniform([row.get(name) for row in rows]) for name in columns_of(rows)}
     pq.write_table(pa.table(columns), sink)
     return sink.getvalue()
 
@@ -134,25 +112,18 @@ def npz_file(outputs: dict[str, Any]) -> bytes:
         if isinstance(value, int | float | list) and (array := _numeric(value)) is not None:
             arrays[name] = array
     for name, rows in tables_of(outputs).items():
-        for column in _columns(rows):
-            if name != "outputs" and (array := _numeric([row.get(column) for row in rows])) is not None:
+        for column in columns_of(rows):
+            if (array := _numeric([row[column] for row in rows])) is not None:
                 arrays[f"{name}.{column}"] = array
     sink = io.BytesIO()
     np.savez_compressed(sink, **arrays)
     return sink.getvalue()
 
 
-def _flat(row: dict[str, Any]) -> dict[str, Any]:
-    """The scalars of a row, those of inner objects as ``name.member``; a list of short words as one text."""
-    found: dict[str, Any] = {}
-    for name, value in row.items():
-        if isinstance(value, dict):
-            found.update({f"{name}.{key}": item for key, item in _flat(value).items()})
-        elif not isinstance(value, list):
-            found[name] = value
-        elif all(isinstance(item, str) for item in value):
-            found[name] = " ".join(value)
-    return found
+def _declared(record: dict[str, Any]) -> tuple[Table, ...]:
+    """What the process says of its lists; nothing where it is gone."""
+    process_id = record.get("process", {}).get("id")
+    return process(process_id).tables if process_id in PROCESS_IDS else ()
 
 
 def _numeric(value: Any) -> Any:
@@ -166,10 +137,6 @@ def _numeric(value: Any) -> Any:
     except (TypeError, ValueError):
         return None
     return array if array.dtype.kind in "biuf" else None
-
-
-def _columns(rows: Rows) -> list[str]:
-    return list(dict.fromkeys(name for row in rows for name in row))
 
 
 def _uniform(values: list[Any]) -> list[Any]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -13,10 +14,7 @@ from safestart.store.jobs import JobRepository
 from safestart.store.keys import KeyRepository
 from safestart.store.results import ResultRepository
 from tests.contract.key_holders import BY
-from tests.contract.service_client import (
-    jobs_of,
-    service,
-)
+from tests.contract.service_client import SMALL, jobs_of, service
 from tests.contract.store_backends import BACKENDS, fresh_url
 
 
@@ -46,6 +44,14 @@ def results(database: Database) -> ResultRepository:
 @pytest.fixture
 def keys(database: Database) -> KeyRepository:
     return KeyRepository(database)
+
+
+@pytest.fixture(scope="session")
+def execution() -> Any:
+    """A small benchmark that ran."""
+    from safestart.processes.execute import execute
+
+    return execute("benchmark", SMALL)
 
 
 @pytest.fixture

@@ -29,7 +29,7 @@ from safestart.processes.registry import PROCESS_IDS
 from safestart.store.database import Database
 from safestart.store.jobs import JobRepository
 from safestart.store.keys import KeyRepository
-from safestart_service.formats import tables_of
+from safestart_service.rows import tables_of
 from tests.contract.service_client import url_of
 from tests.waiting import PATIENCE_S
 

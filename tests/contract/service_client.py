@@ -20,6 +20,11 @@ with warnings.catch_warnings():
 
 POINT = {"omega_t_deg_s": 3, "a_max_m_s2": 0.1}
 HEAVY = {"inputs": {**POINT, "grid": {"nx": 5, "ny": 5}, "engines": ["analytical"]}}
+SMALL: dict[str, Any] = {
+    **POINT,
+    "grid": {"nx": 9, "ny": 9, "y_max_m": 150},
+    "engines": ["analytical", "exact"],
+}
 PNG = b"\x89PNG\r\n\x1a\n" + bytes(40)
 
 

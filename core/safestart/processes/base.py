@@ -32,6 +32,19 @@ Runner = Callable[[Any, Context], ProcessOutput]
 
 
 @dataclass(frozen=True, slots=True)
+class Table:
+    """How lists among the outputs make a table.
+
+    Without ``axes`` the lists named in ``columns`` stand side by side, one row per entry. With two axes, each a list,
+    the columns are maps over them, ``column[first][second]``, one row per cell.
+    """
+
+    name: str
+    columns: tuple[str, ...]
+    axes: tuple[str, str] | tuple[()] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class ProcessSpec:
     """Description of a process; light to import, so that the service can offer what it cannot run.
 
@@ -41,6 +54,7 @@ class ProcessSpec:
     ``replay_tolerance`` is how far a replay on another machine or with other versions may be off, relative to
     max(1, |value|); on the same ones it is the same bit for bit.
     ``instant`` names a function (inputs) -> document that the service answers with at submission.
+    ``tables`` are those of the outputs that are no lists of objects; these are tables by themselves.
     """
 
     id: str
@@ -55,6 +69,7 @@ class ProcessSpec:
     version: str = "1.0.0"
     replay_tolerance: float = 1e-9
     keywords: tuple[str, ...] = ()
+    tables: tuple[Table, ...] = ()
     example: dict[str, Any] = field(default_factory=dict)
 
     def parse(self, inputs: Any) -> WireModel:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Sequence
 from datetime import datetime
+from hashlib import sha256
 from typing import Any
 
 from sqlalchemy import insert, select
@@ -11,8 +12,9 @@ from sqlalchemy.orm import Session
 
 from safestart.artifact import Artifact
 from safestart.bundle import Bundle
+from safestart.bundle_parts import event_facts, job_facts
 from safestart.comparable import digest
-from safestart.errors import Conflict, InvalidInput, invalid
+from safestart.errors import Conflict, InvalidInput
 from safestart.store.database import Database
 from safestart.store.models import ArtifactRow, EventRow, JobRow, ResultRow
 from safestart.store.records import JobStatus
@@ -35,6 +37,7 @@ class Transfer:
     def read(self, job_id: str) -> Bundle:
         """Everything of an ended job; raises ``NotFound``, and ``Conflict`` while it has not ended.
 
+        ``Conflict``, too, when its result is not what was stored: nothing is passed on that was altered since.
         Who submitted it and which worker ran it stay here.
         """
         with self._database.session() as session:
@@ -52,7 +55,8 @@ class Transfer:
             events = session.scalars(select(EventRow).where(EventRow.job_id == job_id).order_by(EventRow.id))
             files = session.scalars(
                 select(ArtifactRow).where(ArtifactRow.job_id == job_id).order_by(ArtifactRow.name)
-            )
+            ).all()
+            _require_unaltered(job_id, stored, files)
             return Bundle(
                 job,
                 None if stored is None else stored.document,
@@ -65,7 +69,7 @@ class Transfer:
 
         Raises ``Conflict`` when another job or another result has its id, ``InvalidInput`` for facts that are none.
         """
-        values = _values(bundle.job)
+        values, events = _values(bundle.job), event_facts(bundle.events)
         status = JobStatus(values["status"])
         if (status is JobStatus.SUCCESSFUL) is (bundle.result is None):
             raise _wrong(f"a {status.value} job {'without' if bundle.result is None else 'with'} a result")
@@ -76,40 +80,33 @@ class Transfer:
             session.execute(insert(JobRow).values(**values))
             if bundle.result is not None:
                 add_result(session, values["id"], bundle.result, bundle.artifacts)
-            for event in bundle.events:
-                made = {
-                    "at": _time(event.get("at")),
-                    "kind": str(event.get("kind"))[:16],
-                    "data": event.get("data"),
-                }
-                session.execute(insert(EventRow).values(job_id=values["id"], **made))
+            for event in events:
+                session.execute(insert(EventRow).values(job_id=values["id"], **event))
             return True
 
 
 def _values(job: dict[str, Any]) -> dict[str, Any]:
-    try:
-        values = {name: job[name] for name in _FACTS} | {name: _time(job[name]) for name in _TIMES}
-        ended = JobStatus(values["status"]).ended
-    except (KeyError, ValueError, TypeError) as error:
-        raise _wrong(f"job.json with {error!r}") from None
-    kinds: dict[str, Callable[[Any], bool]] = {
-        "id": lambda v: isinstance(v, str) and 1 <= len(v) <= 36,
-        "process_id": lambda v: isinstance(v, str) and 1 <= len(v) <= 100,
-        "inputs": lambda v: isinstance(v, dict),
-        "created_at": lambda v: v is not None,
-        "updated_at": lambda v: v is not None,
-    }
-    for name, fits in kinds.items():
-        if not fits(values[name]):
-            raise _wrong(f"{name} {values[name]!r:.60}")
-    if not ended:
-        raise _wrong(f"a job that is {values['status']}")
+    values = job_facts(job)
     done = 100.0 if values["status"] == JobStatus.SUCCESSFUL.value else 0.0
     return values | {
         "progress": done,
         "cancel_requested": values["status"] == JobStatus.DISMISSED.value,
         "request_sha256": request_hash(values["process_id"], values["inputs"]),
     }
+
+
+def _require_unaltered(job_id: str, stored: ResultRow | None, files: Sequence[ArtifactRow]) -> None:
+    altered = [] if stored is None or digest(stored.document) == stored.sha256 else ["the result"]
+    altered += [
+        f"artifact {file.name}" for file in files if sha256(bytes(file.data)).hexdigest() != file.sha256
+    ]
+    if altered:
+        raise Conflict(
+            f"job {job_id} is not as it was stored: {', '.join(altered)} does not have the SHA-256 on record",
+            field="jobID",
+            required="a result and artifacts with the SHA-256 on record",
+            received=", ".join(altered),
+        )
 
 
 def _require_same(session: Session, bundle: Bundle) -> None:
@@ -130,15 +127,6 @@ def _require_same(session: Session, bundle: Bundle) -> None:
 
 def _iso(time: datetime | None) -> str | None:
     return None if time is None else time.isoformat()
-
-
-def _time(text: Any) -> datetime | None:
-    if text is None:
-        return None
-    time = datetime.fromisoformat(text)
-    if time.tzinfo is None:
-        raise invalid("bundle", "times with their zone", text)
-    return time
 
 
 def _wrong(what: str) -> InvalidInput:

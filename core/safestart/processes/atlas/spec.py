@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from safestart.processes.base import ProcessSpec, WireModel
+from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.wire import GridInput, ScenarioInput
 
 
@@ -51,6 +51,7 @@ SPEC = ProcessSpec(
     inputs=AtlasInputs,
     outputs=AtlasOutputs,
     run="safestart.processes.atlas.run:run",
+    tables=(Table("inner_polygon_m", ("inner_polygon_m",)), Table("half_planes", ("half_planes",))),
     keywords=("exact", "proof", "safe-start region"),
     example={"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "grid": {"nx": 31, "ny": 31, "y_max_m": 150}},
 )

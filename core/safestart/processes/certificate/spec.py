@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from safestart.processes.base import ProcessSpec, WireModel
+from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.wire import GridInput, ScenarioInput
 from safestart.scenario import Rest
 
@@ -39,6 +39,7 @@ SPEC = ProcessSpec(
     outputs=CertificateOutputs,
     run="safestart.processes.certificate.run:run",
     light=True,
+    tables=(Table("cells", ("mask", "margin_m"), axes=("y_m", "x_m")),),
     keywords=("certificate", "safe-start region"),
     example={"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "grid": {"nx": 31, "ny": 31, "y_max_m": 150}},
 )

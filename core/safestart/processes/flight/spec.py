@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from safestart.processes.base import ProcessSpec, WireModel
+from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.go_no_go.asked import Kind
 from safestart.processes.go_no_go.spec import StateInput
 from safestart.processes.wire import Horizon, ScenarioInput
@@ -55,6 +55,7 @@ SPEC = ProcessSpec(
     outputs=FlightOutputs,
     run="safestart.processes.flight.run:run",
     light=True,
+    tables=(Table("flight", ("time_s", "body_m", "lvlh_m", "thrust_m_s2", "distance_m")),),
     keywords=("exact", "trajectory"),
     example={"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "start": {"x_m": 5, "y_m": 40}},
 )

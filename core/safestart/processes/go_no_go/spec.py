@@ -6,7 +6,7 @@ from typing import Any, Literal
 
 from pydantic import Field
 
-from safestart.processes.base import ProcessSpec, WireModel
+from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.go_no_go.asked import Asked, Kind, Method
 from safestart.processes.go_no_go.widths import Member
 from safestart.processes.wire import ScenarioInput
@@ -83,6 +83,15 @@ SPEC = ProcessSpec(
     outputs=GoNoGoOutputs,
     run="safestart.processes.go_no_go.run:run",
     light=True,
+    tables=(
+        Table(
+            "states",
+            (
+                *("verdict", "margin_m", "face_margins_m", "range_margin_m", "binding", "violated_faces"),
+                *("reason", "end_s"),
+            ),
+        ),
+    ),
     keywords=("certificate", "go/no-go"),
     example={"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "states": [{"x_m": 5, "y_m": 40}]},
 )

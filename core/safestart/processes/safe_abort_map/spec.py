@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
-from safestart.processes.base import ProcessSpec, WireModel
+from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.passive_safety.rendezvous import RendezvousInputs
 from safestart.processes.sharding import Sharding
 
@@ -101,6 +101,7 @@ SPEC = ProcessSpec(
         "safestart.processes.safe_abort_map.run:merge",
         "safestart.processes.safe_abort_map.parts:summary",
     ),
+    tables=(Table("starts", ("x_m", "y_m", "safe_abort_until_min", "all_proved_until_min")),),
     keywords=("verification", "passive safety", "abort", "map"),
     example={"starts": "arc", "arc": {"rings": 2, "angles": 60}, "box_half_width_m": 0.1},
 )

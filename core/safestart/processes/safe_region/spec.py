@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from safestart.processes.base import ProcessSpec, WireModel
+from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.wire import Horizon, ScenarioInput
 
 
@@ -41,6 +41,7 @@ SPEC = ProcessSpec(
     outputs=SafeRegionOutputs,
     run="safestart.processes.safe_region.run:run",
     light=True,
+    tables=(Table("inner_polygon_m", ("inner_polygon_m",)), Table("outer_polygon_m", ("outer_polygon_m",))),
     keywords=("exact", "safe-start region"),
     example={"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "horizon_s": 60, "y_max_m": 150},
 )

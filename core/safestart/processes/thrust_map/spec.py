@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field, model_validator
 
-from safestart.processes.base import ProcessSpec, WireModel
+from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.coverage.spec import Rates, Thrusts
 from safestart.processes.wire import CorridorInput
 from safestart.scenario import MAX_MEAN_MOTION, Rest
@@ -53,6 +53,10 @@ SPEC = ProcessSpec(
     outputs=ThrustMapOutputs,
     run="safestart.processes.thrust_map.run:run",
     light=True,
+    tables=(
+        Table("safe_percent", ("safe_percent",), axes=("omega_t_deg_s", "a_max_m_s2")),
+        Table("required_a_max_m_s2", ("omega_t_deg_s", "required_a_max_m_s2")),
+    ),
     keywords=("certificate", "trade study"),
     example={"omega_t_deg_s": [1, 3, 5], "a_max_m_s2": [0.05, 0.1, 0.2], "stand_off_m": 40},
 )
