@@ -16,7 +16,7 @@ from safestart.errors import (
     InvalidInput,
     Unavailable,
 )
-from safestart.store import schema
+from safestart.store import dialect, schema
 from safestart.store.database import Database
 from safestart.store.jobs import JobRepository
 from safestart.store.models import Base
@@ -122,3 +122,18 @@ def test_another_error_rolls_back_and_passes_through(database: Database, jobs: J
     with pytest.raises(ZeroDivisionError):
         half_a_change()
     assert jobs.get(job.id).message == ""
+
+
+def test_what_somebody_else_has_locked_is_not_waited_for_without_end(
+    url: str, database: Database, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(dialect, "BUSY_TIMEOUT_S", 0.1)
+    hasty = Database(url)
+    with database.session(write=True) as session:
+        session.connection()  # SQLite's lock
+        if not database.one_writer:
+            session.execute(text("LOCK TABLE jobs"))
+        with pytest.raises(Unavailable, match="lock"):
+            submit(JobRepository(hasty))
+    submit(JobRepository(hasty))
+    hasty.close()

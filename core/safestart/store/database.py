@@ -11,6 +11,7 @@ from threading import Lock
 from sqlalchemy import Connection, Engine, create_engine, text
 from sqlalchemy.engine import URL
 from sqlalchemy.exc import ArgumentError, DBAPIError, OperationalError, SQLAlchemyError
+from sqlalchemy.exc import TimeoutError as NoConnection
 from sqlalchemy.orm import Session
 
 from safestart.errors import Away, Unavailable
@@ -118,6 +119,8 @@ class Database:
     def _unavailable(self, error: SQLAlchemyError) -> Unavailable:
         # Never str(error): it holds the statement and its parameters.
         reason = str(error.orig) if isinstance(error, DBAPIError) else type(error).__name__
+        if isinstance(error, NoConnection):
+            reason = "all connections of this process are in use"
         reason = without_secrets(" ".join(reason.split()), self._url)
         kind = Away if self._url.get_backend_name() == "postgresql" and _away(error) else Unavailable
         return kind(

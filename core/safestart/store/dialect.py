@@ -130,9 +130,12 @@ def _on_sqlite_connect(connection: sqlite3.Connection, _record: Any) -> None:
 
 
 def _on_postgresql_connect(connection: Any, _record: Any) -> None:
-    # A process that is stopped in the middle of a transaction would keep its rows locked, and others from taking over.
     with connection.cursor() as cursor:
+        # A process that is stopped in the middle of a transaction would keep its rows locked, and others from taking
+        # over.
         cursor.execute(f"SET idle_in_transaction_session_timeout = {int(STOPPED_S * 1000)}")
+        # As long as SQLite waits: what somebody else locks must not hang every request.
+        cursor.execute(f"SET lock_timeout = {int(BUSY_TIMEOUT_S * 1000)}")
     connection.commit()
 
 
@@ -154,7 +157,9 @@ def _on_sqlite_begin(connection: Connection) -> None:
 
 
 def lock_schema(connection: Connection) -> None:
-    """Wait until no other process migrates, for this transaction."""
+    """Wait until no other process migrates, for this transaction; however long it takes, as that ends by itself."""
+    if connection.dialect.name == "postgresql":
+        connection.execute(text("SET LOCAL lock_timeout = 0"))
     _wait_for(connection, _SCHEMA_LOCK)
 
 
