@@ -33,7 +33,7 @@ INSTANT = frozenset({"/go-no-go", "/go-no-go/proof", "/certificates"})
 """Computed from the request alone: a POST there reads, and changes nothing."""
 MOST_FAILURES_PER_S = 5.0
 _LONGEST_KEY = 512
-_READING = ("GET", "HEAD")
+_READING = ("GET", "HEAD", "OPTIONS")
 _HOST_PORT = re.compile(r"(\[[^\]]*\]|[^:]*)(:\d{0,5})?")
 REMEDY = "a key made with `safestart keys create`, as Authorization: Bearer KEY or X-API-Key: KEY"
 

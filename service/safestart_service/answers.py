@@ -9,6 +9,7 @@ from typing import Any
 import orjson
 from fastapi import Request
 from fastapi.responses import Response
+from starlette._utils import get_route_path
 
 _HOST = re.compile(r"[A-Za-z0-9._-]+(:\d{1,5})?|\[[0-9A-Fa-f:.]+\](:\d{1,5})?")
 
@@ -34,6 +35,12 @@ def base_url(request: Request) -> str:
         name, port = scope.get("server") or ("127.0.0.1", None)
         host = f"{name}:{port}" if port else name
     return f"{scope.get('scheme', 'http')}://{host}{scope.get('root_path', '')}"
+
+
+def this_url(request: Request) -> str:
+    """The address that was asked for, query included."""
+    query = request.scope["query_string"].decode("latin-1")
+    return f"{base_url(request)}{get_route_path(request.scope)}{'?' if query else ''}{query}"
 
 
 def tagged(request: Request, content: Any, headers: dict[str, str] | None = None) -> Response:

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import cache
 from typing import Any, Literal
 
+import orjson
 from pydantic import Field, create_model
 
-from safestart.errors import invalid
+from safestart.errors import InvalidInput, invalid
 from safestart.processes.base import ProcessSpec, WireModel
 from safestart.processes.go_no_go.spec import GoNoGoInputs
 from safestart.processes.registry import process
 from safestart.progress import Context
+from safestart_service.body import parse_body
 from safestart_service.describe import output_ids
+from safestart_service.formats import ogc_values
+
+_QUALIFIED = {"value", "mediaType", "encoding", "schema"}
 
 
 class OutputRequest(WireModel):
@@ -49,6 +55,37 @@ def execute_model(process_id: str) -> type[ExecuteRequest]:
     )
 
 
+def parse_request(process_id: str, body: bytes) -> ExecuteRequest:
+    """Validate a body; raises as :func:`parse_body`.
+
+    An input may come as a qualified value, ``{"value": ...}``, as the standard has it for objects; that is looked at
+    only where the body is not valid without.
+    """
+    model = execute_model(process_id)
+    try:
+        return parse_body(model, body)
+    except InvalidInput:
+        plain = _unqualified(body)
+        if plain is None:
+            raise
+        return parse_body(model, plain)
+
+
+def _unqualified(body: bytes) -> bytes | None:
+    """The body with bare values for qualified ones; None where there is none."""
+    try:
+        document = orjson.loads(body)
+        inputs = document["inputs"].items()
+    except (ValueError, TypeError, KeyError, AttributeError):
+        return None
+    bare = {name: value["value"] for name, value in inputs if _is_qualified(value)}
+    return orjson.dumps(document | {"inputs": document["inputs"] | bare}) if bare else None
+
+
+def _is_qualified(value: Any) -> bool:
+    return isinstance(value, dict) and "value" in value and set(value) <= _QUALIFIED
+
+
 def check_outputs(spec: ProcessSpec, request: ExecuteRequest, *, sync: bool) -> None:
     """Raise ``InvalidInput`` for outputs the process has not, and for a raw response that cannot be given."""
     known = output_ids(spec)
@@ -73,14 +110,12 @@ def run_now(spec: ProcessSpec, inputs: WireModel, context: Context) -> dict[str,
 
 
 def selected(document: dict[str, Any], request: ExecuteRequest) -> Any:
-    """The outputs asked for, or the bare value of a raw response."""
-    if request.outputs is None:
-        return document
-    chosen = {name: document[name] for name in request.outputs}
-    return next(iter(chosen.values())) if request.response == "raw" else chosen
+    """The outputs asked for as the standard's results, or the bare value of a raw response."""
+    chosen = document if request.outputs is None else {name: document[name] for name in request.outputs}
+    return next(iter(chosen.values())) if request.response == "raw" else ogc_values(chosen)
 
 
-def prefers_async(header: str | None) -> bool:
+def prefers_async(headers: Iterable[str]) -> bool:
     """True when a Prefer header (RFC 7240) asks for ``respond-async``."""
-    preferences = (header or "").replace(";", ",").split(",")
+    preferences = (preference.partition(";")[0] for header in headers for preference in header.split(","))
     return any(preference.strip().lower() == "respond-async" for preference in preferences)

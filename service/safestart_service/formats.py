@@ -47,17 +47,18 @@ def tag_of(kind: str, table: str | None) -> str:
     return "" if kind == RECORD else f"-{NAME[kind]}-{sha256((table or '').encode()).hexdigest()[:8]}"
 
 
-def ogc_results(record: dict[str, Any]) -> dict[str, Any]:
-    """The results document of OGC API - Processes 1.0: values by output id, objects qualified, artifacts as links.
+def ogc_values(outputs: dict[str, Any]) -> dict[str, Any]:
+    """Outputs as the standard has them: objects qualified; those without a value left out, as it knows no null."""
+    return {
+        name: {"value": value, "mediaType": "application/json"} if isinstance(value, dict) else value
+        for name, value in outputs.items()
+        if value is not None
+    }
 
-    An output without a value (null) is left out, as the standard's values know no null.
-    """
-    document: dict[str, Any] = {}
-    for name, value in record["outputs"].items():
-        if isinstance(value, dict):
-            document[name] = {"value": value, "mediaType": "application/json"}
-        elif value is not None:
-            document[name] = value
+
+def ogc_results(record: dict[str, Any]) -> dict[str, Any]:
+    """The results document of OGC API - Processes 1.0: values by output id, artifacts as links."""
+    document = ogc_values(record["outputs"])
     for file in record["artifacts"]:
         document[file["name"]] = {"href": file["href"], "type": file["media_type"], "title": file["name"]}
     return document

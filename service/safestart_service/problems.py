@@ -150,12 +150,14 @@ async def _on_own(request: Request, error: Exception) -> Response:
 
 
 def _methods_at(request: Request) -> str:
-    """Methods of every route at this path; each route alone knows only its own."""
+    """Methods answered at this path: those of every route (each alone knows only its own), HEAD and OPTIONS."""
     methods: set[str] = set()
     for pattern, answered in request.app.state.route_table:
         if pattern.fullmatch(request.scope["path"]):
             methods |= answered
-    return ", ".join(sorted(methods))
+    if "GET" in methods and not request.scope["path"].endswith("/events"):
+        methods.add("HEAD")
+    return ", ".join(sorted({*methods, "OPTIONS"}))
 
 
 async def _on_http(request: Request, error: Exception) -> Response:
@@ -169,6 +171,8 @@ async def _on_http(request: Request, error: Exception) -> Response:
         detail = f"there is nothing at {request.scope['path']}; /openapi.json lists what there is"
     elif status is HTTPStatus.METHOD_NOT_ALLOWED:
         headers["Allow"] = required = _methods_at(request)
+        if request.method == "OPTIONS":
+            return Response(status_code=204, headers={"Allow": required})
         received = request.method
         detail = f"{request.scope['path']} does not answer {received}; it answers {required}"
     problem = document(

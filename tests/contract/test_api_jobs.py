@@ -142,6 +142,9 @@ def test_events_resume_and_end(queue):
     resumed = client.get(f"/jobs/{job}/events", headers={"Last-Event-ID": str(ids[1])})
     assert _events(resumed.text) == events[2:]
     assert client.get(f"/jobs/{job}/events", headers={"Last-Event-ID": str(ids[-1])}).status_code == 204
+    for unknown in ("0", "999999999999"):
+        whole = client.get(f"/jobs/{job}/events", headers={"Last-Event-ID": unknown})
+        assert _events(whole.text) == events, "what is no event of the job says nothing of what was seen"
     for wrong in ("x", "-1", "1" * 30):
         assert_problem(
             client.get(f"/jobs/{job}/events", headers={"Last-Event-ID": wrong}), 422, "Last-Event-ID"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -81,14 +82,75 @@ def test_light_execution_can_be_queued(queue):
     assert answer.headers["preference-applied"] == "respond-async"
 
 
+@pytest.mark.parametrize(
+    ("prefer", "status"),
+    [
+        (["respond-async"], 201),
+        (["wait=5", "respond-async"], 201),
+        (["handling=lenient, Respond-Async"], 201),
+        (["wait=5; respond-async"], 200),
+        (["wait=5"], 200),
+    ],
+)
+def test_preferences_may_come_in_several_lines(queue, prefer, status):
+    client, _ = queue
+    lines = [("Prefer", line) for line in prefer]
+    answer = client.post("/processes/certificate/execution", json={"inputs": POINT}, headers=lines)
+    assert answer.status_code == status
+    assert ("preference-applied" in answer.headers) == (status == 201)
+
+
+def test_inputs_may_be_qualified_values(client):
+    url = "/processes/certificate/execution"
+    grid = {"nx": 5, "ny": 7}
+    plain = client.post(url, json={"inputs": {**POINT, "grid": grid}})
+    for qualified in ({"value": grid}, {"value": grid, "mediaType": "application/json"}):
+        answer = client.post(url, json={"inputs": {**POINT, "grid": qualified}})
+        assert answer.json() == plain.json()
+    for wrong in ({"value": grid, "colour": "red"}, {"value": {"nx": "x"}}, {"href": "http://localhost/"}):
+        assert_problem(client.post(url, json={"inputs": {**POINT, "grid": wrong}}), 422, "grid")
+
+
+def test_process_list_pages(client):
+    everything = client.get("/processes").json()
+    assert [link["rel"] for link in everything["links"]] == ["self"]
+    seen: list[str] = []
+    url: str | None = "/processes?limit=5"
+    while url:
+        page = client.get(url).json()
+        links = {link["rel"]: link["href"] for link in page["links"]}
+        assert links["self"].endswith(url.removeprefix("http://testserver"))
+        assert len(page["processes"]) <= 5
+        seen += [entry["id"] for entry in page["processes"]]
+        url = links.get("next")
+    assert seen == [entry["id"] for entry in everything["processes"]]
+    for wrong in ("limit=0", "limit=x", "offset=-1", "colour=red"):
+        assert_problem(client.get(f"/processes?{wrong}"), 422, wrong.partition("=")[0])
+
+
 def test_idempotency_key(queue):
     client, jobs = queue
     first = submit(client, **{"Idempotency-Key": "abc"})
     assert submit(client, **{"Idempotency-Key": "abc"}) == first
+    marks = [
+        client.post(
+            "/processes/benchmark/execution", json=HEAVY, headers={"Idempotency-Key": key}
+        ).headers.get("idempotency-replayed")
+        for key in ("abc", "other", "other")
+    ]
+    assert marks == ["true", None, "true"]
     other = client.post(
         "/processes/coverage/execution", json={"inputs": {}}, headers={"Idempotency-Key": "abc"}
     )
     assert_problem(other, 422, "Idempotency-Key")
+    assert jobs.counts()["accepted"] == 2
+
+
+def test_one_key_at_once_from_many_threads_makes_one_job(queue):
+    client, jobs = queue
+    with ThreadPoolExecutor(20) as pool:
+        made = list(pool.map(lambda _: submit(client, **{"Idempotency-Key": "abc"}), range(20)))
+    assert len(set(made)) == 1
     assert jobs.counts()["accepted"] == 1
 
 

@@ -209,9 +209,9 @@ def test_too_large(client, path):
 def test_methods_and_paths(client):
     answer = client.put("/go-no-go")
     problem = assert_problem(answer, 405)
-    assert answer.headers["allow"] == "GET, POST"
+    assert answer.headers["allow"] == "GET, HEAD, OPTIONS, POST"
     assert problem["received"] == "PUT"
-    assert client.post("/jobs/x").headers["allow"] == "DELETE, GET"
+    assert client.post("/jobs/x").headers["allow"] == "DELETE, GET, HEAD, OPTIONS"
     assert_problem(client.get("/nothing/here"), 404)
     assert_problem(client.get("/jobs/"), 404)
 

@@ -126,6 +126,7 @@ def test_results_by_accept(done):
     for answer, accept in ((record, "*/*"), (ogc, "application/json"), (table, "text/csv")):
         again = client.get(path, headers={"Accept": accept, "If-None-Match": answer.headers["etag"]})
         assert (again.status_code, again.content) == (304, b"")
+        assert again.headers["vary"] == "Accept", "or a cache gives the table to who wants the record"
     crossed = client.get(path, headers={"Accept": "text/csv", "If-None-Match": record.headers["etag"]})
     assert crossed.status_code == 200
     assert_problem(client.get(path, headers={"Accept": "image/png"}), 406, "Accept")
@@ -162,6 +163,22 @@ def test_head_is_get_without_its_body(queue):
         assert answer.headers["content-type"] == client.get(path).headers["content-type"]
     assert client.head("/nothing").status_code == 404
     assert client.head("/jobs/x/events").status_code == 405, "a stream has no head to be had alone"
+
+
+def test_options_and_allow_name_every_method(queue):
+    client, _ = queue
+    for path, allowed in (
+        ("/jobs", "GET, HEAD, OPTIONS"),
+        ("/jobs/x", "DELETE, GET, HEAD, OPTIONS"),
+        ("/jobs/x/events", "GET, OPTIONS"),
+        ("/processes/benchmark/execution", "OPTIONS, POST"),
+    ):
+        answer = client.options(path)
+        assert (answer.status_code, answer.headers["allow"], answer.content) == (204, allowed, b"")
+        refused = client.request("PATCH", path)
+        assert_problem(refused, 405)
+        assert refused.headers["allow"] == allowed
+    assert_problem(client.options("/nothing"), 404)
 
 
 # Long polls

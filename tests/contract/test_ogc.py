@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from safestart_service.dialects import common
 from tests.contract import ogc_schemas
-from tests.contract.service_client import HEAVY, POINT, finish, jobs_of, service, submit
+from tests.contract.service_client import HEAVY, finish, jobs_of, service, submit
 
 FORMATS = jsonschema.FormatChecker()
 
@@ -54,10 +54,24 @@ def test_documents_conform(setting):
     assert results["rows"][0]["engine"] == "analytical"
     assert results["map.png"]["type"] == "image/png"
     conforms(client.post("/processes/benchmark/execution", json=HEAVY).json(), ogc_schemas.STATUS_INFO)
-    sync = client.post("/processes/certificate/execution", json={"inputs": POINT}).json()
-    assert "mask" in sync
     for path in ("/jobs/nope", "/processes/nope", "/nope", "/jobs?limit=0"):
         conforms(client.get(path).json(), ogc_schemas.EXCEPTION)
+
+
+def test_answers_at_once_conform(setting):
+    client, _ = setting
+    for entry in client.get("/processes").json()["processes"]:
+        if "sync-execute" in entry["jobControlOptions"]:
+            url = f"/processes/{entry['id']}"
+            example = client.get(url).json()["example"]
+            conforms(client.post(f"{url}/execution", json={"inputs": example}).json(), ogc_schemas.RESULTS)
+
+
+def test_a_list_links_to_itself_with_its_query(setting):
+    client, _ = setting
+    for url in ("/jobs", "/jobs?limit=2&status=accepted", "/processes?limit=3"):
+        links = client.get(url).json()["links"]
+        assert [link["href"] for link in links if link["rel"] == "self"] == [f"http://testserver{url}"]
 
 
 def test_descriptions_conform(setting):

@@ -48,10 +48,11 @@ class Submissions:
         submitter: str = "",
         max_queued: int | None = None,
         by: Caller | None = None,
+        job_id: str | None = None,
     ) -> Job:
         """Put a job in the queue: higher ``priority`` first, among equals in fair turns by ``submitter``.
 
-        Who did it (``by``) goes into the audit log.
+        Who did it (``by``) goes into the audit log. A new job gets ``job_id``, or an id of its own.
         The same ``idempotency_key`` of the same submitter with the same process and inputs returns the first job;
         with others it raises ``IdempotencyMismatch``. Raises ``QueueFull`` when ``max_queued`` jobs wait already, and
         ``InvalidInput`` when the inputs are not JSON.
@@ -73,7 +74,7 @@ class Submissions:
             if max_queued is not None:
                 _require_room(session, max_queued)
             row = JobRow(
-                id=str(uuid4()),
+                id=job_id or str(uuid4()),
                 process_id=process_id,
                 status=JobStatus.ACCEPTED.value,
                 priority=priority,

@@ -35,6 +35,9 @@ async def events(
     found = services(request)
     after = resume_point(last_event_id)
     job = await asyncio.to_thread(known_job, found, jobID)
+    if after:  # what is no event of this job, or one that is gone, says nothing of what was seen
+        known = await asyncio.to_thread(found.jobs.events, jobID, after - 1, 1)
+        after = after if known and known[0].id == after else 0
     if after and job.status.ended and not await asyncio.to_thread(found.jobs.events, jobID, after, 1):
         return Response(status_code=204)
     headers = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}

@@ -16,7 +16,7 @@ from safestart.processes.registry import PROCESS_IDS
 from safestart.store.filters import JobFilter
 from safestart.store.records import JobStatus
 from safestart_service.access import caller, require_own
-from safestart_service.answers import Json, base_url, link, tagged
+from safestart_service.answers import Json, base_url, link, tagged, this_url
 from safestart_service.intervals import interval, without_nul
 from safestart_service.jobs_view import job_detail, known_job, partial_document, status_infos
 from safestart_service.openapi import TAG, answer, refusals
@@ -80,7 +80,7 @@ def jobs(request: Request, query: Annotated[JobQuery, Query()]) -> Response:
         most_s=query.maxDuration,
     )
     page = found.jobs.list(wanted, limit=query.limit, cursor=query.cursor)
-    links = [link(f"{base}/jobs", "self", "this list")]
+    links = [link(this_url(request), "self", "this list")]
     if page.next_cursor is not None:
         again = query.model_dump(mode="json", exclude_defaults=True) | {"cursor": page.next_cursor}
         links.append(link(f"{base}/jobs?{urlencode(again, doseq=True)}", "next", "next page"))

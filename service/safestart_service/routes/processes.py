@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import asyncio
 from typing import Annotated, Any
+from uuid import uuid4
 
-from fastapi import APIRouter, Header, Path, Request
+from fastapi import APIRouter, Header, Path, Query, Request
 from fastapi.responses import Response
+from pydantic import BaseModel, ConfigDict, Field
 
 from safestart.access import Caller, Role
 from safestart.processes.base import ProcessSpec
 from safestart.processes.registry import PROCESS_IDS, process
 from safestart_service.access import caller
-from safestart_service.answers import Json, base_url, link, tagged
-from safestart_service.body import parse_body, read_body
+from safestart_service.answers import Json, base_url, link, tagged, this_url
+from safestart_service.body import read_body
 from safestart_service.describe import description, known_process, summary
 from safestart_service.errors import Forbidden
 from safestart_service.execute import (
@@ -21,6 +23,7 @@ from safestart_service.execute import (
     check_outputs,
     check_states,
     execute_model,
+    parse_request,
     prefers_async,
     run_now,
     selected,
@@ -34,16 +37,29 @@ router = APIRouter(tags=["processes"])
 ProcessId = Annotated[str, Path(description="Id of a process.")]
 
 
+class ProcessQuery(BaseModel):
+    """Paging of the process list."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    limit: int = Field(100, ge=1, le=1000, description="Processes per page.")
+    offset: int = Field(0, ge=0, le=10_000, description="How many to leave out: taken from the link `next`.")
+
+
 @router.get(
     "/processes",
     summary="List of processes",
-    responses={200: answer(ProcessList, "All.", ETag=TAG), **refusals(304)},
+    responses={200: answer(ProcessList, "A page of processes.", ETag=TAG), **refusals(304, 422)},
 )
-async def processes(request: Request) -> Response:
-    """Everything that can be run."""
-    base = base_url(request)
-    entries = [summary(process(name), base) for name in PROCESS_IDS]
-    return tagged(request, {"processes": entries, "links": [link(f"{base}/processes", "self", "this list")]})
+async def processes(request: Request, query: Annotated[ProcessQuery, Query()]) -> Response:
+    """Everything that can be run; the link `next` leads to the next page, where there is one."""
+    base, end = base_url(request), query.offset + query.limit
+    links = [link(this_url(request), "self", "this list")]
+    if end < len(PROCESS_IDS):
+        further = f"{base}/processes?limit={query.limit}&offset={end}"
+        links.append(link(further, "next", "next page"))
+    entries = [summary(process(name), base) for name in PROCESS_IDS[query.offset : end]]
+    return tagged(request, {"processes": entries, "links": links})
 
 
 @router.get(
@@ -73,6 +89,7 @@ async def describe(request: Request, processID: ProcessId) -> Response:
             "The job is queued; a benchmark's instant certificate comes with it.",
             Location="The job.",
             Preference_Applied="respond-async, when that was asked for.",
+            Idempotency_Replayed="true, when the job was there already.",
         ),
         **refusals(400, 404, 413, 415, 422, 429, 503),
     },
@@ -80,7 +97,9 @@ async def describe(request: Request, processID: ProcessId) -> Response:
 async def execute(
     request: Request,
     processID: ProcessId,
-    prefer: Annotated[str | None, Header(description="respond-async: queue a light process too.")] = None,
+    prefer: Annotated[
+        list[str] | None, Header(description="respond-async: queue a light process too.")
+    ] = None,
     idempotency_key: Annotated[
         str | None, Header(description="1 to 255 characters; the same key and body return the same job.")
     ] = None,
@@ -88,12 +107,12 @@ async def execute(
     """Light processes answer at once (200); with ``Prefer: respond-async`` they are queued, as heavy ones are."""
     spec = known_process(processID)
     body = await read_body(request)
-    wants_async = prefers_async(prefer)
+    wants_async = prefers_async(prefer or ())
     sync = spec.light and not wants_async
     found, base, by = services(request), base_url(request), caller(request)
 
     def respond() -> Response:
-        asked: Any = parse_body(execute_model(spec.id), body)
+        asked: Any = parse_request(spec.id, body)
         check_outputs(spec, asked, sync=sync)
         check_states(asked.inputs, found.settings.max_states)
         if sync:
@@ -121,6 +140,7 @@ def _submit(
             received=asked.priority,
         )
     instant = spec.instant_answer(asked.inputs)
+    new = str(uuid4())
     job = found.jobs.submit(
         spec.id,
         asked.inputs.model_dump(mode="json"),
@@ -131,6 +151,7 @@ def _submit(
         max_queued=found.settings.max_queued,
         submitter=by.key_id or "",
         by=by,
+        job_id=new,
     )
     document = job_detail(found, job, base)
     if job.instant is not None:
@@ -138,4 +159,6 @@ def _submit(
     headers = {"Location": f"{base}/jobs/{job.id}"}
     if wants_async:
         headers["Preference-Applied"] = "respond-async"
+    if job.id != new:
+        headers["Idempotency-Replayed"] = "true"
     return Json(document, 201, headers)

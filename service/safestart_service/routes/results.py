@@ -63,6 +63,7 @@ def results(
     tag = entity_tag(record["sha256"] + formats.tag_of(kind, table))
     known = not_modified(request, tag)
     if known is not None:
+        known.headers["Vary"] = "Accept"
         return known
     headers = {"ETag": tag, "Cache-Control": _CACHE, "Vary": "Accept"}
     if kind not in formats.JSON:
