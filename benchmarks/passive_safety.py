@@ -19,8 +19,9 @@ from safestart.verification.guard import Guard
 from safestart.verification.model import PUBLISHED, Dynamics, System
 from safestart.verification.question import Question
 from safestart.verification.reach import Reach, reach
-from safestart.verification.rows import PAPER_JOB, competition_rows, warm
+from safestart.verification.rows import PAPER_JOB, competition_rows
 from safestart.verification.verify import verify
+from safestart.verification.warm import warm
 
 RUNS = 15
 SYSTEMS = {

@@ -17,7 +17,7 @@ from safestart.guidance.worlds import CwhWorld
 from safestart.levelset.warm import warm as compile_levelset
 from safestart.progress import Context
 from safestart.scenario import Grid, Scenario
-from safestart.verification.rows import warm as passive_safety
+from safestart.verification.warm import warm as passive_safety
 
 _PROBLEM = Problem(Scenario.of(3.0, 0.1), Grid(3, 3, 60.0), horizon=4.0, dt=2.0)
 

@@ -15,6 +15,7 @@ from safestart.errors import JobFailed
 from safestart.processes.execute import execute
 from safestart.processes.registry import process
 from safestart.store.records import JobStatus
+from safestart.warmup import PARTS
 from tests.acceptance.worker_process import DASK_GIVES_UP_S, Farm, over
 from tests.waiting import PATIENCE_S, until
 
@@ -94,6 +95,8 @@ def test_a_job_is_picked_up_and_ends_with_its_result(farm: Farm) -> None:
     assert "numpy" in ended.versions["packages"]
     assert farm.worker is not None
     assert "warming up kernels ... " in farm.said()
+    # On a very busy machine the worker does not wait for all.
+    assert "goes on" in farm.said() or all(f"{part}, " in farm.said() for part in PARTS)
     assert "warming up failed" not in farm.said()
     assert farm.jobs.workers_alive() == 1
     heard = [

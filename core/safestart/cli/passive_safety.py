@@ -59,7 +59,8 @@ def passive_safety_document(model: str = "linear", guard: str = "octagon") -> di
     """``rows`` of the competition, the ``paper``'s job, and ``notes``."""
     from safestart.verification.guard import Guard
     from safestart.verification.model import Dynamics, System
-    from safestart.verification.rows import competition_rows, paper_row, warm
+    from safestart.verification.rows import competition_rows, paper_row
+    from safestart.verification.warm import warm
 
     system = System(Dynamics(model), guard=Guard(guard))
     with reporting("passive safety") as context:

@@ -19,11 +19,6 @@ PAPER_JOB = Question(horizon=240.0, window=(120.0, 125.0))
 """The job that paper 003 times: aborts in [120, 125] min, 4 hours."""
 
 
-def warm(system: System = PUBLISHED) -> None:
-    """Compute the tables of matrix exponentials once per process; they depend on the system alone."""
-    verify(Question(window=(0.0, HORIZON), box=50.0, system=system))
-
-
 def paper_row(system: System = PUBLISHED) -> dict[str, Any]:
     """The paper's own job with its published times."""
     return _row("paper 003", replace(PAPER_JOB, system=system)) | {
