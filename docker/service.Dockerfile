@@ -1,5 +1,5 @@
 # The HTTP service: no engine, no JAX, no Dask.
-FROM python:3.13-slim AS build
+FROM python:3.13-slim-trixie AS build
 RUN pip install --no-cache-dir uv==0.13.9
 WORKDIR /src
 COPY pyproject.toml ./
@@ -9,7 +9,7 @@ COPY worker worker
 ENV UV_PROJECT_ENVIRONMENT=/opt/safestart UV_LINK_MODE=copy UV_COMPILE_BYTECODE=1
 RUN uv sync --no-dev --no-editable --package safestart-service
 
-FROM python:3.13-slim
+FROM python:3.13-slim-trixie
 RUN useradd --system --uid 10001 --create-home safestart
 COPY --from=build /opt/safestart /opt/safestart
 ENV PATH=/opt/safestart/bin:$PATH PYTHONUNBUFFERED=1 SAFESTART_LOG_FORMAT=json

@@ -18,6 +18,7 @@ from pydantic_settings import (
 )
 
 from safestart.errors import invalid
+from safestart.secret_file import with_password
 from safestart.validation import refusal
 
 
@@ -27,6 +28,9 @@ class Settings(BaseSettings):
     model_config = SettingsConfigDict(env_prefix="SAFESTART_", extra="forbid", frozen=True)
 
     database_url: str = Field("", description="SQLAlchemy URL; empty: one SQLite file in the data directory.")
+    database_password_file: str = Field(
+        "", description="File that holds the password of a PostgreSQL URL without one."
+    )
     host: str = Field("127.0.0.1", description="Address the service binds to.")
     port: int = Field(8000, ge=0, le=65535, description="Port the service binds to.")
     scheduler: str = Field("", description="Address of a Dask scheduler; empty: an embedded LocalCluster.")
@@ -83,9 +87,9 @@ class Settings(BaseSettings):
         return init_settings, env_settings, _file(settings_cls)
 
     def url(self) -> str:
-        """The database URL; the default directory is made when it is not there."""
+        """The database URL with its password; the default directory is made when it is not there."""
         if self.database_url:
-            return self.database_url
+            return with_password(self.database_url, self.database_password_file)
         folder = user_data_path("safestart")
         folder.mkdir(parents=True, exist_ok=True)
         return f"sqlite:///{folder / 'safestart.sqlite3'}"
