@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from safestart.errors import InvalidInput
+from safestart.errors import invalid
 
 _REQUIRED = "a readable file that holds the password of the database"
 
@@ -31,16 +31,7 @@ def _read(file: str) -> str:
         password = Path(file).read_text(encoding="utf-8").rstrip("\r\n")
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else "no UTF-8 text"
-        raise _refused(f"{file} ({reason})") from None
+        raise invalid("database_password_file", _REQUIRED, f"{file} ({reason})") from None
     if not password:
-        raise _refused(f"{file}, which is empty")
+        raise invalid("database_password_file", _REQUIRED, f"{file} (empty)")
     return password
-
-
-def _refused(received: str) -> InvalidInput:
-    return InvalidInput(
-        f"database_password_file: required {_REQUIRED}, received {received}",
-        field="database_password_file",
-        required=_REQUIRED,
-        received=received,
-    )

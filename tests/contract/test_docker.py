@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 import yaml
+from sqlalchemy.engine import make_url
 
 ROOT = Path(__file__).resolve().parents[2]
 IMAGES = ("service", "worker")
@@ -75,8 +76,65 @@ def test_the_compose_file_has_every_part(compose: dict[str, Any]) -> None:
     assert all(port.startswith("127.0.0.1:") for port in services["service"]["ports"])
 
 
-def test_no_password_is_written_down(compose: dict[str, Any]) -> None:
-    for service in compose["services"].values():
-        for name, value in service.get("environment", {}).items():
-            if "PASSWORD" in name or "URL" in name:
-                assert "${SAFESTART_DB_PASSWORD:?" in value
+def test_nothing_runs_without_bounds_or_unwatched(compose: dict[str, Any]) -> None:
+    watched = {image: "HEALTHCHECK" in dict(steps(image)) for image in IMAGES}
+    for name, service in compose["services"].items():
+        assert service["restart"] == "unless-stopped", name
+        assert service["mem_limit"], name
+        assert {"max-size", "max-file"} <= set(service["logging"]["options"]), name
+        assert service["stop_grace_period"], name
+        assert service["security_opt"] == ["no-new-privileges:true"], name
+        image = service["image"].removeprefix("safestart-")
+        # `docker compose up --wait` refuses a container that cannot be asked.
+        assert "test" in service.get("healthcheck", {}) or watched.get(image), name
+
+
+def test_who_is_on_which_network(compose: dict[str, Any]) -> None:
+    """Whoever reaches the scheduler runs code as its workers: nobody from outside, nor the service that they reach."""
+    on = {name: set(service["networks"]) for name, service in compose["services"].items()}
+    assert on == {
+        "database": {"records"},
+        "service": {"front", "records"},
+        "scheduler": {"tasks"},
+        "dask-worker": {"tasks"},
+        "worker": {"records", "tasks"},
+    }
+    assert compose["networks"]["records"]["internal"] is True
+    assert compose["networks"]["tasks"]["internal"] is True
+    assert [name for name, service in compose["services"].items() if "ports" in service] == ["service"]
+
+
+def test_every_process_that_imports_the_engines_has_a_place_for_their_kernels(
+    compose: dict[str, Any],
+) -> None:
+    """Without one Numba refuses the import; the scheduler imports them too, with the tasks that pass through it."""
+    instructions = steps("worker")
+    volume = next(arguments for name, arguments in instructions if name == "VOLUME")
+    environment = " ".join(arguments for name, arguments in instructions if name == "ENV")
+    assert f"NUMBA_CACHE_DIR={volume} " in environment
+    users = [service for service in compose["services"].values() if service["image"] == "safestart-worker"]
+    assert len(users) == 3
+    for service in users:
+        assert service["volumes"] == [f"kernels:{volume}"]
+
+
+def test_base_images_name_their_release(compose: dict[str, Any]) -> None:
+    bases = {arguments.split()[0] for image in IMAGES for name, arguments in steps(image) if name == "FROM"}
+    for base in [*bases, compose["services"]["database"]["image"]]:
+        assert re.fullmatch(r"(python:3\.\d+-slim|postgres:\d+)-[a-z]+", base), base
+
+
+def test_passwords_come_from_a_file_and_stand_nowhere_else(compose: dict[str, Any]) -> None:
+    assert compose["secrets"]["database_password"]["file"].endswith(":-./secrets/database_password}")
+    assert "/docker/secrets/" in (ROOT / ".gitignore").read_text().splitlines()
+    knowing = set()
+    for name, service in compose["services"].items():
+        for variable, value in service.get("environment", {}).items():
+            if "PASSWORD" in variable:
+                assert variable.endswith("_FILE")
+                assert value == "/run/secrets/database_password"
+                knowing.add(name)
+            if "URL" in variable:
+                assert make_url(value).password is None
+        assert ("secrets" in service) == (name in knowing), name
+    assert knowing == {"database", "service", "worker"}
