@@ -74,6 +74,19 @@ class Settings(BaseSettings):
         60.0, ge=1, le=3600, description="Longest time a request's body may take to arrive, s."
     )
 
+    max_connections: int = Field(
+        800,
+        ge=2,
+        le=100_000,
+        description="Most open connections; one address other than this machine's own may hold half of them.",
+    )
+    max_followers: int = Field(
+        400,
+        ge=2,
+        le=100_000,
+        description="Most event streams and long polls at once; one API key may hold half of them.",
+    )
+
     @classmethod
     def settings_customise_sources(
         cls,

@@ -17,7 +17,7 @@ from starlette.types import Scope
 from safestart.access import LOCAL, Caller, Role
 from safestart.errors import SafestartError, Unavailable
 from safestart.settings import Settings
-from safestart_service.errors import Forbidden, Misdirected, RateLimited, Unauthorized
+from safestart_service.errors import Forbidden, MalformedRequest, Misdirected, RateLimited, Unauthorized
 from safestart_service.keyring import Keyring
 from safestart_service.rates import Buckets
 
@@ -105,10 +105,10 @@ class Access:
         """No key was ever made: open to whoever comes over loopback, except for administration."""
         if not self._keyring.known and get_route_path(scope) not in INSTANT | {"/metrics"}:
             return Unavailable("the API keys cannot be read from the database", required="the database")
-        server = scope.get("server")
-        if server is not None and not is_local(server[0]):
+        # Both ends: a proxy on this machine may speak for anyone.
+        if not all(is_local(end[0]) for end in (scope.get("server"), scope.get("client")) if end):
             return Unauthorized(
-                f"this address is answered only with a key, and there is none; required {REMEDY}",
+                f"beyond this machine only a key is answered, and there is none; required {REMEDY}",
                 required=REMEDY,
             )
         if not LOCAL.role.allows(needed):
@@ -184,7 +184,9 @@ def _allowed(host: bytes, names: frozenset[str]) -> bool:
     return True
 
 
-def _misdirected(host: bytes) -> Misdirected:
+def _misdirected(host: bytes) -> SafestartError:
+    if b"," in host:
+        return MalformedRequest("Host: required once (RFC 9112)", field="Host", required="once")
     required = "localhost, an IP address, or a name in the setting allowed_hosts"
     shown = host[:100].decode("latin-1")
     return Misdirected(

@@ -6,14 +6,17 @@ import gc
 import ipaddress
 import socket
 from contextlib import suppress
+from functools import partial
 from time import sleep
-from typing import Annotated, Any
+from typing import Annotated, Any, cast
 
 import typer
 
 from safestart.errors import Away, InvalidInput, SafestartError, Unavailable
 from safestart.logs import configure
 from safestart.settings import Settings, settings
+from safestart_service.open_files import make_room
+from safestart_service.places import Places
 
 REMEDY = (
     "whoever reaches it could use it, as no API keys are in force: make one with `safestart keys create --name NAME "
@@ -54,6 +57,7 @@ def _serve(overrides: dict[str, object]) -> None:
         except Away as error:
             typer.echo(f"safestart: waits for the database: {error.detail}", err=True)
             sleep(AWAY_S)
+    make_room(chosen.max_connections)
     listener = listen(family, address, chosen.host)
     try:
         # Imported when it is sure that they are needed: a wrong argument is answered at once.
@@ -69,11 +73,11 @@ def _serve(overrides: dict[str, object]) -> None:
             database.migrate()
         config = uvicorn.Config(
             create_app(chosen, database),
-            http=Protocol,
+            http=cast(Any, partial(Protocol, places=Places(chosen.max_connections))),
             ws="none",
             access_log=False,
             log_config=None,
-            log_level="warning",
+            log_level="error",  # of what a peer does wrong, our own words are enough
             server_header=False,
             timeout_graceful_shutdown=3,  # event streams never end by themselves
         )

@@ -99,6 +99,14 @@ class RateLimited(SafestartError):
     title = "Too many requests"
 
 
+class TooManyConnections(SafestartError):
+    """A connection for which there is no place."""
+
+    status = 503
+    slug = "too-many-connections"
+    title = "Too many connections"
+
+
 class HeadTooLarge(SafestartError):
     """A request line and headers longer than any request needs."""
 

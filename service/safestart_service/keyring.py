@@ -10,6 +10,7 @@ import asyncio
 import logging
 import secrets
 from collections.abc import AsyncIterator
+from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import asynccontextmanager
 from hmac import compare_digest
 from time import monotonic
@@ -75,20 +76,23 @@ class Keyring:
     @asynccontextmanager
     async def kept_fresh(self) -> AsyncIterator[None]:
         """Read the keys now, and again and again until the end."""
-        await self._try_load()
-        task = asyncio.create_task(self._keep())
+        # A thread of its own: however much there is to compute, a key revoked elsewhere is refused in time.
+        reader = ThreadPoolExecutor(1, "keyring")
+        await self._try_load(reader)
+        task = asyncio.create_task(self._keep(reader))
         try:
             yield
         finally:
             task.cancel()
+            reader.shutdown(wait=False)
 
-    async def _keep(self) -> None:
+    async def _keep(self, reader: Executor) -> None:
         while True:
             await asyncio.sleep(REFRESH_S)
-            await self._try_load()
+            await self._try_load(reader)
 
-    async def _try_load(self) -> None:
+    async def _try_load(self, reader: Executor) -> None:
         try:
-            await asyncio.to_thread(self.load)
+            await asyncio.get_running_loop().run_in_executor(reader, self.load)
         except SafestartError as error:
             log.warning("keys not read: %s", error.detail)

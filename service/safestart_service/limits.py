@@ -98,7 +98,9 @@ class Limits:
             elif name == b"transfer-encoding":
                 chunked = True
             elif name == b"host":
-                host = value
+                host = (
+                    value if host is None else host + b"," + value
+                )  # twice: no name, so none that is allowed
             elif name == b"authorization":
                 authorization = value
             elif name == b"x-api-key":

@@ -8,12 +8,12 @@ from time import monotonic
 from typing import Any
 
 import orjson
+from starlette.concurrency import run_in_threadpool
 
 from safestart.errors import invalid
 from safestart.store.records import Event, JobStatus
 from safestart_service.state import Services
 
-POLL_S = 0.25
 KEEP_ALIVE_S = 15.0
 PAGE = 500
 
@@ -41,7 +41,7 @@ async def stream(services: Services, job_id: str, after: int) -> AsyncIterator[b
     spoke = monotonic()
     yield b"retry: 1000\n\n"
     while True:
-        ended, events = await asyncio.to_thread(_look, services, job_id, after)
+        ended, events = await run_in_threadpool(_look, services, job_id, after)
         if events:
             after = events[-1].id
             spoke = monotonic()
@@ -53,7 +53,7 @@ async def stream(services: Services, job_id: str, after: int) -> AsyncIterator[b
         if monotonic() - spoke > KEEP_ALIVE_S:
             spoke = monotonic()
             yield b": still here\n\n"
-        await asyncio.sleep(POLL_S)
+        await asyncio.sleep(services.following.pause_s)
 
 
 def _look(services: Services, job_id: str, after: int) -> tuple[bool, tuple[Event, ...]]:

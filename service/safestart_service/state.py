@@ -9,6 +9,7 @@ from fastapi import FastAPI, Request
 from safestart.progress import Context
 from safestart.settings import Settings
 from safestart_service.access import Access
+from safestart_service.following import Following
 from safestart_service.keyring import Keyring
 from safestart_service.metrics import Metrics
 
@@ -39,6 +40,7 @@ class Services:
         self.keyring = Keyring(self.keys)
         self.access = Access(settings, self.keyring)
         self.context = Context(shelf=Cache(self.database))
+        self.following = Following(settings.max_followers)
         self.metrics = Metrics(self.jobs.vitals)
 
 

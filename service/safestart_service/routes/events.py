@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import asyncio
 from typing import Annotated
 
 from fastapi import APIRouter, Header, Request
-from fastapi.responses import Response, StreamingResponse
+from fastapi.responses import Response
+from starlette.concurrency import run_in_threadpool
 
+from safestart_service.following import Followed
 from safestart_service.jobs_view import known_job
 from safestart_service.openapi import content, refusals
 from safestart_service.routes.jobs import JobId
@@ -34,11 +35,12 @@ async def events(
     """Server-sent events until the job has ended; ``Last-Event-ID`` resumes where a stream broke off."""
     found = services(request)
     after = resume_point(last_event_id)
-    job = await asyncio.to_thread(known_job, found, jobID)
+    job = await run_in_threadpool(known_job, found, jobID)
     if after:  # what is no event of this job, or one that is gone, says nothing of what was seen
-        known = await asyncio.to_thread(found.jobs.events, jobID, after - 1, 1)
+        known = await run_in_threadpool(found.jobs.events, jobID, after - 1, 1)
         after = after if known and known[0].id == after else 0
-    if after and job.status.ended and not await asyncio.to_thread(found.jobs.events, jobID, after, 1):
+    if after and job.status.ended and not await run_in_threadpool(found.jobs.events, jobID, after, 1):
         return Response(status_code=204)
     headers = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
-    return StreamingResponse(stream(found, jobID, after), media_type="text/event-stream", headers=headers)
+    events_of = stream(found, jobID, after)
+    return Followed(found.following, request, events_of, media_type="text/event-stream", headers=headers)

@@ -10,6 +10,7 @@ from urllib.parse import urlencode
 from fastapi import APIRouter, Path, Query, Request
 from fastapi.responses import Response
 from pydantic import BaseModel, ConfigDict, Field
+from starlette.concurrency import run_in_threadpool
 
 from safestart.errors import invalid
 from safestart.processes.registry import PROCESS_IDS
@@ -25,7 +26,6 @@ from safestart_service.state import services
 
 router = APIRouter(tags=["jobs"])
 MAX_WAIT_S = 30.0
-POLL_S = 0.25
 JobId = Annotated[str, Path(description="Id of a job.")]
 
 
@@ -111,19 +111,18 @@ async def job(
 
     def look() -> tuple[bool, Response]:
         now = known_job(found, jobID)
-        return now.status.ended, tagged(request, job_detail(found, now, base))
+        seen = tagged(request, job_detail(found, now, base))
+        return now.status.ended or (until_change and seen.status_code == 200), seen
 
-    while True:
-        ended, seen = await asyncio.to_thread(look)
-        left = deadline - monotonic()
-        if (
-            ended
-            or left <= 0
-            or (until_change and seen.status_code == 200)
-            or await request.is_disconnected()
-        ):
-            return seen
-        await asyncio.sleep(min(POLL_S, left))
+    # Not in the threads that compute instant answers: whoever follows a job must not wait for those.
+    final, seen = await run_in_threadpool(look)
+    if final or wait <= 0:
+        return seen
+    with found.following.place(request):
+        while not final and (left := deadline - monotonic()) > 0 and not await request.is_disconnected():
+            await asyncio.sleep(min(found.following.pause_s, left))
+            final, seen = await run_in_threadpool(look)
+    return seen
 
 
 @router.get(

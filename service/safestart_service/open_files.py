@@ -1,0 +1,32 @@
+"""Every connection is an open file to the system, which limits how many a process may have."""
+
+from __future__ import annotations
+
+import sys
+
+from safestart.errors import InvalidInput
+
+SPARE = 224
+"""For the database, the event loop and connections that are being turned away."""
+
+
+def make_room(connections: int) -> None:
+    """Raise this process's own limit where it is too low; raises ``InvalidInput`` when the system allows no more."""
+    if sys.platform == "win32":
+        return
+    import resource
+
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    needed = connections + SPARE
+    if soft == resource.RLIM_INFINITY or soft >= needed:
+        return
+    try:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (needed, hard))
+    except (ValueError, OSError):
+        required = f"at most {hard - SPARE}, as this process may open {hard} files"
+        raise InvalidInput(
+            f"max_connections: required {required}, received {connections}",
+            field="max_connections",
+            required=required,
+            received=connections,
+        ) from None
