@@ -14,6 +14,7 @@ from safestart.store.jobs import JobRepository
 from safestart.store.keys import KeyRepository
 from safestart.store.results import ResultRepository
 from tests.contract.key_holders import BY
+from tests.contract.raw_http import Address, small_server
 from tests.contract.service_client import SMALL, jobs_of, service
 from tests.contract.store_backends import BACKENDS, fresh_url
 
@@ -76,3 +77,10 @@ def queue(tmp_path: Path):
     """A client and its queue, empty at first."""
     with service(tmp_path) as found:
         yield found, jobs_of(tmp_path)
+
+
+@pytest.fixture(scope="session")
+def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Address]:
+    """A real server for bytes on the wire."""
+    with small_server(tmp_path_factory.mktemp("wire")) as found:
+        yield found

@@ -2,21 +2,12 @@
 
 from __future__ import annotations
 
-import json
-import socket
-import subprocess
-import sys
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
-from typing import Any
 
 import pytest
 
-from tests.contract.service_client import url_of
-from tests.waiting import PATIENCE_S
+from tests.contract.raw_http import HOST, problem_in, said
 
-HOST = b"Host: localhost\r\n"
 POST = b"POST /certificates HTTP/1.1\r\n" + HOST + b"Content-Type: application/json\r\n"
 NO_HTTP = {
     "noise": b"\x16\x03\x01\x02\x00\x01\x00\r\n\r\n",
@@ -38,54 +29,6 @@ NO_HTTP = {
     "bad chunk": POST + b"Transfer-Encoding: chunked\r\n\r\nZZ\r\n{}\r\n0\r\n\r\n",
     "endless path": b"GET /" + b"a" * 70_000 + b" HTTP/1.1\r\n" + HOST + b"\r\n",
 }
-
-
-@pytest.fixture(scope="module")
-def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, int]]:
-    """A real server that waits five seconds for a head instead of twenty."""
-    folder: Path = tmp_path_factory.mktemp("wire")
-    code = (
-        "import safestart_service.wire as wire; wire.HEAD_S = 5.0;"
-        f"import safestart_service.commands as c; c._serve({{'port': 0, 'database_url': {url_of(folder)!r}}})"
-    )
-    process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
-    assert process.stdout is not None
-    yield "127.0.0.1", int(process.stdout.readline().split()[1].rpartition(":")[2])
-    process.terminate()
-    process.wait(PATIENCE_S)
-
-
-def said(address: tuple[str, int], *pieces: bytes) -> bytes:
-    """All that comes back until the server closes the connection."""
-    with socket.create_connection(address, timeout=PATIENCE_S) as connection:
-        for piece in pieces:
-            try:
-                connection.sendall(piece)
-            except (BrokenPipeError, ConnectionResetError):
-                break
-        found = b""
-        try:
-            while data := connection.recv(65536):
-                found += data
-        except ConnectionResetError:  # it was closed with bytes of ours unread
-            pass
-        return found
-
-
-def problem_in(answer: bytes, status: int) -> dict[str, Any]:
-    """The one problem document of which the answer consists."""
-    head, _, body = answer.partition(b"\r\n\r\n")
-    lines = head.decode("latin-1").split("\r\n")
-    assert lines[0].startswith(f"HTTP/1.1 {status} "), answer[:300]
-    headers = dict(line.lower().split(": ", 1) for line in lines[1:])
-    assert headers["content-type"] == "application/problem+json"
-    assert int(headers["content-length"]) == len(body)
-    assert headers["connection"] == "close"
-    assert headers["x-content-type-options"] == "nosniff"
-    problem: dict[str, Any] = json.loads(body)
-    assert set(problem) >= {"type", "title", "status", "detail", "instance", "field", "required", "received"}
-    assert (problem["status"], problem["request_id"]) == (status, headers["x-request-id"])
-    return problem
 
 
 @pytest.mark.parametrize("name", NO_HTTP)
