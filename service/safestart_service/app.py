@@ -15,7 +15,7 @@ from fastapi.routing import APIRoute
 from safestart.errors import Unavailable
 from safestart.settings import Settings
 from safestart.settings import settings as process_settings
-from safestart_service import openapi, problems
+from safestart_service import deprecation, openapi, problems
 from safestart_service.limits import Limits
 from safestart_service.metrics import MetricsMiddleware
 from safestart_service.routes import (
@@ -79,6 +79,8 @@ def create_app(settings: Settings | None = None, database: Database | None = Non
     attach(app, found)
     problems.install(app)
     openapi.install(app)
+    if deprecation.NOTICES:  # it would cost every answer something
+        app.add_middleware(deprecation.Deprecation)
     app.add_middleware(MetricsMiddleware, metrics=found.metrics)
     app.add_middleware(
         Limits,

@@ -11,7 +11,7 @@ from pydantic.json_schema import models_json_schema
 
 from safestart.access import Role
 from safestart.processes.registry import PROCESS_IDS, process
-from safestart_service import schemas
+from safestart_service import deprecation, schemas
 from safestart_service.access import needed_role
 from safestart_service.execute import execute_model
 from safestart_service.instant import GoNoGoAnswer
@@ -53,9 +53,9 @@ _WHY = {
     415: "The body is not declared as JSON.",
     421: "The Host header names another server.",
     422: "An input is not what is required; the problem names it.",
-    429: "Too many requests with this key, or as many jobs wait as the service accepts; Retry-After says when.",
+    429: "Too many requests or streams with this key, or too many jobs wait; Retry-After says when.",
     500: "An unexpected error.",
-    503: "The database does not answer.",
+    503: "The database does not answer, or too many connections are open.",
 }
 
 
@@ -146,6 +146,7 @@ def build(app: FastAPI) -> dict[str, Any]:
             if components.setdefault(name, schema) != schema:
                 raise AssertionError(f"two different schemas are called {name}")
     _add_access(document)
+    deprecation.mark(document)
     return document
 
 

@@ -31,6 +31,21 @@ def test_without_keys_other_addresses_are_refused(tmp_path):
         assert_problem(outside.post("/processes/benchmark/execution", json=HEAVY), 401)
 
 
+def test_without_keys_a_proxy_does_not_let_strangers_in(tmp_path):
+    """Bound to loopback, behind a proxy that says who asks."""
+    from starlette.testclient import TestClient
+
+    with service(tmp_path) as client:
+        stranger, neighbour = (
+            TestClient(client.app, base_url="http://127.0.0.1:8000", client=(address, 1))
+            for address in ("203.0.113.5", "127.0.0.1")
+        )
+        assert stranger.get("/healthz").status_code == 200
+        assert_problem(stranger.get("/jobs"), 401)
+        assert_problem(stranger.post("/processes/benchmark/execution", json=HEAVY), 401)
+        assert neighbour.get("/jobs").status_code == 200
+
+
 def test_roles(guarded):
     client, made, _ = guarded
     execution, light = "/processes/benchmark/execution", "/processes/certificate/execution"

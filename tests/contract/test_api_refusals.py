@@ -240,6 +240,12 @@ def test_foreign_host_headers(client, host):
     assert_problem(client.post("/processes/coverage/execution", json={}, headers={"Host": host}), 421)
 
 
+@pytest.mark.parametrize("hosts", [("evil.example", "localhost"), ("localhost", "evil.example")])
+def test_two_hosts(client, hosts):
+    """The check must not look at one and the links at the other."""
+    assert_problem(client.get("/", headers=[("Host", host) for host in hosts]), 400, "Host")
+
+
 @pytest.mark.parametrize(
     "host", ["", "localhost", "LOCALHOST:8000", "x.localhost", "127.0.0.1:8000", "[::1]:8000", "192.0.2.7"]
 )

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
+import threading
 from typing import Any
 
 from safestart.access import Role
@@ -70,6 +72,26 @@ def test_keys_made_elsewhere_count_within_seconds(tmp_path):
         until(lambda: client.app.state.services.keys.list()[0].last_used_at is not None, "a note of its use")
         KeyRepository(Database(url_of(tmp_path))).revoke(record.id, BY)
         until(lambda: client.get("/jobs", headers=bearer(key)).status_code == 401, "its revocation")
+
+
+def test_a_revocation_waits_for_no_computation(tmp_path):
+    """Every thread that computes is busy for longer than anyone would wait."""
+    with service(tmp_path) as client:
+        repository = KeyRepository(Database(url_of(tmp_path)))
+        record, key = repository.create("x", Role.READ, None, BY)
+        until(lambda: client.get("/jobs", headers=bearer("")).status_code == 401, "the new key")
+        release = threading.Event()
+
+        async def occupy() -> None:
+            for _ in range(64):
+                asyncio.get_running_loop().run_in_executor(None, release.wait)
+
+        client.portal.call(occupy)
+        try:
+            repository.revoke(record.id, BY)
+            until(lambda: client.get("/metrics", headers=bearer(key)).status_code == 401, "its revocation")
+        finally:
+            release.set()
 
 
 def test_made_over_http(guarded):

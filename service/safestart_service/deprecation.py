@@ -1,0 +1,77 @@
+"""What is going to be removed says so in its answers: ``Deprecation`` (RFC 9745), ``Sunset`` (RFC 8594), and a link."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from email.utils import format_datetime
+from typing import Any
+from urllib.parse import parse_qsl
+
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+
+@dataclass(frozen=True, slots=True)
+class Notice:
+    """A call, or one query parameter of it, that is deprecated from ``since`` on and may be gone from ``until`` on.
+
+    Times are aware; ``link`` is the address of the page that says what to use instead.
+    """
+
+    since: datetime
+    until: datetime
+    link: str
+    parameter: str | None = None
+
+    def __post_init__(self) -> None:
+        if self.until <= self.since:
+            raise ValueError(f"until: required after {self.since}, received {self.until}")
+
+    def headers(self) -> list[tuple[bytes, bytes]]:
+        """Header fields of every answer that it concerns."""
+        sunset = format_datetime(self.until.astimezone(UTC), usegmt=True)
+        return [
+            (b"deprecation", b"@%d" % int(self.since.timestamp())),
+            (b"sunset", sunset.encode()),
+            (b"link", f'<{self.link}>; rel="deprecation"; type="text/html"'.encode()),
+        ]
+
+    def concerns(self, scope: Scope) -> bool:
+        """True when this request uses what is deprecated."""
+        if self.parameter is None:
+            return True
+        asked = parse_qsl(scope["query_string"].decode("latin-1"), keep_blank_values=True)
+        return any(name == self.parameter for name, _ in asked)
+
+
+NOTICES: dict[tuple[str, str], Notice] = {}
+"""By method and path as in the API description: ``("GET", "/jobs/{jobID}")``. Nothing is deprecated today."""
+
+
+class Deprecation:
+    """ASGI middleware that adds the fields; installed only where there is a notice."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self.app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Serve one request."""
+
+        async def telling(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                notice = NOTICES.get((scope["method"], getattr(scope.get("route"), "path", "")))
+                if notice is not None and notice.concerns(scope):
+                    message["headers"].extend(notice.headers())
+            await send(message)
+
+        await self.app(scope, receive, telling if scope["type"] == "http" else send)
+
+
+def mark(document: dict[str, Any]) -> None:
+    """Say the same in an OpenAPI description; raises ``KeyError`` for a notice about what is not there."""
+    for (method, path), notice in NOTICES.items():
+        operation = document["paths"][path][method.lower()]
+        if notice.parameter is None:
+            operation["deprecated"] = True
+        else:
+            {item["name"]: item for item in operation["parameters"]}[notice.parameter]["deprecated"] = True
