@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import io
 import json
+import sqlite3
 import zipfile
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -12,18 +14,23 @@ import pytest
 from sqlalchemy import inspect
 from typer.testing import CliRunner
 
+from safestart.access import Role
 from safestart.artifact import Artifact
 from safestart.bundle import pack, unpack
 from safestart.cli import build
 from safestart.cli.records import age
 from safestart.errors import Conflict, InvalidInput, SafestartError
+from safestart.store import retention
 from safestart.store.backup import backup, restore
+from safestart.store.cache import Cache
 from safestart.store.database import Database
 from safestart.store.jobs import JobRepository
+from safestart.store.keys import KeyRepository
 from safestart.store.models import ArtifactRow, Base, ResultRow
 from safestart.store.results import ResultRepository
 from safestart.store.retention import Retention
 from safestart.store.transfer import Transfer
+from tests.contract.key_holders import BY
 from tests.contract.service_client import SMALL
 from tests.contract.store_backends import BACKENDS, fresh_url
 
@@ -234,24 +241,64 @@ def test_a_backup_copies_every_table_that_there_is(database: Database) -> None:
     assert there == set(Base.metadata.tables)
 
 
+def test_a_backup_replaces_the_cache_and_mixes_with_nobodys_record(
+    url: str, execution: Any, tmp_path: Path
+) -> None:
+    source = Database(f"sqlite:///{tmp_path / 'source.sqlite3'}")
+    source.migrate()
+    done(source, execution)
+    Cache(source).keep("k", b"old")
+    file = tmp_path / "copy.sqlite3"
+    backup(source, file)
+    source.close()
+    target = Database(url)
+    target.migrate()
+    Cache(target).keep("other", b"of a service that runs already")
+    assert restore(target, file) == 1
+    assert (Cache(target).find("k"), Cache(target).find("other")) == (b"old", None)
+    target.close()
+    keyed = Database(f"sqlite:///{tmp_path / 'keyed.sqlite3'}")
+    keyed.migrate()
+    KeyRepository(keyed).create("me", Role.ADMIN, None, BY)
+    with pytest.raises(Conflict, match=r"1 rows of (api_keys|audit); required an empty one"):
+        restore(keyed, file)
+    assert JobRepository(keyed).list().jobs == ()
+    keyed.close()
+
+
 def test_what_is_no_backup_is_refused(database: Database, tmp_path: Path) -> None:
     (tmp_path / "x").write_text("no database " * 100)
-    for wrong in (tmp_path / "x", tmp_path / "nothing"):
+    with closing(sqlite3.connect(tmp_path / "foreign")) as connection:
+        connection.execute("CREATE TABLE jobs (x)")
+    for wrong in (tmp_path / "x", tmp_path / "nothing", tmp_path / "foreign"):
         with pytest.raises(SafestartError, match=r"required a backup|could not be copied"):
             restore(database, wrong)
 
 
 def test_only_what_ended_long_ago_is_purged(database: Database, execution: Any) -> None:
-    jobs, retention = JobRepository(database), Retention(database)
+    jobs, kept = JobRepository(database), Retention(database)
     old = done(database, execution)
     running = jobs.submit("benchmark", SMALL, timeout_s=60.0).id
     assert jobs.claim("worker", 30.0) is not None
     waiting = jobs.submit("benchmark", SMALL, timeout_s=60.0).id
-    assert retention.older(3600.0) == retention.purge(3600.0) == 0
-    assert retention.older(-1.0) == retention.purge(-1.0) == 1
+    assert kept.older(3600.0) == kept.purge(3600.0) == 0
+    assert kept.older(-1.0) == kept.purge(-1.0) == 1
     assert {job.id for job in jobs.list().jobs} == {running, waiting}
     assert jobs.events(old) == ()
-    assert retention.purge(-1.0) == 0
+    assert kept.purge(-1.0) == 0
+
+
+def test_others_write_while_much_is_purged(
+    url: str, database: Database, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    jobs, other = JobRepository(database), JobRepository(Database(url))
+    old = [jobs.dismiss(jobs.submit("benchmark", SMALL, timeout_s=60.0).id).id for _ in range(25)]
+    new: list[str] = []
+    monkeypatch.setattr(
+        retention, "sleep", lambda _: new.append(other.submit("benchmark", SMALL, timeout_s=60.0).id)
+    )
+    assert Retention(database).purge(-1.0) == len(old)
+    assert {job.id for job in jobs.list().jobs} == set(new) != set()
 
 
 @pytest.mark.parametrize(("text", "seconds"), [("30d", 2592000), ("1.5h", 5400), ("90 min", 5400), ("0s", 0)])
@@ -288,4 +335,9 @@ def test_the_commands(execution: Any, tmp_path: Path, monkeypatch: pytest.Monkey
     assert "its seal is" in run("import", "b.zip", "--seal", "00", "--database-url", other, code=2)
     assert '"verdict": "identical"' in run("replay", "b.zip", "--json")
     assert "1 jobs" in run("backup", "c.sqlite3", "--database-url", url)
+    nowhere = f"sqlite:///{tmp_path / 'mistyped.sqlite3'}"
+    for command in (("backup", "d.sqlite3"), ("purge", "--older-than", "0s"), ("export", job)):
+        said = run(*command, "--database-url", nowhere, code=2)
+        assert "required a database that is there" in said, command
+    assert not list(tmp_path.glob("mistyped*"))
     assert "1 jobs would be deleted" in run("purge", "--older-than", "0s", "--dry-run", "--database-url", url)

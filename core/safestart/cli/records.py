@@ -84,7 +84,7 @@ def import_(
     from safestart.store.transfer import Transfer
 
     opened = unpack(_bytes(bundle), seal)
-    with _database(database_url) as database:
+    with _database(database_url, new=True) as database:
         new = Transfer(database).add(opened)
     out.print(f"job {opened.job['id']}: {'imported' if new else 'is here already, with the same content'}")
 
@@ -108,7 +108,7 @@ def restore(
     """Fill an empty database from a backup; SQLite or PostgreSQL, whichever it was made from."""
     from safestart.store.backup import restore as fill
 
-    with _database(database_url) as database:
+    with _database(database_url, new=True) as database:
         jobs = fill(database, file)
         out.print(f"restored {jobs} jobs to {database.shown}", soft_wrap=True)
 
@@ -150,11 +150,14 @@ def _bundle_of(job: str, database_url: str) -> Bundle:
 
 
 @contextmanager
-def _database(url: str) -> Iterator[Database]:
+def _database(url: str, *, new: bool = False) -> Iterator[Database]:
+    """The database; ``new``: one that is not there is made, where otherwise a mistaken path is refused."""
     from safestart.settings import settings
     from safestart.store.database import Database
 
     database = Database(url or settings().url())
+    if database.file is not None and not new and not database.file.exists():
+        raise invalid("database_url", "a database that is there", database.shown)
     try:
         database.migrate()
         err.print(f"database {database.shown}", soft_wrap=True, markup=False)

@@ -19,9 +19,10 @@ from safestart.store.database import Database
 from safestart.store.models import Base
 
 _BATCH = 100
-# Alive today, not in a backup; and the counters, of which the migrations have made rows.
+# Alive today, not in a backup.
 _LEFT_OUT = frozenset({"workers"})
-_FILLED_BY_MIGRATIONS = frozenset({"tally"})
+# Not a record of anybody's: replaced. The migrations have made rows of the counters, a service that runs keeps a cache.
+_REPLACED = frozenset({"tally", "cache"})
 
 
 def backup(database: Database, target: Path) -> int:
@@ -51,7 +52,7 @@ def backup(database: Database, target: Path) -> int:
 def restore(database: Database, source: Path) -> int:
     """Fill an empty database from a backup, of this version or an older one; returns the number of jobs.
 
-    Raises ``Conflict`` when the database holds jobs, ``InvalidInput`` for a file that is no backup.
+    Raises ``Conflict`` when the database holds jobs, keys or an audit log, ``InvalidInput`` for a file that is none.
     """
     if not source.is_file():
         raise _refused(source, "a backup", "no file")
@@ -97,7 +98,7 @@ def _copy_rows(source: Connection, target: Connection) -> None:
     for table in Base.metadata.sorted_tables:
         if table.name in _LEFT_OUT:
             continue
-        if table.name in _FILLED_BY_MIGRATIONS:
+        if table.name in _REPLACED:
             target.execute(table.delete())
         batches = source.execution_options(yield_per=_BATCH).execute(select(table)).mappings().partitions()
         for rows in batches:
@@ -125,17 +126,24 @@ def _check(path: Path) -> int:
             said = connection.execute("PRAGMA integrity_check").fetchone()[0]
             if said != "ok":
                 raise _refused(path, "a sound database", str(said))
+            connection.execute("SELECT version_num FROM alembic_version")
             return int(connection.execute("SELECT count(*) FROM jobs").fetchone()[0])
     except sqlite3.Error as error:
         raise _refused(path, "a backup of a safestart database", str(error)) from None
 
 
 def _require_empty(connection: Connection) -> None:
-    if connection.scalar(select(func.count()).select_from(Base.metadata.tables["jobs"])):
-        raise Conflict(
-            "the database holds jobs; required an empty one, so that nothing is overwritten",
-            required="an empty database",
-        )
+    """Raise ``Conflict`` where anybody's record is: what is restored must not mix with it."""
+    for table in Base.metadata.sorted_tables:
+        if table.name in _LEFT_OUT | _REPLACED:
+            continue
+        number = connection.scalar(select(func.count()).select_from(table))
+        if number:
+            raise Conflict(
+                f"the database holds {number} rows of {table.name}; required an empty one, so that nothing is mixed",
+                required="an empty database",
+                received=f"{number} rows of {table.name}",
+            )
 
 
 def _refused(path: Path, required: str, received: str) -> InvalidInput:

@@ -21,6 +21,7 @@ from sqlalchemy.types import Float, TypeDecorator
 
 BUSY_TIMEOUT_S = 30.0
 STOPPED_S = 10.0
+_WAL_BYTES = 64 * 1024 * 1024
 _SCHEMA_LOCK = 0x5AFE57A27
 _QUEUE_LOCK = 0x5AFE57A28
 # SQLite keeps times as text; this layout is what SQLAlchemy writes, so that text order is time order.
@@ -117,6 +118,8 @@ def _on_sqlite_connect(connection: sqlite3.Connection, _record: Any) -> None:
     cursor.execute("PRAGMA foreign_keys = ON")
     # FULL: an answered submission survives a power cut.
     cursor.execute("PRAGMA synchronous = FULL")
+    # The -wal file of a large transaction shrinks again.
+    cursor.execute(f"PRAGMA journal_size_limit = {_WAL_BYTES}")
     deadline = time.monotonic() + BUSY_TIMEOUT_S
     while cursor.execute("PRAGMA journal_mode").fetchone()[0] != "wal":
         try:
