@@ -6,7 +6,12 @@ import io
 import json
 import sqlite3
 import zipfile
+<<<<<<< HEAD
 from contextlib import closing
+=======
+from base64 import b64encode
+from hashlib import sha256
+>>>>>>> 3bd9aa2 (The page of a bundle begins with what a reader looks for, and loads nothing but its own pictures)
 from pathlib import Path
 from typing import Any
 
@@ -93,6 +98,11 @@ def test_a_bundle_opens_without_a_server(database: Database, execution: Any) -> 
         names = set(archive.namelist())
     assert "<script" not in page
     assert "http" not in page.replace("http-equiv", "")
+    style = page.partition("<style>")[2].partition("</style>")[0]
+    allowed = b64encode(sha256(style.encode()).digest()).decode()
+    assert f"default-src 'none'; img-src 'self' file:; style-src 'sha256-{allowed}'" in page
+    assert page.index("<th>engine</th>") < page.index("<th>area_m2</th>"), "what a row is about comes first"
+    assert page.index("<img") < page.index("<h2>Outputs</h2>"), "what is seen at a glance comes first"
     for item in execution.artifacts:
         assert f'href="artifacts/{item.name}"' in page
         assert f"artifacts/{item.name}" in names
