@@ -6,12 +6,9 @@ import io
 import json
 import sqlite3
 import zipfile
-<<<<<<< HEAD
-from contextlib import closing
-=======
 from base64 import b64encode
+from contextlib import closing
 from hashlib import sha256
->>>>>>> 3bd9aa2 (The page of a bundle begins with what a reader looks for, and loads nothing but its own pictures)
 from pathlib import Path
 from typing import Any
 
