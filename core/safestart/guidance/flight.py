@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from types import ModuleType
 
 import numpy as np
 from numba import njit
@@ -14,15 +15,18 @@ from safestart.guidance import plan as _plan
 from safestart.guidance import regimes as _regimes
 from safestart.guidance import safety_filter as _safety_filter
 from safestart.guidance.plan import Plan
-from safestart.guidance.stamp import source_stamp
 from safestart.guidance.truth import CONTINUOUS, DRAWS, NO_DRAWS, Truth
 from safestart.scenario import Floats
+from safestart.stamp import source_stamp
 
 _nominal = _regimes.nominal_command
 _filter = _safety_filter.filter_step
 _distance, _slopes, _advance = _passage.distance, _passage.slopes, _passage.advance
 _delivered = _passage.delivered
 _CONTINUOUS = CONTINUOUS
+
+SOURCES: tuple[ModuleType, ...] = (_passage, _plan, _regimes, _safety_filter, *_safety_filter.SOURCES)
+"""Modules whose kernels the loop calls, and of its arguments: their text is part of its cache key."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,7 +124,7 @@ def _build(stamp: int):  # type: ignore[no-untyped-def]
     return roll_out
 
 
-roll_out = _build(source_stamp(_passage, _plan, _regimes, _safety_filter, *_safety_filter.SOURCES))
+roll_out = _build(source_stamp(*SOURCES))
 """The compiled loop; see :func:`fly` and :func:`safestart.guidance.trajectory.fly_start` for its arguments."""
 
 _NO_LOG = (np.empty((0, 6)), np.empty((0, 3)), np.empty((0, 2), np.int64))

@@ -26,8 +26,8 @@ from safestart.guidance import least_violation as _least_violation
 from safestart.guidance import projection as _projection
 from safestart.guidance.plan import Plan
 from safestart.guidance.projection import FEASIBLE
-from safestart.guidance.stamp import source_stamp
 from safestart.scenario import Floats
+from safestart.stamp import source_stamp
 
 SOURCES: tuple[ModuleType, ...] = (_projection, _least_violation)
 """Modules whose kernels the filter calls: their text is part of its cache key."""

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from safestart.levelset.lattice import Boundary, Lattice
-from safestart.levelset.sweep_kernel import SLACK
+from safestart.levelset.numbers import SLACK
 from safestart.scenario import Floats
 
 Array = NDArray[Any]

@@ -12,9 +12,9 @@ from safestart.errors import invalid
 from safestart.levelset.dynamics import Motion
 from safestart.levelset.lattice import Boundary, Lattice
 from safestart.levelset.layout import Array
+from safestart.levelset.numbers import SLACK
 from safestart.levelset.scheme import FACTS, Flux, Kind, Scheme
 from safestart.levelset.stage import Stage
-from safestart.levelset.sweep_kernel import SLACK
 from safestart.scenario import Floats
 
 COURANT = 0.75

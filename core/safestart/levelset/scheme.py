@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import StrEnum
 from typing import NamedTuple
 
-from safestart.levelset import sweep_kernel
+from safestart.levelset import numbers
 
 
 class Scheme(StrEnum):
@@ -27,11 +27,11 @@ class SchemeFacts(NamedTuple):
 
 
 FACTS = {
-    Scheme.FIRST: SchemeFacts(0, 1, 1),
-    Scheme.ENO2: SchemeFacts(1, 2, 2),
-    Scheme.WENO3: SchemeFacts(2, 2, 3),
-    Scheme.ENO3: SchemeFacts(3, 3, 3),
-    Scheme.WENO5: SchemeFacts(4, 3, 3),
+    Scheme.FIRST: SchemeFacts(numbers.FIRST, 1, 1),
+    Scheme.ENO2: SchemeFacts(numbers.ENO2, 2, 2),
+    Scheme.WENO3: SchemeFacts(numbers.WENO3, 2, 3),
+    Scheme.ENO3: SchemeFacts(numbers.ENO3, 3, 3),
+    Scheme.WENO5: SchemeFacts(numbers.WENO5, 3, 3),
 }
 
 
@@ -59,9 +59,9 @@ class Kind(StrEnum):
     ALWAYS = "always"
 
 
-FLUX_NUMBER = {Flux.LAX_FRIEDRICHS: sweep_kernel.LAX_FRIEDRICHS, Flux.GODUNOV: sweep_kernel.GODUNOV}
+FLUX_NUMBER = {Flux.LAX_FRIEDRICHS: numbers.LAX_FRIEDRICHS, Flux.GODUNOV: numbers.GODUNOV}
 KIND_NUMBER = {
-    Kind.FIXED: sweep_kernel.FIXED,
-    Kind.TUBE: sweep_kernel.TUBE,
-    Kind.ALWAYS: sweep_kernel.ALWAYS,
+    Kind.FIXED: numbers.FIXED,
+    Kind.TUBE: numbers.TUBE,
+    Kind.ALWAYS: numbers.ALWAYS,
 }

@@ -10,19 +10,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from safestart.errors import invalid
+from safestart.levelset import numbers
 from safestart.levelset.dynamics import Ball, Box, Motion, Rates
 from safestart.levelset.lattice import Boundary, Lattice
 from safestart.levelset.layout import Array, Layout
+from safestart.levelset.rate_kernel import fastest
 from safestart.levelset.scheme import FACTS, FLUX_NUMBER, KIND_NUMBER, Flux, Kind, Scheme
-from safestart.levelset.sweep_kernel import fastest, sweep
+from safestart.levelset.sweep_kernel import sweep
 from safestart.levelset.tables import Tables
 from safestart.scenario import Floats
 
 _BOUNDARY_NUMBER = {
-    Boundary.EDGE: 0,
-    Boundary.PERIODIC: 1,
-    Boundary.EXTRAPOLATE: 2,
-    Boundary.AWAY_FROM_ZERO: 3,
+    Boundary.EDGE: numbers.EDGE,
+    Boundary.PERIODIC: numbers.PERIODIC,
+    Boundary.EXTRAPOLATE: numbers.EXTRAPOLATE,
+    Boundary.AWAY_FROM_ZERO: numbers.AWAY,
 }
 
 Clamp = Callable[[float], Floats]
