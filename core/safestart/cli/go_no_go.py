@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from safestart.cli.console import Json, out, print_json
+from safestart.cli.files import write_json
 from safestart.errors import invalid
 from safestart.processes.execute import execute
 from safestart.processes.go_no_go.run import single
@@ -81,20 +81,20 @@ def register(app: typer.Typer) -> None:
         answer = document["outputs"]
         if proof is not None:
             _write(proof, answer["proof"] and answer["proof"][0])
-        if as_json:
-            print_json(single(answer))
-            return
-        go = answer["verdict"][0] == "GO"
-        out.print(
-            f"[bold {'green' if go else 'red'}]{answer['verdict'][0]}[/]: {answer['reason'][0]}",
-        )
-        for member in (answer["examples"] or [[]])[0]:
-            out.print(f"  {_told(member)}", soft_wrap=True)
-        r_sync = answer["r_sync_m"]
-        shown = f"{r_sync:.2f} m" if r_sync is not None else f"none ({answer['r_sync_reason']})"
-        out.print(f"  synchronization range limit: {shown}")
-        for face, margin in zip(answer["faces"], answer["face_margins_m"][0], strict=True):
-            out.print(f"  closed-form margin {face:<11} {margin:9.2f} m")
+        print_json(single(answer)) if as_json else _show(answer)
+
+
+def _show(answer: dict[str, Any]) -> None:
+    """Print the verdict on the one start, why, and what the closed form says of it."""
+    verdict = answer["verdict"][0]
+    out.print(f"[bold {'green' if verdict == 'GO' else 'red'}]{verdict}[/]: {answer['reason'][0]}")
+    for member in (answer["examples"] or [[]])[0]:
+        out.print(f"  {_told(member)}", soft_wrap=True)
+    r_sync = answer["r_sync_m"]
+    shown = f"{r_sync:.2f} m" if r_sync is not None else f"none ({answer['r_sync_reason']})"
+    out.print(f"  synchronization range limit: {shown}")
+    for face, margin in zip(answer["faces"], answer["face_margins_m"][0], strict=True):
+        out.print(f"  closed-form margin {face:<11} {margin:9.2f} m")
 
 
 def _told(member: dict[str, Any]) -> str:
@@ -110,7 +110,4 @@ def _told(member: dict[str, Any]) -> str:
 def _write(path: Path, document: object) -> None:
     if document is None:
         raise invalid("--proof", "a proved verdict (method exact, GO or NO_GO)", "none")
-    try:
-        path.write_text(json.dumps(document, allow_nan=False) + "\n", encoding="utf-8")
-    except OSError as error:
-        raise invalid("--proof", "a writable path", f"{path} ({error.strerror})") from None
+    write_json("--proof", path, document)

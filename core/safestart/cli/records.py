@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from safestart.cli.console import Json, err, out, print_json, reporting
+from safestart.cli.files import readable, writable
 from safestart.errors import InvalidInput, invalid
 
 if TYPE_CHECKING:
@@ -67,10 +68,8 @@ def export(
 
     data, seal = pack(_bundle_of(job, database_url))
     path = output or Path(f"{job}.zip")
-    try:
+    with writable("--output", path):
         path.write_bytes(data)
-    except OSError as error:
-        raise invalid("--output", "a writable path", f"{path} ({error.strerror})") from None
     out.print(f"wrote {path} ({len(data)} bytes), seal {seal}", soft_wrap=True)
 
 
@@ -167,7 +166,5 @@ def _database(url: str, *, new: bool = False) -> Iterator[Database]:
 
 
 def _bytes(path: Path) -> bytes:
-    try:
+    with readable("file", path):
         return path.read_bytes()
-    except OSError as error:
-        raise invalid("file", "a readable file", f"{path} ({error.strerror})") from None

@@ -10,6 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from safestart.cli.console import Json, err, print_json, reporting
+from safestart.cli.files import readable, writable, write_json
 from safestart.errors import InvalidInput, invalid
 from safestart.processes.execute import Execution, execute
 from safestart.processes.registry import PROCESS_IDS, process
@@ -51,9 +52,8 @@ def _read(source: str) -> Any:
     if not source:
         return {}
     try:
-        text = sys.stdin.read() if source == "-" else Path(source).read_text(encoding="utf-8")
-    except OSError as error:
-        raise invalid("--input", "a readable file", f"{source} ({error.strerror})") from None
+        with readable("--input", source):
+            text = sys.stdin.read() if source == "-" else Path(source).read_text(encoding="utf-8")
     except UnicodeDecodeError:
         raise invalid("--input", "UTF-8 text", source) from None
     try:
@@ -63,14 +63,12 @@ def _read(source: str) -> Any:
 
 
 def _write(path: Path, result: Execution) -> None:
-    try:
+    with writable("--output", path):
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(json.dumps(result.document, allow_nan=False, indent=2) + "\n", encoding="utf-8")
+        write_json("--output", path, result.document, indent=2)
         written = [path]
         for artifact in result.artifacts:
             written.append(path.with_name(f"{path.stem}.{artifact.name}"))
             written[-1].write_bytes(artifact.data)
-    except OSError as error:
-        raise invalid("--output", "a writable path", f"{path} ({error.strerror})") from None
     for item in written:
         err.print(f"wrote {item}", soft_wrap=True)
