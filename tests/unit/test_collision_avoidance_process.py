@@ -147,7 +147,7 @@ def test_dismissal_and_progress() -> None:
         ({"horizon_s": 0}, "horizon_s"),
         ({"shape": "ball"}, "shape"),
         ({"players": "both"}, "players"),
-        ({"pilots": ["hj", "hj"]}, "body"),
+        ({"pilots": ["hj", "hj"]}, "pilots"),
         ({"pilots": []}, "pilots"),
         ({"adversaries": ["weather"]}, "adversaries.0"),
         ({"grid": {"nodes_position": 101, "nodes_speed": 61}}, "body"),

@@ -35,7 +35,9 @@ Thrust = Annotated[
 ]
 DT_S = 2.0
 """Length of a control interval, s."""
-Horizon = Annotated[float, Field(ge=DT_S, le=600, multiple_of=DT_S)]
+LONGEST_S = 600
+"""Longest horizon of a question, s."""
+Horizon = Annotated[float, Field(ge=DT_S, le=LONGEST_S, multiple_of=DT_S)]
 T = TypeVar("T")
 
 

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from safestart.processes.base import ProcessSpec, WireModel
-from safestart.processes.wire import Seed, Thrust
+from safestart.processes.wire import DISTINCT, Seed, Thrust
 from safestart.scenario import MAX_ACCELERATION, MAX_MEAN_MOTION
 
 PilotName = Literal["certified", "hj", "supervisor", "mode1", "mode2", "mode3", "mode4", "pd", "coast"]
@@ -98,20 +98,16 @@ class CollisionAvoidanceInputs(WireModel):
     supervised_s: float = Field(1800.0, ge=60, le=7200, description="How long those last, s.")
     band_m: float = Field(20.0, gt=0, le=1000, description="Values up to which a start counts as near, m.")
     period_s: float = Field(1.0, ge=0.1, le=10, description="Control period, s.")
-    pilots: Annotated[list[PilotName], Field(min_length=1)] = Field(
+    pilots: Annotated[list[PilotName], Field(min_length=1), DISTINCT] = Field(
         ["certified", "hj", "supervisor", "mode1", "mode2", "mode3", "mode4", "pd", "coast"]
     )
-    adversaries: Annotated[list[AdversaryName], Field(min_length=1)] = Field(
+    adversaries: Annotated[list[AdversaryName], Field(min_length=1), DISTINCT] = Field(
         ["worst", "mirror", "pursuit", "random", "none"]
     )
     seed: Seed = 0
 
     @model_validator(mode="after")
     def _sizes(self) -> CollisionAvoidanceInputs:
-        for name in ("pilots", "adversaries"):
-            chosen = getattr(self, name)
-            if len(set(chosen)) != len(chosen):
-                raise ValueError(f"{name}: each at most once")
         if self.grid.nodes_position**2 * self.grid.nodes_speed**2 > MAX_NODES:
             raise ValueError(f"grid: at most {MAX_NODES} nodes in all")
         if any(len(state) == 5 for state in self.states):

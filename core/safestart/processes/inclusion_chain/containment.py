@@ -12,7 +12,8 @@ from safestart.certificates.survey import build
 from safestart.engines.exact import containment_horizon
 from safestart.processes.inclusion_chain.evidence import proof_at
 from safestart.processes.inclusion_chain.regions import question_of, state_at
-from safestart.processes.inclusion_chain.spec import DT_S, ChainInputs
+from safestart.processes.inclusion_chain.spec import ChainInputs
+from safestart.processes.wire import DT_S
 from safestart.progress import Context
 from safestart.scenario import Floats, Grid
 

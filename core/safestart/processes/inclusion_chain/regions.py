@@ -17,7 +17,8 @@ from safestart.certificates.survey import build
 from safestart.certificates.tube import Disturbance, Tube, tube_of
 from safestart.engines.base import Problem, ResultCode
 from safestart.engines.registry import engine
-from safestart.processes.inclusion_chain.spec import DT_S, ChainInputs
+from safestart.processes.inclusion_chain.spec import ChainInputs
+from safestart.processes.wire import DT_S
 from safestart.progress import Context
 from safestart.scenario import Bools, Floats, Rest, Scenario, SetKind
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field, model_validator
 
 from safestart.processes.base import ProcessSpec, WireModel
 from safestart.processes.benchmark.spec import HamiltonJacobiInput
-from safestart.processes.wire import GridInput, ScenarioInput
+from safestart.processes.wire import DISTINCT, DT_S, LONGEST_S, GridInput, Horizon, ScenarioInput
 
 SetName = Literal[
     "tube",
@@ -20,30 +20,17 @@ SetName = Literal[
     "hj_position",
     "exact_position",
 ]
-ALL_SETS: tuple[SetName, ...] = (
-    "tube",
-    "analytical_tube",
-    "analytical",
-    "synchronize",
-    "stay",
-    "hj_match",
-    "hj_position",
-    "exact_position",
-)
+ALL_SETS: tuple[SetName, ...] = get_args(SetName)
 CHAIN: tuple[SetName, ...] = ("tube", "analytical", "synchronize", "hj_position")
 """Eq. (12), innermost first."""
-DT_S = 2.0
-LONGEST_S = 600.0
 
 
 class ChainInputs(ScenarioInput):
     """One operating point, one horizon for every set, and what each set means."""
 
     grid: GridInput = Field(default_factory=GridInput)
-    horizon_s: float = Field(
-        40.0, ge=DT_S, le=LONGEST_S, multiple_of=DT_S, description="Horizon of every set, s."
-    )
-    sets: list[SetName] = Field(
+    horizon_s: Horizon = Field(40.0, description="Horizon of every set, s.")
+    sets: Annotated[list[SetName], DISTINCT] = Field(
         list(ALL_SETS), min_length=1, max_length=len(ALL_SETS), description="Sets to compute."
     )
     disturbance_m_s2: float = Field(
@@ -66,13 +53,6 @@ class ChainInputs(ScenarioInput):
         description="Longest horizon at which to look for containment of the certified set, s; 0: do not look.",
     )
     hamilton_jacobi: HamiltonJacobiInput = Field(default_factory=HamiltonJacobiInput)
-
-    @field_validator("sets")
-    @classmethod
-    def _distinct(cls, value: list[SetName]) -> list[SetName]:
-        if len(set(value)) != len(value):
-            raise ValueError("each set at most once")
-        return value
 
     @model_validator(mode="after")
     def _affordable(self) -> ChainInputs:

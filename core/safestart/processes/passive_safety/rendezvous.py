@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
 from safestart.processes.base import WireModel
+
+TargetBox = Annotated[float, Field(gt=0, le=100, description="Half-width of the target's box, m.")]
 
 
 class BrysonInput(WireModel):

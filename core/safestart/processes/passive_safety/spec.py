@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from safestart.processes.base import ProcessSpec, WireModel
-from safestart.processes.passive_safety.rendezvous import RendezvousInputs
+from safestart.processes.passive_safety.rendezvous import RendezvousInputs, TargetBox
 from safestart.processes.wire import Seed
 
 Minutes = Annotated[float, Field(ge=0.0, le=600.0)]
@@ -46,7 +46,7 @@ class PassiveSafetyInputs(RendezvousInputs):
         max_length=12,
         description="Windows [first, last] of the time of failure, min, each verified apart; empty: no failure.",
     )
-    box_half_width_m: float = Field(0.1, gt=0, le=100, description="Half-width of the target's box, m.")
+    box_half_width_m: TargetBox = 0.1
     critical_abort: bool = Field(
         True, description="Also bracket the critical abort time, between 0 and the horizon."
     )

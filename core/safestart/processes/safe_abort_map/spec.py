@@ -7,7 +7,7 @@ from typing import Literal
 from pydantic import Field, model_validator
 
 from safestart.processes.base import ProcessSpec, Table, WireModel
-from safestart.processes.passive_safety.rendezvous import RendezvousInputs
+from safestart.processes.passive_safety.rendezvous import RendezvousInputs, TargetBox
 from safestart.processes.sharding import Sharding
 
 MAX_STARTS = 20_000
@@ -50,7 +50,7 @@ class SafeAbortMapInputs(RendezvousInputs):
     last_abort_min: float = Field(240.0, gt=0, le=600, description="End of the last window, min.")
     windows: int = Field(48, ge=1, le=600, description="Equal windows between 0 and the last abort.")
     drift_min: float = Field(60.0, ge=0, le=120, description="How long drifts are followed after that, min.")
-    box_half_width_m: float = Field(0.1, gt=0, le=100, description="Half-width of the target's box, m.")
+    box_half_width_m: TargetBox = 0.1
     starts_per_shard: int = Field(20, ge=1, le=1000)
 
     @model_validator(mode="after")
