@@ -32,10 +32,10 @@ def register(group: typer.Typer) -> None:
         print_json(document) if as_json else show(document)
 
 
-def collision_avoidance_document() -> dict[str, Any]:
-    """Inputs and outputs of the process at the paper's values (its defaults)."""
+def collision_avoidance_document(inputs: dict[str, Any] | None = None) -> dict[str, Any]:
+    """Inputs and outputs of the process at the paper's values (its defaults) but for ``inputs``."""
     with reporting("collision avoidance") as context:
-        document = execute("collision-avoidance", {}, context).document
+        document = execute("collision-avoidance", inputs or {}, context).document
     return {"paper": PAPER, "inputs": document["inputs"], **document["outputs"]}
 
 
