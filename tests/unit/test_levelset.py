@@ -71,7 +71,13 @@ class Rough:
         return Rates(drift, [first, second])
 
     def gains_at(self, states: np.ndarray, time: float) -> list[np.ndarray]:
-        raise NotImplementedError
+        """G (..., n, 2) per input, of the same functions as the rates on the nodes."""
+        n, two = self.n, np.zeros((*states.shape, 2))
+        if self.separable:
+            two[..., [0, 1], [0, 1]] = np.cos(states[..., -1:])
+            return [two]
+        before = np.sin(np.roll(states, 1, axis=-1))
+        return [np.stack([before, before + 1.0], axis=-1), two + np.eye(n)[:, :2]]
 
 
 def rough_lattice(n: int, boundary: str) -> Lattice:
@@ -365,6 +371,34 @@ def test_optimal_inputs_are_the_best_of_many() -> None:
     others = RNG.uniform([-1.0, 0.0], [0.5, 2.0], (400, 2))
     slope = gradient @ motion.inputs[1].matrix
     assert ((slope * corner).sum(axis=1)[:, None] <= slope @ others.T + 1e-12).all()
+
+
+@pytest.mark.parametrize("separable", [False, True])
+def test_optimal_inputs_follow_gains_that_vary(separable: bool) -> None:
+    """At nodes, where the gains of the rates are known: the support functions of the Hamiltonian are attained."""
+    lattice, motion = rough_lattice(3, "edge"), Rough(3, separable)
+    values = wavy(lattice)
+    solution = solve(lattice, motion, values, 1e-3, options=Options(Scheme.FIRST))
+    assert solution.field is not None
+    at = np.array([3, 5, 2])
+    state = np.array([axis[k] for axis, k in zip(lattice.axes, at, strict=True)])
+    gradient = solution.field.gradient_at(state)
+    chosen = solution.optimal_inputs(state)
+    columns = [
+        [
+            [0.0 if g is None else np.broadcast_to(g, lattice.shape)[tuple(at)] for g in column]
+            for column in player
+        ]
+        for player in motion.rates(lattice, solution.time).gains
+    ]
+    for (bound, aim, price), gains, u in zip(motion.bounds, columns, chosen, strict=True):
+        slope = np.array(gains) @ gradient
+        if isinstance(bound, Ball):
+            most = bound.radius * np.linalg.norm(slope)
+        else:
+            most = (bound.half * np.abs(slope) * (np.abs(slope) > price)).sum()
+        sign = 1.0 if aim == "max" else -1.0
+        assert slope @ (u - bound.middle) == pytest.approx(sign * most, rel=1e-9)
 
 
 class Plain:
