@@ -2,55 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Any
 
 from fastapi import Request
 from fastapi.responses import StreamingResponse
 from starlette.types import Receive, Scope, Send
 
-from safestart_service.access import caller
-from safestart_service.errors import RateLimited
-from safestart_service.places import Places
+from safestart_service.callers import Callers
 
 POLL_S = 0.25
 UNSLOWED = 40
 
 
-class Following:
-    """Places for those who follow a job, of which one key may hold half."""
+class Following(Callers):
+    """Those who follow a job."""
 
     def __init__(self, most: int) -> None:
-        self._places = Places(most)
+        super().__init__("event streams and long polls", most)
 
     @property
     def pause_s(self) -> float:
         """How long to wait before asking again: the more follow, the longer, so that all together ask no more often."""
-        return POLL_S * max(1.0, self._places.taken / UNSLOWED)
-
-    def take(self, request: Request) -> str | None:
-        """Take a place; returns the name to leave it under. Raises ``RateLimited``."""
-        name = caller(request).key_id
-        if self._places.take(name):
-            return name
-        required = f"at most {self._places.most} at once, {self._places.share} of them with one key"
-        raise RateLimited(
-            f"too many event streams and long polls are open; required {required}", required=required
-        )
-
-    def leave(self, name: str | None) -> None:
-        """Give a place back."""
-        self._places.leave(name)
-
-    @contextmanager
-    def place(self, request: Request) -> Iterator[None]:
-        """A place for as long as the block runs; raises ``RateLimited``."""
-        name = self.take(request)
-        try:
-            yield
-        finally:
-            self.leave(name)
+        return POLL_S * max(1.0, self.now / UNSLOWED)
 
 
 class Followed(StreamingResponse):
@@ -59,7 +32,7 @@ class Followed(StreamingResponse):
     def __init__(self, following: Following, request: Request, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
         self._following = following
-        self._name = following.take(request)
+        self._name = following.enter(request)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Send the stream."""

@@ -9,12 +9,16 @@ from fastapi import FastAPI, Request
 from safestart.progress import Context
 from safestart.settings import Settings
 from safestart_service.access import Access
+from safestart_service.callers import Callers
 from safestart_service.following import Following
 from safestart_service.keyring import Keyring
 from safestart_service.metrics import Metrics
 
 if TYPE_CHECKING:
     from safestart.store.database import Database
+
+MOST_COMPUTED = 400
+"""Answers that are computed or wait for it."""
 
 
 class Services:
@@ -40,6 +44,7 @@ class Services:
         self.keyring = Keyring(self.keys)
         self.access = Access(settings, self.keyring)
         self.context = Context(shelf=Cache(self.database))
+        self.computing = Callers("answers are being computed", MOST_COMPUTED)
         self.following = Following(settings.max_followers)
         self.metrics = Metrics(self.jobs.vitals)
 

@@ -10,14 +10,16 @@ from types import SimpleNamespace
 
 import httpx
 import pytest
+from fastapi import Request
 
 from safestart.errors import InvalidInput
+from safestart_service.callers import Callers
 from safestart_service.open_files import make_room
 from safestart_service.places import Places
 from safestart_service.unread import Read
 from safestart_service.wire import MAX_HEAD_BYTES, MOST_AHEAD, holder
 from tests.contract.raw_http import HOST, PLACES, STREAMS, problem_in, said
-from tests.contract.service_client import HEAVY
+from tests.contract.service_client import HEAVY, POINT, assert_problem, service
 from tests.waiting import PATIENCE_S, until
 
 ASKED = b"GET /nothing HTTP/1.1\r\n" + HOST + b"\r\n"
@@ -157,6 +159,31 @@ def test_so_many_follow_and_no_more(address):
                     assert json.loads(refused.text)["type"].endswith("rate-limited")
                 assert client.get(f"/jobs/{job}").status_code == 200
         client.delete(f"/jobs/{job}")
+
+
+def test_the_line_of_those_who_compute_has_an_end(tmp_path):
+    """It is full while nothing is computed any more; the closed form needs no line."""
+    with service(tmp_path) as client:
+        found = client.app.state.services
+        found.computing = Callers("answers are being computed", 2)
+        ask = {**POINT, "x_m": 5, "y_m": 40}
+        calls = (
+            partial(client.get, "/go-no-go", params={**ask, "method": "exact"}),
+            partial(client.get, "/go-no-go/proof", params=ask),
+            partial(client.post, "/go-no-go", json={**POINT, "states": [{"x_m": 5, "y_m": 40}]}),
+            partial(client.post, "/certificates", json=POINT),
+            partial(client.post, "/processes/certificate/execution", json={"inputs": POINT}),
+        )
+        for call in calls:
+            assert call().status_code == 200
+            assert found.computing.now == 0
+            with ExitStack() as held:
+                for _ in range(2):
+                    held.enter_context(found.computing.place(Request({"type": "http"})))
+                refused = call()
+            assert int(refused.headers["retry-after"]) > 0
+            assert "at most 2 at once" in assert_problem(refused, 429)["detail"]
+        assert client.get("/go-no-go", params=ask).status_code == 200
 
 
 def test_one_name_has_half_of_the_places():

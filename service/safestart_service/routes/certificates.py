@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import asyncio
-
 from fastapi import APIRouter, Request
 from fastapi.responses import Response
 
 from safestart.processes.certificate.spec import SPEC, CertificateInputs, CertificateOutputs
 from safestart_service.answers import Json
 from safestart_service.body import parse_body, read_body
+from safestart_service.computing import computed
 from safestart_service.execute import run_now
 from safestart_service.openapi import answer, json_body, refusals
 from safestart_service.state import services
@@ -27,4 +26,4 @@ async def certificates(request: Request) -> Response:
     """Synchronization radius, safe fraction of the corridor, mask and margin of every grid point."""
     body = await read_body(request)
     context = services(request).context
-    return await asyncio.to_thread(lambda: Json(run_now(SPEC, parse_body(CertificateInputs, body), context)))
+    return await computed(request, lambda: Json(run_now(SPEC, parse_body(CertificateInputs, body), context)))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request
@@ -12,6 +11,7 @@ from safestart.errors import NotFound
 from safestart.processes.go_no_go.spec import SPEC, GoNoGoInputs, GoNoGoOutputs
 from safestart_service.answers import Json
 from safestart_service.body import parse_body, read_body
+from safestart_service.computing import computed
 from safestart_service.execute import check_states, run_now
 from safestart_service.instant import GoNoGoAnswer, GoNoGoQuery, flat_answer
 from safestart_service.lean import query_route
@@ -23,7 +23,7 @@ async def _answer(request: Request, query: GoNoGoQuery) -> Response:
     # The closed form takes microseconds; a cone program would hold up every other request.
     if query.method == "closed_form":
         return Json(flat_answer(query))
-    document = await asyncio.to_thread(flat_answer, query, services(request).context)
+    document = await computed(request, flat_answer, query, services(request).context)
     if document["verdict"] != "UNDECIDED":
         document["proof_url"] = f"/go-no-go/proof?{request.url.query}"
     return Json(document)
@@ -32,7 +32,7 @@ async def _answer(request: Request, query: GoNoGoQuery) -> Response:
 async def _proof(request: Request, query: GoNoGoQuery) -> Response:
     asked = query.model_copy(update={"method": "exact" if query.method == "closed_form" else query.method})
     asked = asked.model_copy(update={"proofs": True})
-    document = await asyncio.to_thread(flat_answer, asked, services(request).context)
+    document = await computed(request, flat_answer, asked, services(request).context)
     if document["proof"] is None:
         raise NotFound(
             f"there is no proof: {document['reason']}",
@@ -94,4 +94,4 @@ async def go_no_go_many(request: Request) -> Response:
         check_states(inputs, found.settings.max_states)
         return Json(run_now(SPEC, inputs, found.context))
 
-    return await asyncio.to_thread(respond)
+    return await computed(request, respond)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from typing import Annotated, Any
 from uuid import uuid4
 
@@ -16,6 +15,7 @@ from safestart.processes.registry import PROCESS_IDS, process
 from safestart_service.access import caller
 from safestart_service.answers import Json, base_url, link, tagged, this_url
 from safestart_service.body import read_body
+from safestart_service.computing import computed
 from safestart_service.describe import description, known_process, summary
 from safestart_service.errors import Forbidden
 from safestart_service.execute import (
@@ -120,7 +120,7 @@ async def execute(
         found.access.require_submit(request)
         return _submit(found, spec, asked, idempotency_key, base, wants_async, by)
 
-    return await asyncio.to_thread(respond)
+    return await computed(request, respond)
 
 
 def _submit(
