@@ -6,11 +6,25 @@ from dataclasses import fields
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import JSON, BigInteger, ForeignKey, Index, LargeBinary, MetaData, String, Table, Text
+from sqlalchemy import (
+    JSON,
+    BigInteger,
+    ForeignKey,
+    Index,
+    Integer,
+    LargeBinary,
+    MetaData,
+    String,
+    Table,
+    Text,
+)
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 
 from safestart.store.dialect import UtcTime
 from safestart.store.records import Event, Job, JobStatus, Shard
+
+# SQLite counts by itself in a column of this very type only, and its integers have 64 bits anyway.
+Counter = BigInteger().with_variant(Integer(), "sqlite")
 
 
 class Base(DeclarativeBase):
@@ -47,7 +61,7 @@ class JobRow(Base):
 
     __tablename__ = "jobs"
 
-    seq: Mapped[int] = mapped_column(primary_key=True, autoincrement=True)
+    seq: Mapped[int] = mapped_column(Counter, primary_key=True, autoincrement=True)
     id: Mapped[str] = mapped_column(String(36), unique=True)
     process_id: Mapped[str] = mapped_column(String(100))
     status: Mapped[str] = mapped_column(String(16))
@@ -63,7 +77,7 @@ class JobRow(Base):
     cancel_requested: Mapped[bool] = mapped_column(default=False)
     timeout_s: Mapped[float]
     submitter: Mapped[str] = mapped_column(String(64), default="", server_default="")
-    turn: Mapped[int] = mapped_column(default=0, server_default="0")
+    turn: Mapped[int] = mapped_column(Counter, default=0, server_default="0")
     owner: Mapped[str | None] = mapped_column(String(255))
     token: Mapped[int] = mapped_column(default=0)
     lease_expires_at: Mapped[datetime | None]
@@ -80,6 +94,8 @@ class JobRow(Base):
         Index("ix_jobs_queue", "status", "priority", "turn", "seq", "process_id"),
         Index("ix_jobs_submitter", "submitter", "status", "priority", "turn"),
         Index("ix_jobs_ended", "status", "finished_at"),
+        # The list by status, and how many there are.
+        Index("ix_jobs_status_seq", "status", "seq"),
         {"sqlite_autoincrement": True},
     )
 
@@ -140,7 +156,7 @@ class EventRow(Base):
 
     __tablename__ = "events"
 
-    id: Mapped[int] = mapped_column(primary_key=True, autoincrement=True)
+    id: Mapped[int] = mapped_column(Counter, primary_key=True, autoincrement=True)
     job_id: Mapped[str] = mapped_column(ForeignKey("jobs.id"))
     at: Mapped[datetime]
     kind: Mapped[str] = mapped_column(String(16))
@@ -169,7 +185,7 @@ class CacheRow(Base):
 
     __tablename__ = "cache"
 
-    seq: Mapped[int] = mapped_column(primary_key=True, autoincrement=True)
+    seq: Mapped[int] = mapped_column(Counter, primary_key=True, autoincrement=True)
     key: Mapped[str] = mapped_column(String(64), unique=True)
     sha256: Mapped[str] = mapped_column(String(64))
     size: Mapped[int]

@@ -9,7 +9,7 @@ from sqlalchemy import Connection, Engine, inspect, text
 from safestart.errors import Unavailable
 from safestart.store.dialect import lock_schema
 
-HEAD = "0005"
+HEAD = "0006"
 _MIGRATIONS = Path(__file__).parent / "migrations"
 
 
@@ -21,7 +21,7 @@ def migrate(writer: Engine) -> None:
     with writer.begin() as connection:
         lock_schema(connection)
         if version(connection) != HEAD:
-            _upgrade(connection)
+            upgrade(connection)
 
 
 def version(connection: Connection) -> str | None:
@@ -34,7 +34,8 @@ def version(connection: Connection) -> str | None:
     return found
 
 
-def _upgrade(connection: Connection) -> None:
+def upgrade(connection: Connection, to: str = "head") -> None:
+    """Run the migrations up to a revision; raises ``Unavailable`` for a schema newer than this version."""
     from alembic import command
     from alembic.config import Config
     from alembic.util import CommandError
@@ -43,7 +44,7 @@ def _upgrade(connection: Connection) -> None:
     config.set_main_option("script_location", str(_MIGRATIONS).replace("%", "%%"))
     config.attributes["connection"] = connection
     try:
-        command.upgrade(config, "head")
+        command.upgrade(config, to)
     except CommandError as error:
         raise Unavailable(
             f"the database is at a schema this version does not know ({error}); required: a safestart at "
