@@ -49,7 +49,9 @@ def platform(url: str, *, worker: bool = True) -> Iterator[tuple[httpx.Client, l
     command = [sys.executable, "-m", "safestart", "up" if worker else "serve", "--port", str(port)]
     process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     try:
-        with httpx.Client(base_url=f"http://127.0.0.1:{port}", timeout=60.0) as client:
+        # The service closes what is idle for 5 s: on a slow machine a request could meet that.
+        brief = httpx.Limits(keepalive_expiry=1.0)
+        with httpx.Client(base_url=f"http://127.0.0.1:{port}", timeout=60.0, limits=brief) as client:
             deadline = time.monotonic() + READY_S
             while not _answers(client, "/readyz" if worker else "/healthz"):
                 if time.monotonic() > deadline:
