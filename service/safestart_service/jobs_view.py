@@ -83,6 +83,10 @@ def waiting_reason(wait: Wait | None, crew: Crew) -> str | None:
         return None
     ahead = wait.position - 1
     queue = "next in the queue" if ahead == 0 else f"{_many(ahead, 'job')} ahead"
+    if wait.higher:
+        queue += f", {wait.higher} of higher priority"
+    if wait.turns:
+        queue += f", {wait.turns} that came later, as submitters take turns"
     if not crew.workers:
         return f"{NO_WORKER}; {queue}"
     workers = f"{_many(crew.workers, 'worker')} connected"

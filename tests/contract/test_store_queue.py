@@ -67,6 +67,14 @@ def test_a_waiting_job_knows_when_it_will_start(database: Database, jobs: JobRep
     assert last == Wait(5, pytest.approx(4 * run_s / 2), pytest.approx(4 * run_s / 2 + run_s))
 
 
+def test_a_waiting_job_knows_who_is_ahead_and_why(jobs: JobRepository) -> None:
+    flood = [submit(jobs, submitter="a").id for _ in range(3)]
+    submit(jobs, submitter="b")
+    submit(jobs, submitter="b", priority=1)
+    waits = [jobs.wait(job) for job in flood]
+    assert waits == [Wait(2, None, None, 1, 0), Wait(4, None, None, 1, 1), Wait(5, None, None, 1, 1)]
+
+
 def test_counts_and_the_oldest_waiting(jobs: JobRepository) -> None:
     assert jobs.counts() == {status.value: 0 for status in JobStatus}
     assert jobs.waiting_since() is None

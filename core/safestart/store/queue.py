@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from statistics import fmean
 
-from sqlalchemy import ColumnElement, func, or_, select
+from sqlalchemy import ColumnElement, case, func, or_, select
 from sqlalchemy.orm import Session
 
 from safestart.store.database import Database
@@ -73,21 +73,21 @@ class Queue:
             row = find(session, job_id)
             if row.status != JobStatus.ACCEPTED.value:
                 return None
-            ahead = _by_process(session, _WAITS, _before(row))
+            ahead, higher, turns = _ahead(session, row)
             position = 1 + sum(ahead.values())
             crew, means = crew_of(session), _mean_run_s(session)
             if not means or not crew.places:
-                return Wait(position, None, None)
+                return Wait(position, None, None, higher, turns)
             other = fmean(means.values())
             own = means.get(row.process_id, other)
             if position <= crew.places - crew.busy:
-                return Wait(position, 0.0, own)
+                return Wait(position, 0.0, own, higher, turns)
             work = sum(number * means.get(process, other) for process, number in ahead.items())
             running = select(JobRow.process_id, JobRow.eta_s).where(JobRow.status == JobStatus.RUNNING.value)
             for process, eta_s in session.execute(running):
                 work += means.get(process, other) / 2 if eta_s is None else eta_s
             starts = work / crew.places
-            return Wait(position, starts, starts + own)
+            return Wait(position, starts, starts + own, higher, turns)
 
     def _known(self, job_id: str) -> str:
         with self._database.session() as session:
@@ -101,9 +101,23 @@ def _before(row: JobRow) -> ColumnElement[bool]:
     return or_(JobRow.priority > row.priority, same_priority)
 
 
-def _by_process(session: Session, *conditions: ColumnElement[bool]) -> dict[str, int]:
-    query = select(JobRow.process_id, func.count()).where(*conditions).group_by(JobRow.process_id)
-    return {process: number for process, number in session.execute(query)}
+def _ahead(session: Session, row: JobRow) -> tuple[dict[str, int], int, int]:
+    """Jobs ahead of ``row`` by process; how many by their priority, and how many by turns although they came later."""
+    higher = JobRow.priority > row.priority
+    later = (JobRow.priority == row.priority) & (JobRow.seq > row.seq)
+    columns = (
+        JobRow.process_id,
+        func.count(),
+        func.sum(case((higher, 1), else_=0)),
+        func.sum(case((later, 1), else_=0)),
+    )
+    query = select(*columns).where(_WAITS, _before(row)).group_by(JobRow.process_id)
+    found = session.execute(query).all()
+    return (
+        {item[0]: item[1] for item in found},
+        sum(item[2] for item in found),
+        sum(item[3] for item in found),
+    )
 
 
 def runs(session: Session) -> tuple[Run, ...]:

@@ -92,11 +92,16 @@ class Shard:
 
 @dataclass(frozen=True, slots=True)
 class Wait:
-    """A waiting job: its place (1 = next), and the estimated seconds until it starts and until it ends."""
+    """A waiting job: its place (1 = next), and the estimated seconds until it starts and until it ends.
+
+    Of those ahead, ``higher`` have a higher priority, and ``turns`` came later but go first as submitters take turns.
+    """
 
     position: int
     starts_in_s: float | None
     ends_in_s: float | None
+    higher: int = 0
+    turns: int = 0
 
 
 @dataclass(frozen=True, slots=True)
