@@ -35,7 +35,7 @@ class TextLines(logging.Formatter):
         when = datetime.fromtimestamp(record.created, UTC).isoformat(sep=" ", timespec="milliseconds")
         parts = [when, record.levelname, record.name]
         parts += [f"{name}={value}" for name, value in _subjects(record).items()]
-        parts.append(record.getMessage())
+        parts.append(_line(record.getMessage()))
         trace = _trace(record)
         return " ".join(parts) + (f"\n{trace}" if trace else "")
 
@@ -58,6 +58,13 @@ class JsonLines(logging.Formatter):
 
 def _subjects(record: logging.LogRecord) -> dict[str, str]:
     return {name: str(getattr(record, name)) for name in _SUBJECTS if getattr(record, name, None) is not None}
+
+
+def _line(text: str) -> str:
+    """Text of others (a path, a name) cannot begin a line of its own, nor colour or move what a terminal shows."""
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
 def _trace(record: logging.LogRecord) -> str:

@@ -11,11 +11,12 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
-from safestart.access import KEY_PATTERN, Role, key_digest
+from safestart.access import KEY_PATTERN, Caller, Role, key_digest
 from safestart.cli import build
 from safestart.errors import InvalidInput, NotFound
 from safestart.store.audit import AuditLog
 from safestart.store.database import Database
+from safestart.store.keys import KeyRepository
 from safestart_service.keyring import Keyring
 from tests.contract.key_holders import BY
 from tests.contract.service_client import jobs_of, url_of
@@ -90,6 +91,18 @@ def test_checking_takes_the_same_time_whatever_is_presented(keys):
     # A comparison that stops at the first difference of 64 characters would differ by less than this; what is
     # excluded here is a step left out, such as the digest or the look-up. The comparison is hmac's.
     assert max(medians.values()) < 1.5 * min(medians.values()), medians
+
+
+def test_what_a_client_says_of_itself_is_no_markup(tmp_path):
+    """A proxy on this machine may name any client; the log must be readable all the same."""
+    odd = Caller(None, "[/] b", Role.ADMIN, address="[/nobody]")
+    database = Database(url_of(tmp_path))
+    database.migrate()
+    KeyRepository(database).create("x", Role.READ, None, odd)
+    database.close()
+    shown = CliRunner().invoke(build(), ["keys", "audit", "--database-url", url_of(tmp_path)])
+    assert shown.exit_code == 0, shown.exception
+    assert "[/nobody]" in shown.stdout
 
 
 def test_keys_on_the_command_line(tmp_path):

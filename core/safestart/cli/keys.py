@@ -118,7 +118,7 @@ def audit(
             entry.subject,
             entry.key_id or "-",
             escape(entry.actor),
-            entry.address or "-",
+            escape(entry.address or "-"),
         )
     out.print(shown)
 
