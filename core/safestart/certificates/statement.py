@@ -16,7 +16,7 @@ from flint import fmpq
 from safestart.certificates.strict import LARGEST, ProofRejected, number, part, vector
 from safestart.certificates.weights import Limits, Weight, limits_of, parts_of
 
-__all__ = ["SCHEMA", "ProofRejected", "Stated", "digest_of", "read"]
+__all__ = ["SCHEMA", "ProofRejected", "Stated", "check_seal", "digest_of", "read"]
 
 SCHEMA = "safestart-proof/1"
 _MOST_STEPS = 400
@@ -60,16 +60,21 @@ def digest_of(document: Mapping[str, Any]) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def read(document: Any) -> Stated:
-    """The statement of a document; raise :class:`ProofRejected` when it is malformed or its digest is another's."""
-    if not isinstance(document, Mapping) or document.get("schema") != SCHEMA:
-        raise ProofRejected(f"schema: required a document of schema {SCHEMA}")
+def check_seal(document: Any, schema: str) -> None:
+    """Raise :class:`ProofRejected` unless the document is an object of that schema and its digest is its own."""
+    if not isinstance(document, Mapping) or document.get("schema") != schema:
+        raise ProofRejected(f"schema: required a document of schema {schema}")
     try:
         digest = digest_of(document)
     except (TypeError, ValueError, RecursionError) as error:
         raise ProofRejected(f"document: required plain JSON ({error})") from None
     if document.get("digest") != digest:
         raise ProofRejected(f"digest: required {digest}, received {str(document.get('digest'))[:80]}")
+
+
+def read(document: Any) -> Stated:
+    """The statement of a document; raise :class:`ProofRejected` when it is malformed or its digest is another's."""
+    check_seal(document, SCHEMA)
     question, start = part(document, "question", dict), part(document, "start", dict)
     verdict = document.get("verdict")
     kind = question.get("kind")

@@ -40,14 +40,7 @@ class StatedForAll:
 
 def read(document: Any) -> StatedForAll:
     """The statement of a document; raise :class:`ProofRejected` when it is malformed."""
-    if not isinstance(document, Mapping) or document.get("schema") != SCHEMA:
-        raise ProofRejected(f"schema: required a document of schema {SCHEMA}")
-    try:
-        digest = statement.digest_of(document)
-    except (TypeError, ValueError, RecursionError) as error:
-        raise ProofRejected(f"document: required plain JSON ({error})") from None
-    if document.get("digest") != digest:
-        raise ProofRejected(f"digest: required {digest}, received {str(document.get('digest'))[:80]}")
+    statement.check_seal(document, SCHEMA)
     question, start = part(document, "question", dict), part(document, "start", dict)
     if question.get("kind") != "stay" or question.get("speed_limit") is not None:
         raise ProofRejected("kind: required stay without a speed limit")
