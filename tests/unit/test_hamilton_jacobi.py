@@ -15,7 +15,7 @@ from safestart.engines.exact import reach_margin
 from safestart.engines.hamilton_jacobi import HamiltonJacobi
 from safestart.engines.hj import domain as hj_domain
 from safestart.engines.hj import peer
-from safestart.engines.hj.frame import Frame, coefficients, rotating_gradient, system_matrix
+from safestart.engines.hj.frame import Frame, coefficients, system_matrix
 from safestart.engines.hj.settings import Settings
 from safestart.engines.hj.target import TargetValues, faces, signed_distance
 from safestart.errors import Cancelled, InvalidInput
@@ -24,6 +24,13 @@ from safestart.scenario import CorridorShape, Grid, Rest, Scenario, SetKind, Tar
 
 SMALL = [21, 21, 9, 9]
 GRID = Grid(21, 21, 40.0)
+
+
+def rotating_gradient(target: Target, time: float) -> np.ndarray:
+    """1.5 n^2 Q(2 w t), shape (2, 2), in 1/s^2: what the body frame's model drops."""
+    angle, n = 2.0 * target.tumble_rate * time, target.mean_motion
+    c, s = np.cos(angle), np.sin(angle)
+    return 1.5 * n * n * np.array([[c, -s], [-s, -c]])
 
 
 def run(

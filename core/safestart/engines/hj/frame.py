@@ -62,10 +62,3 @@ def system_matrix(target: Target, frame: Frame) -> Floats:
     a[2, 0], a[3, 1] = gx, gy
     a[2, 3], a[3, 2] = turn, -turn
     return a
-
-
-def rotating_gradient(target: Target, time: float) -> Floats:
-    """1.5 n^2 Q(2 w t), shape (2, 2), in 1/s^2: what the body frame's model drops."""
-    angle, n = 2.0 * target.tumble_rate * time, target.mean_motion
-    c, s = np.cos(angle), np.sin(angle)
-    return 1.5 * n * n * np.array([[c, -s], [-s, -c]])
