@@ -207,9 +207,10 @@ def memory(url: str, jobs: int) -> dict[str, Any]:
                     first = _used(family)
                 if successful >= 4 * (jobs // 4):
                     done.set()
+                for item in fed:
+                    if item.done():
+                        item.result()  # raises what ended it: else the rest would be waited for in vain
                 time.sleep(0.5)
-            for item in fed:
-                item.result()
         last = _used(family)
     grown = {pid: last[pid] / first[pid] - 1.0 for pid in first if pid in last}
     return {

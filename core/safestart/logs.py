@@ -21,10 +21,16 @@ def about(**subjects: str) -> dict[str, Any]:
 
 def configure(form: LogFormat) -> None:
     """Send warnings of every library and everything of ours to stderr, in this format."""
+    lines = JsonLines() if form == "json" else TextLines()
     handler = logging.StreamHandler()
-    handler.setFormatter(JsonLines() if form == "json" else TextLines())
+    handler.setFormatter(lines)
     logging.basicConfig(level=logging.WARNING, handlers=[handler], force=True)
     logging.getLogger("safestart").setLevel(logging.INFO)
+    logging.captureWarnings(True)
+    for logger in logging.root.manager.loggerDict.values():
+        # Libraries that brought handlers of their own (Dask did) keep them, and who reads lines gets one form.
+        for own in logger.handlers if isinstance(logger, logging.Logger) else ():
+            own.setFormatter(lines)
 
 
 class TextLines(logging.Formatter):
