@@ -13,6 +13,7 @@ import pytest
 from safestart.store.database import Database
 from safestart.store.jobs import JobRepository
 from safestart.store.records import JobStatus
+from tests.acceptance.certificates import Authority
 from tests.acceptance.test_worker import CERTIFICATE, STEADY
 from tests.waiting import PATIENCE_S, accepts, free_port, until
 
@@ -67,10 +68,36 @@ def test_jobs_run_on_it_and_wait_again_when_it_goes_away(
     database.close()
 
 
+def test_jobs_run_on_one_with_tls(tmp_path: Path, processes: list[subprocess.Popen[bytes]]) -> None:
+    """By nothing but Dask's own configuration, here its variables."""
+    port = free_port()
+    address = f"tls://127.0.0.1:{port}"
+    url = f"sqlite:///{tmp_path / 'jobs.sqlite3'}"
+    database = Database(url)
+    database.migrate()
+    jobs = JobRepository(database)
+    environment = os.environ | Authority(tmp_path / "certificates").environment()
+    where = ("--host", "127.0.0.1", "--port", str(port), "--no-dashboard")
+    with (tmp_path / "log").open("wb") as log:
+        for command in (
+            ("distributed.cli.dask_scheduler", "--protocol", "tls", *where),
+            ("distributed.cli.dask_worker", address, "--nthreads", "1", "--nworkers", "1", "--no-dashboard"),
+            ("safestart_worker", "--database-url", url, "--scheduler", address),
+        ):
+            arguments = [sys.executable, "-m", *command]
+            processes.append(subprocess.Popen(arguments, stdout=log, stderr=log, env=environment))
+            until(lambda: accepts(port), "a scheduler that listens", log=tmp_path / "log")
+        job = jobs.submit("certificate", CERTIFICATE, timeout_s=PATIENCE_S).id
+        until(lambda: jobs.get(job).status.ended, "the end of the job", log=tmp_path / "log")
+    assert jobs.get(job).status is JobStatus.SUCCESSFUL
+    assert "at tls://127.0.0.1:" in (tmp_path / "log").read_text()
+    database.close()
+
+
 def test_a_scheduler_that_is_not_there_is_named(tmp_path: Path) -> None:
     address = f"tcp://127.0.0.1:{free_port()}"
     url = f"sqlite:///{tmp_path / 'jobs.sqlite3'}"
-    for wrong in (address, "no address at all"):
+    for wrong in (address, "no address at all", "tls://127.0.0.1:8786"):
         ended = subprocess.run(
             [sys.executable, "-m", "safestart_worker", "--database-url", url, "--scheduler", wrong],
             capture_output=True,

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import asyncio
 import re
+import socket
+import ssl
 import time
 from collections.abc import Iterator
 from typing import Any
 
 import psutil
 import pytest
+from distributed.comm import CommClosedError, connect
 
 from safestart.comparable import comparable
 from safestart.errors import JobFailed
@@ -16,6 +20,7 @@ from safestart.processes.execute import execute
 from safestart.processes.registry import process
 from safestart.store.records import JobStatus
 from safestart.warmup import PARTS
+from safestart_worker.credentials import throwaway
 from tests.acceptance.worker_process import DASK_GIVES_UP_S, Farm, over
 from tests.waiting import PATIENCE_S, until
 
@@ -104,6 +109,50 @@ def test_a_job_is_picked_up_and_ends_with_its_result(farm: Farm) -> None:
     ]
     assert {address.ip for address in heard if address} <= {"127.0.0.1"}
     assert 8787 not in {address.port for address in heard if address}
+
+
+def test_no_port_answers_who_has_not_the_certificate(farm: Farm) -> None:
+    """Dask runs what it is sent, and any account of the machine reaches a port on loopback."""
+    assert farm.worker is not None
+    family = (psutil.Process(farm.worker.pid), *farm.processes())
+    ports = {c.laddr.port for p in family for c in p.net_connections() if c.status == psutil.CONN_LISTEN}
+    dask = {port for port in ports if not answers_http(port)}
+    # The scheduler, and a nanny and a worker for each of the two task processes.
+    assert len(dask) == 5
+    assert {port: asyncio.run(answered(port)) for port in dask} == {port: [] for port in dask}
+
+
+def answers_http(port: int) -> bool:
+    """True for one of Dask's ports for pages, all of which are switched off."""
+    with socket.create_connection(("127.0.0.1", port), timeout=PATIENCE_S) as asking:
+        asking.sendall(b"GET / HTTP/1.0\r\n\r\n")
+        asking.shutdown(socket.SHUT_WR)
+        try:
+            answer = b"".join(iter(lambda: asking.recv(4096), b""))
+        except ConnectionError:
+            return False
+    assert not answer.startswith(b"HTTP") or b" 404 " in answer, answer
+    return answer.startswith(b"HTTP")
+
+
+async def answered(port: int) -> list[str]:
+    """Of those without the certificate of the cluster, the ones that get an answer to Dask's most harmless question."""
+    blind = ssl.create_default_context()
+    blind.check_hostname, blind.verify_mode = False, ssl.CERT_NONE
+    foreign = throwaway().get_connection_args("client")["ssl_context"]
+    foreign.verify_mode = ssl.CERT_NONE
+    found = []
+    for who, protocol, context in (
+        ("plain", "tcp", None), ("no certificate", "tls", blind), ("foreign certificate", "tls", foreign),
+    ):  # fmt: skip
+        try:
+            comm = await connect(f"{protocol}://127.0.0.1:{port}", timeout=PATIENCE_S, ssl_context=context)
+            await comm.write({"op": "identity", "reply": True})
+            await comm.read()
+            found.append(who)
+        except CommClosedError:
+            continue
+    return found
 
 
 def test_progress_is_real_and_never_falls(farm: Farm, undisturbed: str) -> None:

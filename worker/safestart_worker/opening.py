@@ -5,14 +5,16 @@ from __future__ import annotations
 import logging
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack, asynccontextmanager
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import dask
-from distributed import Client, LocalCluster
+from distributed import Client, LocalCluster, Security
 from distributed.system import MEMORY_LIMIT
 
-from safestart.errors import InvalidInput, Unavailable
+from safestart.errors import InvalidInput
 from safestart_worker.cluster import Cluster
+from safestart_worker.credentials import configured, refused, throwaway
 
 CONNECT_TIMEOUT_S = 10.0
 _MEMORY_SHARE = 0.9
@@ -27,21 +29,22 @@ async def open_cluster(
 ) -> AsyncIterator[Cluster]:
     """Connect to ``scheduler``, or start an embedded cluster when it is empty; closed at the end."""
     async with AsyncExitStack() as stack:
-        with dask.config.set(_config(max_attempts)):
-            local = None if scheduler else await stack.enter_async_context(_embedded(processes))
+        folder = stack.enter_context(_private_folder())
+        with dask.config.set({**_config(max_attempts), "temporary-directory": folder}):
+            security = configured(scheduler) if scheduler else throwaway()
+            local = None if scheduler else await stack.enter_async_context(_embedded(processes, security))
             try:
                 client = await stack.enter_async_context(
                     Client(
-                        local or scheduler, asynchronous=True, timeout=CONNECT_TIMEOUT_S, set_as_default=False
+                        local or scheduler,
+                        security=security,
+                        asynchronous=True,
+                        timeout=CONNECT_TIMEOUT_S,
+                        set_as_default=False,
                     )
                 )
             except (OSError, TimeoutError) as error:
-                raise Unavailable(
-                    f"scheduler: required the address of a running Dask scheduler, found none at {scheduler}",
-                    field="scheduler",
-                    required="the address of a running Dask scheduler",
-                    received=scheduler,
-                ) from error
+                raise refused(scheduler, error) from error
             except ValueError as error:
                 raise InvalidInput(
                     f"scheduler: required an address such as tcp://host:8786, received {scheduler!r}",
@@ -54,13 +57,21 @@ async def open_cluster(
             yield cluster
 
 
-def _embedded(processes: int) -> LocalCluster:
-    """Processes of one thread each on the loopback interface, without dashboard."""
+def _private_folder() -> TemporaryDirectory[str]:
+    """Dask imports from where its processes keep their files, and others may write to the place it takes by itself."""
+    return TemporaryDirectory(
+        prefix="safestart-", dir=dask.config.get("temporary-directory", None), ignore_cleanup_errors=True
+    )
+
+
+def _embedded(processes: int, security: Security) -> LocalCluster:
+    """Processes of one thread each on the loopback interface, without dashboard, for who has the certificate."""
     return LocalCluster(
         n_workers=processes,
         threads_per_worker=1,
         processes=True,
         host="127.0.0.1",
+        security=security,
         # Dask always opens a port for its pages: a free one, not the well-known one, and without pages (_config).
         dashboard_address=None,
         scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
