@@ -44,7 +44,7 @@ def _static() -> dict[str, Any]:
     return {
         "python": platform.python_version(),
         "git_revision": _git_revision(Path(__file__).resolve()),
-        "source_sha256": source_digest(Path(__file__).resolve().parent),
+        "source_sha256": source(),
         "machine": {
             "cpu": _cpu_model(),
             "cores": os.cpu_count(),
@@ -63,6 +63,12 @@ def _packages() -> tuple[tuple[str, str], ...]:
         except PackageNotFoundError:
             continue
     return tuple(found)
+
+
+@cache
+def source() -> str:
+    """SHA-256 of the source of this package, as it was when it was first asked for."""
+    return source_digest(Path(__file__).resolve().parent)
 
 
 def source_digest(package: Path) -> str:

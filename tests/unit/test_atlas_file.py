@@ -55,6 +55,12 @@ def test_the_key_knows_every_number() -> None:
     assert key_of(QUESTION, 150, 0.005) == key_of(QUESTION, 150.0, 0.005)
 
 
+def test_what_other_code_has_built_is_not_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    ours = key_of(QUESTION, 150.0, 0.005)
+    monkeypatch.setattr("safestart.certificates.atlas_file.source", lambda: "other code")
+    assert key_of(QUESTION, 150.0, 0.005) != ours
+
+
 def test_other_files_are_refused(atlas: Atlas) -> None:
     data = pack(atlas)
     for wrong in (b"", b"atlas", data[: len(data) // 2]):

@@ -71,9 +71,12 @@ def test_a_dismissed_job_ends_between_shards() -> None:
         SHARDING.run(Inputs(), Context(cancelled=lambda: True))
 
 
-def test_content_depends_on_process_version_and_part_alone() -> None:
-    wanted = content("squares", "1.0.0", {"n": 1, "m": 2})
-    assert content("squares", "1.0.0", {"m": 2, "n": 1}) == wanted
-    for other in (("cubes", "1.0.0", {"n": 1, "m": 2}), ("squares", "1.0.1", {"n": 1, "m": 2})):
-        assert content(*other) != wanted
-    assert content("squares", "1.0.0", {"n": 2, "m": 2}) != wanted
+def test_content_depends_on_process_part_and_source_alone() -> None:
+    wanted = content("squares", {"n": 1, "m": 2}, "this code")
+    assert content("squares", {"m": 2, "n": 1}, "this code") == wanted
+    others = (
+        ("cubes", {"n": 1, "m": 2}, "this code"),
+        ("squares", {"n": 2, "m": 2}, "this code"),
+        ("squares", {"n": 1, "m": 2}, "other code"),
+    )
+    assert wanted not in {content(*other) for other in others}

@@ -48,6 +48,19 @@ def of_timeout(timeout_s: float) -> dict[str, Any]:
     )
 
 
+def of_other_source(ours: str, theirs: str) -> dict[str, Any]:
+    """Problem of a job whose parts are computed by different code: nothing could say what its result comes from."""
+    return _problem(
+        "other-source",
+        "Different code",
+        500,
+        f"the worker has the source {ours[:12]} of safestart, a task process of it {theirs[:12]}; start them again "
+        "with the same one",
+        required=ours,
+        received=theirs,
+    )
+
+
 def of_poison(deaths: int) -> dict[str, Any]:
     """Problem of a job one of whose tasks took its processes down with it."""
     return _problem(

@@ -1,6 +1,7 @@
 """A sharded job on the cluster: shards in a window, each kept in the store as it ends, then the merge.
 
-Shards that the store has already, from a worker that was lost, are not done again.
+Shards that the store has already, from a worker that was lost, are not done again; those of other code are. All of a
+job is computed by one source, the one that its provenance names.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from distributed import Future
 from safestart.errors import Cancelled, SafestartError, Unavailable
 from safestart.processes.base import ProcessSpec
 from safestart.processes.sharding import Part, Sharding, content
+from safestart.provenance import source
 from safestart.store.jobs import JobRepository
 from safestart.store.records import Claim
 from safestart_worker import problems
@@ -65,7 +67,7 @@ class Sharded:
             parts = self._sharding.parts(self._spec.parse(self._claim.inputs))
         except SafestartError as error:
             return _failed(problems.of_error(error))
-        contents = [content(self._spec.id, self._spec.version, part) for part in parts]
+        contents = [content(self._spec.id, part, source()) for part in parts]
         kept = await self._store(lambda: self._jobs.shard_contents(self._claim.job_id))
         missing = [number for number, wanted in enumerate(contents) if kept.get(number) != wanted]
         self._total, self._done = len(parts), len(parts) - len(missing)
@@ -92,6 +94,9 @@ class Sharded:
                 number = waiting.pop(task)
                 end = task.result()
                 self._futures.pop(number).release()
+                if end.by != source():
+                    self._ending = True
+                    return _failed(problems.of_other_source(source(), end.by))
                 if end.part is None:
                     self._ending = True
                     return _failed(end.problem or {}, end.trace)
@@ -113,7 +118,9 @@ class Sharded:
         parts = [Part(shard.document, shard.data) for shard in kept[: self._total]]
         inputs = (claim.process_id, claim.inputs, parts, self._started)
         future = self._submit(self._total, run_merge, *inputs)
-        return await cast(Awaitable[Outcome], future.result())
+        outcome = await cast(Awaitable[Outcome], future.result())
+        by = outcome.versions["source_sha256"]
+        return outcome if by == source() else _failed(problems.of_other_source(source(), by))
 
     def _submit(self, number: int, function: Callable[..., Answer], *arguments: Any) -> Future[Answer]:
         key = f"{self._key}-{number}"

@@ -21,7 +21,7 @@ from safestart.processes.execute import Execution, execute, merge
 from safestart.processes.registry import PROCESS_IDS, process
 from safestart.processes.sharding import Part
 from safestart.progress import Context
-from safestart.provenance import versions
+from safestart.provenance import source, versions
 from safestart_worker.problems import of_error, of_unexpected
 from safestart_worker.report import Reporter
 
@@ -43,9 +43,10 @@ class Outcome:
 
 @dataclass(frozen=True, slots=True)
 class ShardOutcome:
-    """How a shard ended: what it gave, or a problem."""
+    """How a shard ended: what it gave, or a problem; ``by`` is the source that computed it."""
 
     part: Part | None
+    by: str
     problem: dict[str, Any] | None = None
     trace: str | None = None
 
@@ -84,11 +85,11 @@ def run_shard(process_id: str, part: dict[str, Any], number: int, key: str, topi
     assert sharding is not None
     try:
         context.step(0.0, 1.0)  # asked to stop before it began
-        return ShardOutcome(sharding.run_part(part, context))
+        return ShardOutcome(sharding.run_part(part, context), source())
     except SafestartError as error:
-        return ShardOutcome(None, of_error(error))
+        return ShardOutcome(None, source(), of_error(error))
     except Exception as error:
-        return ShardOutcome(None, of_unexpected(error, uuid4().hex), traceback.format_exc())
+        return ShardOutcome(None, source(), of_unexpected(error, uuid4().hex), traceback.format_exc())
 
 
 def _whole(run: Callable[[Context], Execution], key: str, topic: str) -> Outcome:

@@ -15,6 +15,7 @@ from safestart.certificates.atlas import Atlas
 from safestart.certificates.extent import Ceiling, Witness
 from safestart.certificates.question import Question
 from safestart.errors import InvalidInput, invalid
+from safestart.provenance import source
 from safestart.scenario import Chaser, CorridorShape, Floats, Scenario, Target
 
 FORMAT = "safestart-atlas/1"
@@ -22,9 +23,13 @@ _REQUIRED = f"an atlas file ({FORMAT})"
 
 
 def key_of(question: Question, y_max: float, tolerance: float) -> str:
-    """Content key: SHA-256 over the format, the question, the cut (m) and the relative gap asked for."""
+    """Content key: SHA-256 over the format, our source, the question, the cut (m) and the relative gap asked for.
+
+    What other code has built is built again: answers rest on the code that their provenance names.
+    """
     stated = {
         "format": FORMAT,
+        "source": source(),
         "question": asdict(question),
         "y_max": float(y_max),
         "tolerance": float(tolerance),

@@ -11,7 +11,6 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
 from importlib import import_module
-from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 from safestart.comparable import canonical
@@ -80,9 +79,9 @@ class Sharding:
         return self.merged(inputs, done, context.part(count, 1.0, count + 1, "merging"))
 
 
-def content(process_id: str, process_version: str, part: dict[str, Any]) -> str:
-    """SHA-256 of what a shard's result depends on: process, versions and part."""
-    text = canonical([process_id, process_version, version("safestart"), part])
+def content(process_id: str, part: dict[str, Any], by: str) -> str:
+    """SHA-256 of what a shard's result depends on: process, part, and the source it is computed ``by``."""
+    text = canonical([process_id, part, by])
     return sha256(text.encode()).hexdigest()
 
 
