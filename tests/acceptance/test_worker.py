@@ -126,7 +126,6 @@ def answers_http(port: int) -> bool:
     """True for one of Dask's ports for pages, all of which are switched off."""
     with socket.create_connection(("127.0.0.1", port), timeout=PATIENCE_S) as asking:
         asking.sendall(b"GET / HTTP/1.0\r\n\r\n")
-        asking.shutdown(socket.SHUT_WR)
         try:
             answer = b"".join(iter(lambda: asking.recv(4096), b""))
         except ConnectionError:

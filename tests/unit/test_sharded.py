@@ -69,7 +69,7 @@ def claim(jobs: JobRepository) -> Claim:
 
 
 def run(jobs: JobRepository, claim: Claim, cluster: Cluster) -> Outcome:
-    sharded = Sharded(claim, "key", cluster, Journal(claim.job_id), jobs, SPEC)  # type: ignore[arg-type]
+    sharded = Sharded(claim, "key", cluster, Journal(claim.job_id), jobs, SPEC, 3)  # type: ignore[arg-type]
     return asyncio.run(sharded.run())
 
 

@@ -10,7 +10,7 @@ import asyncio
 import logging
 import time
 from collections import deque
-from collections.abc import Awaitable, Callable
+from collections.abc import Callable, Coroutine
 from datetime import UTC, datetime
 from functools import partial
 from typing import Any, TypeVar, cast
@@ -26,7 +26,7 @@ from safestart.store.records import Claim
 from safestart_worker import problems
 from safestart_worker.cluster import Cluster
 from safestart_worker.task import Outcome, ShardOutcome, run_merge, run_shard
-from safestart_worker.work import Journal
+from safestart_worker.work import Journal, spared
 
 Answer = TypeVar("Answer")
 
@@ -48,10 +48,12 @@ class Sharded:
         journal: Journal,
         jobs: JobRepository,
         spec: ProcessSpec,
+        most: int,
     ) -> None:
         assert spec.sharding is not None
         self._claim, self._key, self._cluster, self._journal = claim, key, cluster, journal
         self._jobs, self._spec, self._sharding = jobs, spec, cast(Sharding, spec.sharding)
+        self._most = most
         self._started = datetime.now(UTC)
         self._begin = time.monotonic()
         self._ending = self._storing = False
@@ -85,8 +87,8 @@ class Sharded:
         while waiting or (missing and not self._ending):
             while missing and len(waiting) < window and not self._ending:
                 number = missing.popleft()
-                future = self._submit(number, run_shard, self._claim.process_id, parts[number], number)
-                result = asyncio.ensure_future(cast(Awaitable[ShardOutcome], future.result()))
+                run = self._run(number, run_shard, self._claim.process_id, parts[number], number)
+                result = asyncio.ensure_future(run)
                 result.add_done_callback(lambda task: task.cancelled() or task.exception())
                 waiting[result] = number
             ended, _ = await asyncio.wait(waiting, return_when=asyncio.FIRST_COMPLETED)
@@ -117,16 +119,22 @@ class Sharded:
         kept = await self._store(lambda: self._jobs.shards(claim.job_id))
         parts = [Part(shard.document, shard.data) for shard in kept[: self._total]]
         inputs = (claim.process_id, claim.inputs, parts, self._started)
-        future = self._submit(self._total, run_merge, *inputs)
-        outcome = await cast(Awaitable[Outcome], future.result())
+        outcome = await self._run(self._total, run_merge, *inputs)
         by = outcome.versions["source_sha256"]
         return outcome if by == source() else _failed(problems.of_other_source(source(), by))
 
-    def _submit(self, number: int, function: Callable[..., Answer], *arguments: Any) -> Future[Answer]:
-        key = f"{self._key}-{number}"
-        future = self._cluster.submit(function, *arguments, key=key, job=self._key, priority=_PRIORITY)
-        self._futures[number] = future
-        return future
+    def _run(
+        self, number: int, function: Callable[..., Answer], *arguments: Any
+    ) -> Coroutine[Any, Any, Answer]:
+        """Submit a task now; what is returned waits for its result."""
+
+        def submit(again: int) -> Future[Answer]:
+            key = f"{self._key}-{number}" + (f"-again-{again}" if again else "")
+            future = self._cluster.submit(function, *arguments, key=key, job=self._key, priority=_PRIORITY)
+            self._futures[number] = future
+            return future
+
+        return spared(submit(0), submit, lambda: self._starts.get(number, 0), self._most)
 
     async def _store(self, call: Callable[[], Answer]) -> Answer:
         """Call the store; while the database is away, try until it is back or the lease is lost."""

@@ -105,9 +105,10 @@ class Shepherd:
             spec = process(self.claim.process_id)
         except NotFound:
             spec = None  # the task says so
+        most = self._rules.max_attempts
         if spec is not None and spec.sharding is not None:
-            return Sharded(self.claim, self.key, self._cluster, self._journal, self._jobs, spec)
-        return Whole(self.claim, self.key, self._cluster, self._journal)
+            return Sharded(self.claim, self.key, self._cluster, self._journal, self._jobs, spec, most)
+        return Whole(self.claim, self.key, self._cluster, self._journal, most)
 
     async def _watch(self, work: Work, outcome: asyncio.Task[Outcome], stopping: asyncio.Event) -> None:
         start = time.monotonic()

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Awaitable, Sequence
-from typing import Any, Protocol, cast
+from collections.abc import Awaitable, Callable, Sequence
+from typing import Any, Protocol, TypeVar, cast
 
-from distributed import Future
+from distributed import Future, KilledWorker
 
 from safestart.logs import about
 from safestart.store.records import Claim
@@ -16,6 +16,7 @@ from safestart_worker.task import Outcome, run_job
 from safestart_worker.track import Track
 
 log = logging.getLogger("safestart.worker")
+Answer = TypeVar("Answer")
 
 
 class Journal:
@@ -69,21 +70,46 @@ class Work(Protocol):
         ...
 
 
+async def spared(
+    future: Future[Answer], again: Callable[[int], Future[Answer]], starts: Callable[[], int], most: int
+) -> Answer:
+    """Result of a task, submitted ``again`` where Dask gives it up for deaths that were not its own.
+
+    Dask blames the death of a process on all tasks that it was to run, those that only waited there too. The task's own
+    are the ``starts`` that came to no end, of which ``most`` are made. One that takes its process down before it can
+    report a start has ``most`` submissions.
+    """
+    for submissions in range(1, most + 1):
+        try:
+            # The client is asynchronous, and so is its result; Dask's annotations know only the other kind.
+            return await cast(Awaitable[Answer], future.result())
+        except KilledWorker:
+            if submissions == most or starts() >= most:
+                raise
+            future = again(submissions)
+    raise AssertionError("a task is submitted at least once")
+
+
 class Whole:
     """A job that is one task."""
 
     whole = True
 
-    def __init__(self, claim: Claim, key: str, cluster: Cluster, journal: Journal) -> None:
-        self._cluster, self._key, self._journal = cluster, key, journal
+    def __init__(self, claim: Claim, key: str, cluster: Cluster, journal: Journal, most: int) -> None:
+        self._claim, self._cluster, self._key, self._journal, self._most = claim, cluster, key, journal, most
         self._starts = 0
-        self._future = cluster.submit(run_job, claim.process_id, claim.inputs, key=key, job=key)
+        self._future = self._submit(key)
 
     async def run(self) -> Outcome:
         """Wait for the task."""
-        future: Future[Outcome] = self._future
-        # The client is asynchronous, and so is its result; Dask's annotations know only the other kind.
-        return await cast(Awaitable[Outcome], future.result())
+        return await spared(
+            self._future, lambda n: self._submit(f"{self._key}-again-{n}"), lambda: self._starts, self._most
+        )
+
+    def _submit(self, key: str) -> Future[Outcome]:
+        inputs = (self._claim.process_id, self._claim.inputs)
+        self._future = self._cluster.submit(run_job, *inputs, key=key, job=self._key)
+        return self._future
 
     def on_report(self, data: dict[str, Any]) -> None:
         """Follow the progress; a second start means that the first process was lost."""
