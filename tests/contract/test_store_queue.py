@@ -47,6 +47,15 @@ def test_a_released_job_is_next_even_when_turns_began_anew(jobs: JobRepository) 
     assert [claimed(jobs).job_id for _ in range(2)] == [jobs_of_a[2], later]
 
 
+def test_a_job_that_came_back_gives_its_old_turn_to_nobody(jobs: JobRepository) -> None:
+    flood = [submit(jobs, submitter="a").id for _ in range(8)]
+    claims = [claimed(jobs) for _ in range(5)]
+    jobs.release(claims[0], "stopped")
+    late = [submit(jobs, submitter="b").id for _ in range(3)]
+    order = [claimed(jobs).job_id for _ in range(5)]
+    assert order == [flood[0], flood[5], late[0], flood[6], late[1]]
+
+
 def test_a_waiting_job_knows_when_it_will_start(database: Database, jobs: JobRepository) -> None:
     done = submit(jobs)
     assert jobs.wait(done.id) == Wait(1, None, None)  # no history, no worker

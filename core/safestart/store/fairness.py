@@ -20,14 +20,18 @@ def next_turn(session: Session, submitter: str, priority: int) -> int:
     turn, among = JobRow.turn, JobRow.priority == priority
     waits = among & (JobRow.status == JobStatus.ACCEPTED.value)
     runs = among & (JobRow.status == JobStatus.RUNNING.value)
+    # A job that came back to the queue has an old turn: who took that would be ahead of all that wait.
+    fresh = select(turn).where(waits, JobRow.token == 0).order_by(turn).limit(1)
     # One statement: other submissions wait meanwhile.
-    served, running, own = session.execute(
+    served, waiting, running, own = session.execute(
         select(
-            select(func.min(turn)).where(waits).scalar_subquery(),
+            fresh.scalar_subquery(),
+            # Two, as each is read off the end of the queue's index.
+            select(func.max(turn)).where(waits).scalar_subquery(),
             select(func.max(turn)).where(runs).scalar_subquery(),
             select(func.max(turn)).where(waits, JobRow.submitter == submitter).scalar_subquery(),
         )
     ).one()
-    if served is None:  # nobody waits: a running job that comes back to the queue must not come last
-        served = running or 0
+    if served is None:  # none waits for its first time: one that comes back to the queue must not come last
+        served = max(waiting or 0, running or 0)
     return int(served if own is None else max(served, own + 1))
