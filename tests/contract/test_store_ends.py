@@ -146,3 +146,13 @@ def test_what_makes_two_results_the_same() -> None:
     assert comparable(one) == comparable(two)
     assert digest(one) == digest(two)
     assert digest(one) != digest({"outputs": {"rows": [{"run_s": 1.0, "iou": 0.6}]}})
+
+
+@pytest.mark.parametrize("text", ["a\0b", "a\ud800b"])
+def test_a_job_ends_whatever_its_messages_hold(jobs: JobRepository, text: str) -> None:
+    submit(jobs)
+    claim = claimed(jobs)
+    jobs.progress(claim, 1.0, text, None)
+    jobs.fail(claim, {"detail": text})
+    job = jobs.get(claim.job_id)
+    assert (job.status, job.message) == (JobStatus.FAILED, "a?b")

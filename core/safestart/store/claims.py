@@ -13,7 +13,7 @@ from sqlalchemy.orm import Session
 
 from safestart.artifact import Artifact
 from safestart.store.database import Database
-from safestart.store.dialect import after
+from safestart.store.dialect import after, storable
 from safestart.store.events import add_event, add_status
 from safestart.store.holding import FREE, HELD, JOBS, LEASE, WANTED, change, try_change
 from safestart.store.lease import expired
@@ -74,7 +74,7 @@ class Claims:
     def progress(self, claim: Claim, percent: float, message: str, eta_s: float | None) -> None:
         """Write progress (0..100), message and estimated seconds left, and append the event."""
         with self._database.session(write=True) as session:
-            change(session, claim, progress=percent, message=message, eta_s=eta_s)
+            change(session, claim, progress=percent, message=storable(message), eta_s=eta_s)
             data = {"progress": percent, "message": message, "eta_s": eta_s}
             add_event(session, claim.job_id, "progress", data)
 
@@ -128,7 +128,7 @@ class Claims:
 
     def fail(self, claim: Claim, problem: dict[str, Any]) -> None:
         """End the job as failed with a problem document (dismissed, when that was asked for)."""
-        message = str(problem.get("detail") or problem.get("title") or "failed")
+        message = storable(str(problem.get("detail") or problem.get("title") or "failed"))
         with self._database.session(write=True) as session:
             _end(session, claim, JobStatus.FAILED, message=message, problem=problem)
 

@@ -101,6 +101,11 @@ def _seconds_between_postgresql(element: _SecondsBetween, compiler: Any, **kw: A
     return f"extract(epoch from ({end} - {start}))"
 
 
+def storable(message: str) -> str:
+    """A text that both databases take: PostgreSQL refuses NUL, and neither takes half a surrogate pair."""
+    return message.encode("utf-8", "replace").decode("utf-8").replace("\0", "?")
+
+
 def prepare(engine: Engine) -> None:
     """Install what a fresh connection and a beginning transaction need on this engine's dialect."""
     if engine.dialect.name == "sqlite":
