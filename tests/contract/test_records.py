@@ -273,6 +273,11 @@ def test_a_backup_replaces_the_cache_and_mixes_with_nobodys_record(
     keyed.close()
 
 
+def test_a_backup_to_where_nothing_can_be_written_is_refused(database: Database, tmp_path: Path) -> None:
+    with pytest.raises(InvalidInput, match="required a path that can be written"):
+        backup(database, tmp_path / ("x" * 300))
+
+
 def test_what_is_no_backup_is_refused(database: Database, tmp_path: Path) -> None:
     (tmp_path / "x").write_text("no database " * 100)
     with closing(sqlite3.connect(tmp_path / "foreign")) as connection:

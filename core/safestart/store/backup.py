@@ -30,6 +30,13 @@ def backup(database: Database, target: Path) -> int:
 
     Raises ``InvalidInput`` when the file is there already or cannot be written.
     """
+    try:
+        return _backup(database, target)
+    except OSError as error:
+        raise _refused(target, "a path that can be written", str(error.strerror)) from None
+
+
+def _backup(database: Database, target: Path) -> int:
     if target.exists():
         raise _refused(target, "a file that is not there yet", "one that is")
     if not target.parent.is_dir():
