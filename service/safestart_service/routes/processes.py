@@ -97,9 +97,7 @@ async def describe(request: Request, processID: ProcessId) -> Response:
 async def execute(
     request: Request,
     processID: ProcessId,
-    prefer: Annotated[
-        list[str] | None, Header(description="respond-async: queue a light process too.")
-    ] = None,
+    prefer: Annotated[str | None, Header(description="respond-async: queue a light process too.")] = None,
     idempotency_key: Annotated[
         str | None, Header(description="1 to 255 characters; the same key and body return the same job.")
     ] = None,
@@ -107,7 +105,8 @@ async def execute(
     """Light processes answer at once (200); with ``Prefer: respond-async`` they are queued, as heavy ones are."""
     spec = known_process(processID)
     body = await read_body(request)
-    wants_async = prefers_async(prefer or ())
+    # Its lines together are one list, of which ``prefer`` is the last.
+    wants_async = prefer is not None and prefers_async(request.headers.getlist("prefer"))
     sync = spec.light and not wants_async
     found, base, by = services(request), base_url(request), caller(request)
 
