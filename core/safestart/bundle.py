@@ -21,12 +21,16 @@ from safestart.bundle_page import page
 from safestart.bundle_parts import event_facts, job_facts, require_names, require_result
 from safestart.comparable import canonical, digest
 from safestart.errors import InvalidInput
+from safestart.plain_json import loads
 
 FORMAT, VERSION = "safestart-bundle", 1
 MOST_BYTES = 2 * 1024**3
 MANIFEST = "manifest.json"
 _FOLDER = "artifacts/"
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # no time of packing: the same job gives the same bytes
+_MANIFEST = {"format", "version", "job", "result_sha256", "files", "media_types"}
+_FILE = {"sha256", "size"}
+_DOCUMENTS = {"job.json", "events.json", "result.json", "index.html"}
 _REQUIRED = "a bundle as `safestart export` writes it"
 
 
@@ -128,18 +132,27 @@ def _differences(manifest: Any, files: Mapping[str, bytes]) -> list[str]:
     try:
         if (manifest["format"], manifest["version"]) != (FORMAT, VERSION):
             return [f"format {manifest['format']!r} version {manifest['version']!r} is not known here"]
-        listed = {name: entry["sha256"] for name, entry in manifest["files"].items()}
+        listed = {name: (entry["sha256"], entry["size"]) for name, entry in manifest["files"].items()}
         artifacts = {_FOLDER + name for name, _ in manifest["media_types"].items()}
+        unknown = [
+            *(set(manifest) - _MANIFEST),
+            *(k for e in manifest["files"].values() for k in set(e) - _FILE),
+        ]
     except (KeyError, TypeError, AttributeError):
         return ["its manifest is incomplete"]
-    wrong = [
+    wrong = [f"its manifest has a field {name!r} that is not known here" for name in sorted(unknown)]
+    wrong += [
         f"{name} is missing" for name in sorted({"job.json", "events.json", *listed, *artifacts} - set(files))
     ]
+    known = {*_DOCUMENTS, *artifacts}
     wrong += [f"{name} is not in the manifest" for name in sorted(set(files) - set(listed) - {MANIFEST})]
+    wrong += [f"{name} is no part of a bundle" for name in sorted(set(listed) - known)]
     for name in sorted(set(listed) & set(files)):
-        there = sha256(files[name]).hexdigest()
-        if there != listed[name]:
-            wrong.append(f"{name} was altered: SHA-256 {there}, the manifest says {listed[name]}")
+        there, size = sha256(files[name]).hexdigest(), len(files[name])
+        if (there, size) != listed[name]:
+            wrong.append(
+                f"{name} was altered: SHA-256 {there}, {size} bytes; the manifest says {listed[name]}"
+            )
     return wrong
 
 
@@ -150,23 +163,41 @@ def _contradictions(manifest: Any, job: Any, result: Any, artifacts: tuple[Artif
     if (job["status"] == "successful") is (result is None):
         return [f"a {job['status']} job {'without' if result is None else 'with'} a result"]
     if result is None:
-        return []
+        return [f"artifact {item.name} without a result" for item in artifacts]
     if digest(result) != manifest.get("result_sha256"):
         return ["result.json has another content hash than the manifest says"]
-    made = result.get("provenance", {}).get("artifacts")
-    if not isinstance(made, dict):
-        return []
-    wrong = {item.name for item in artifacts if made.get(item.name) != item.sha256} | (
+    if result["process"]["id"] != job["process_id"]:
+        return ["result.json is of another process than job.json"]
+    # The result's inputs are complete; the job's are what was asked for.
+    wrong = [
+        f"job.json and result.json differ in {path}" for path in _unlike(job["inputs"], result["inputs"])
+    ]
+    made = result["provenance"]["artifacts"]
+    other = {item.name for item in artifacts if made.get(item.name) != item.sha256} | (
         set(made) - {item.name for item in artifacts}
     )
-    return [f"artifact {name} is not the one that the result's provenance names" for name in sorted(wrong)]
+    return wrong + [
+        f"artifact {name} is not the one that the result's provenance names" for name in sorted(other)
+    ]
+
+
+def _unlike(asked: Any, used: Any, path: str = "inputs") -> list[str]:
+    """Where the inputs asked for are not among those used."""
+    if isinstance(asked, dict) and isinstance(used, dict):
+        absent = [f"{path}.{name}" for name in asked if name not in used]
+        return absent + [p for n in asked if n in used for p in _unlike(asked[n], used[n], f"{path}.{n}")]
+    if isinstance(asked, list) and isinstance(used, list) and len(asked) == len(used):
+        pairs = enumerate(zip(asked, used, strict=True))
+        return [line for i, (a, b) in pairs for line in _unlike(a, b, f"{path}[{i}]")]
+    same = asked == used and isinstance(asked, bool) is isinstance(used, bool)
+    return [] if same else [path]
 
 
 def _json(files: Mapping[str, bytes], name: str) -> Any:
     try:
-        return json.loads(files[name])
-    except (ValueError, RecursionError):
-        raise _refused(f"{name} is no JSON") from None
+        return loads(files[name])
+    except (ValueError, RecursionError) as error:
+        raise _refused(f"{name} is no JSON with each field once ({error})") from None
 
 
 def _text(document: Any) -> bytes:

@@ -49,10 +49,14 @@ _Count = Annotated[int, Field(ge=0, lt=2**31, strict=True)]
 _Document = Annotated[dict[str, Any], BeforeValidator(_json)]
 
 
-class JobFacts(BaseModel):
-    """``job.json``: the row of an ended job."""
+class Closed(BaseModel):
+    """A field that is not known here would be passed on unread: it is refused."""
 
-    model_config = ConfigDict(extra="ignore", allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+
+class JobFacts(Closed):
+    """``job.json``: the row of an ended job."""
 
     id: Annotated[str, Field(pattern=r"^[0-9A-Za-z-]{1,36}$")]
     process_id: Annotated[_Text, Field(min_length=1, max_length=100)]
@@ -71,7 +75,7 @@ class JobFacts(BaseModel):
     updated_at: AwareDatetime
 
 
-class EventFacts(BaseModel):
+class EventFacts(Closed):
     """One entry of ``events.json``."""
 
     at: AwareDatetime
@@ -79,20 +83,27 @@ class EventFacts(BaseModel):
     data: _Document
 
 
-class ProcessFacts(BaseModel):
+class ProcessFacts(Closed):
     """What a result says of its process."""
 
     id: _Text
+    version: _Text
 
 
-class ResultFacts(BaseModel):
-    """``result.json`` as far as this program reads it; the rest is kept as it came."""
+class Provenance(BaseModel):
+    """Where a result came from: the hash of every artifact; the rest describes and is kept as it came."""
 
-    schema_version: _Count = 1
-    process: ProcessFacts | None = None
-    inputs: dict[str, Any] = Field(default_factory=dict)
+    artifacts: dict[str, str]
+
+
+class ResultFacts(Closed):
+    """``result.json``."""
+
+    schema_version: Literal[1]
+    process: ProcessFacts
+    inputs: dict[str, Any]
     outputs: dict[str, Any]
-    provenance: dict[str, Any] = Field(default_factory=dict)
+    provenance: Provenance
 
 
 class ArtifactFacts(BaseModel):

@@ -9,8 +9,10 @@ from __future__ import annotations
 import io
 import json
 import math
+import zipfile
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
+from hashlib import sha256
 from typing import Any, Literal
 
 import numpy as np
@@ -18,7 +20,8 @@ import numpy as np
 from safestart.artifact import Artifact
 from safestart.comparable import canonical, comparable
 from safestart.errors import invalid
-from safestart.processes.execute import execute
+from safestart.plain_json import loads
+from safestart.processes.execute import SCHEMA_VERSION, execute
 from safestart.processes.registry import process
 from safestart.progress import Context
 
@@ -33,7 +36,8 @@ class Replay:
     """Outcome of a replay.
 
     ``kept`` says whether the promise was kept: identical where ``promise`` is bitwise (``tolerance`` None), within
-    the tolerance elsewhere. ``environment`` names what is not as it was, ``differences`` where the results differ.
+    the tolerance elsewhere. ``environment`` names what is not as it was, ``differences`` where the results differ,
+    ``uncompared`` the artifacts that the verdict says nothing of: pictures of which the bytes differ.
     """
 
     verdict: Verdict
@@ -41,6 +45,7 @@ class Replay:
     tolerance: float | None
     environment: tuple[str, ...]
     differences: tuple[str, ...]
+    uncompared: tuple[str, ...] = ()
 
     def document(self) -> dict[str, Any]:
         """JSON-able form."""
@@ -55,27 +60,73 @@ def replay(
     ``artifacts`` are the stored files by name. Raises ``NotFound`` for a process that is gone and ``InvalidInput``
     for inputs that it does not take any more.
     """
-    missing = [name for name in ("process", "inputs", "outputs", "provenance") if name not in document]
-    if missing:
-        raise invalid("result", "process, inputs, outputs and provenance", f"none of {', '.join(missing)}")
+    _require_result(document)
     process_id = document["process"]["id"]
     again = execute(process_id, document["inputs"], context)
     # As the store would give it back: numbers of NumPy are plain ones there.
-    outputs = json.loads(canonical(again.document["outputs"]))
-    environment = changed(document["provenance"], again.document["provenance"])
+    now = json.loads(canonical(again.document))
+    environment = changed(document["provenance"], now["provenance"])
+    if document["process"] != now["process"]:
+        environment += (f"process: {_shown(document['process'])} before, {_shown(now['process'])} here",)
     tolerance = process(process_id).replay_tolerance if environment else None
     files = {item.name: item for item in again.artifacts}
-    exact = [*differing(document["outputs"], outputs), *_files(artifacts, files, None)]
+    # Inputs and seed are what the outputs answer: they are the same or another question was asked.
+    asked = [
+        *differing(document["inputs"], now["inputs"], path="inputs"),
+        *_named(document["provenance"], now),
+    ]
+    asked += _hashes(document["provenance"]["artifacts"], artifacts)
+    exact = [*asked, *differing(document["outputs"], now["outputs"]), *_files(artifacts, files, None)]
     if not exact:
         return Replay("identical", True, tolerance, environment, ())
     if tolerance is None:
         return Replay("different", False, None, environment, tuple(exact[:MOST_DIFFERENCES]))
     loose = [
-        *differing(document["outputs"], outputs, tolerance),
+        *asked,
+        *differing(document["outputs"], now["outputs"], tolerance),
         *_files(artifacts, files, tolerance),
     ]
     shown = tuple((loose or exact)[:MOST_DIFFERENCES])
-    return Replay("different" if loose else "within tolerance", not loose, tolerance, environment, shown)
+    pictures = [
+        name for name, item in files.items() if _is_picture(name) and artifacts.get(name) != item.data
+    ]
+    verdict: Verdict = "different" if loose else "within tolerance"
+    return Replay(verdict, not loose, tolerance, environment, shown, tuple(sorted(pictures)))
+
+
+def _require_result(document: Mapping[str, Any]) -> None:
+    """Raise ``InvalidInput`` for anything but a result: a field that is not known here would not be compared."""
+    fields = {"schema_version", "process", "inputs", "outputs", "provenance"}
+    missing = [name for name in sorted(fields) if name not in document]
+    unknown = sorted(set(document) - fields)
+    if missing or unknown:
+        required = "schema_version, process, inputs, outputs and provenance"
+        found = [f"no {name}" for name in missing] + [
+            f"{name!r}, which is not known here" for name in unknown
+        ]
+        raise invalid("result", required, "; ".join(found))
+    if document["schema_version"] != SCHEMA_VERSION:
+        raise invalid("result.schema_version", str(SCHEMA_VERSION), document["schema_version"])
+    for name, inside in (("process", "id"), ("provenance", "artifacts")):
+        if not isinstance(document[name], Mapping) or inside not in document[name]:
+            raise invalid(f"result.{name}", f"an object with {inside}", document[name])
+
+
+def _named(before: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
+    seed = now["provenance"]["seed"]
+    return [] if before.get("seed") == seed else [f"provenance.seed: {before.get('seed')} before, {seed} now"]
+
+
+def _hashes(stated: Any, artifacts: Mapping[str, bytes]) -> list[str]:
+    """Artifacts that are not those which the result names; others are found when they are compared."""
+    if not isinstance(stated, Mapping):
+        return ["provenance.artifacts: no names with hashes"]
+    there = {name: sha256(data).hexdigest() for name, data in artifacts.items()}
+    return [
+        f"artifact {name}: not the one that the result names"
+        for name in sorted(stated)
+        if stated[name] != there.get(name)
+    ]
 
 
 def changed(before: Mapping[str, Any], now: Mapping[str, Any]) -> tuple[str, ...]:
@@ -83,15 +134,19 @@ def changed(before: Mapping[str, Any], now: Mapping[str, Any]) -> tuple[str, ...
     # The revision only stands in for the source where that is not on record: it does not tell what was changed since.
     source = "source_sha256" if before.get("source_sha256") else "git_revision"
     pairs = [(name, before.get(name), now.get(name)) for name in (source, "python")]
-    was, here = before.get("machine", {}), now.get("machine", {})
+    was, here = _object(before.get("machine")), _object(now.get("machine"))
     pairs += [(name, was.get(name), here.get(name)) for name in ("cpu", "architecture")]
-    was, here = before.get("packages", {}), now.get("packages", {})
+    was, here = _object(before.get("packages")), _object(now.get("packages"))
     pairs += [(name, was.get(name), here.get(name)) for name in sorted({*was, *here} - _NOT_COMPUTING)]
     return tuple(
         f"{name}: {one} before, {two} here"
         for name, one, two in pairs
         if one != two or (name == source and one is None)
     )
+
+
+def _object(value: Any) -> Mapping[str, Any]:
+    return value if isinstance(value, Mapping) else {}
 
 
 def differing(before: Any, now: Any, tolerance: float | None = None, path: str = "outputs") -> list[str]:
@@ -141,30 +196,47 @@ def _files(before: Mapping[str, bytes], now: Mapping[str, Artifact], tolerance: 
     return found
 
 
+def _is_picture(name: str) -> bool:
+    return name.endswith(".png")
+
+
 def _close(name: str, before: bytes, now: bytes, tolerance: float | None) -> bool:
-    """Arrays, tables and documents by value; pictures are drawn from what is compared already."""
+    """Arrays, tables and documents by value; pictures are drawn from what is compared already, and are not."""
     if tolerance is None:
         return False
     ending = name.rpartition(".")[2]
-    if ending == "png":
+    if _is_picture(name):
         return True
-    if ending == "json":
-        return not differing(json.loads(before), json.loads(now), tolerance)
-    if ending == "parquet":
-        return not differing(_table(before), _table(now), tolerance)
-    if ending != "npz":
+    try:
+        if ending == "json":
+            return not differing(loads(before), loads(now), tolerance)
+        if ending == "parquet":
+            return not differing(_table(before), _table(now), tolerance)
+        return ending == "npz" and _archives_close(before, now, tolerance)
+    except (ValueError, RecursionError, OSError, EOFError, KeyError, zipfile.BadZipFile):
+        # What cannot be read is not what was written here.
         return False
-    with np.load(io.BytesIO(before)) as old, np.load(io.BytesIO(now)) as new:
-        return set(old.files) == set(new.files) and all(
-            old[key].shape == new[key].shape and _arrays_close(old[key], new[key], tolerance)
-            for key in old.files
-        )
 
 
 def _table(data: bytes) -> Any:
+    import pyarrow as pa
     import pyarrow.parquet as pq
 
-    return pq.read_table(io.BytesIO(data)).to_pydict()
+    try:
+        table = pq.read_table(io.BytesIO(data))
+    except pa.ArrowException as error:
+        raise ValueError(str(error)) from None
+    return {"columns": [str(field) for field in table.schema], "rows": table.to_pydict()}
+
+
+def _archives_close(before: bytes, now: bytes, tolerance: float) -> bool:
+    with np.load(io.BytesIO(before)) as old, np.load(io.BytesIO(now)) as new:
+        return sorted(old.files) == sorted(new.files) and all(
+            old[key].shape == new[key].shape
+            and old[key].dtype == new[key].dtype
+            and _arrays_close(old[key], new[key], tolerance)
+            for key in new.files
+        )
 
 
 def _arrays_close(one: np.ndarray, two: np.ndarray, tolerance: float) -> bool:

@@ -39,7 +39,7 @@ JOB: dict[str, Any] = {
 PICTURE = Artifact("map.png", "image/png", b"picture")
 RESULT: dict[str, Any] = {
     "schema_version": 1,
-    "process": {"id": "coverage"},
+    "process": {"id": "coverage", "version": "1.0.0"},
     "inputs": {"a": 1},
     "outputs": {"b": 2.5},
     "provenance": {"artifacts": {PICTURE.name: PICTURE.sha256}},
@@ -69,9 +69,13 @@ def sealed(compression: int = zipfile.ZIP_DEFLATED, **changed: Any) -> bytes:
         "version": 1,
         "result_sha256": hashed,
         "job": parts["job"]["id"] if isinstance(parts["job"], dict) else None,
-        "files": {name: {"sha256": sha256(data).hexdigest()} for name, data in files.items()},
+        "files": {
+            name: {"sha256": sha256(data).hexdigest(), "size": len(data)} for name, data in files.items()
+        },
         "media_types": {parts["name"]: parts["type"]},
     }
+    for key, value in parts.get("manifest", {}).items():
+        manifest[key] = manifest[key] | value if key in manifest else value
     target = io.BytesIO()
     with zipfile.ZipFile(target, "w", compression) as archive:
         for name, data in {**files, "manifest.json": json.dumps(manifest).encode()}.items():
@@ -108,11 +112,46 @@ def test_the_parts_alone_are_a_bundle(database: Database) -> None:
         ("events", [EVENT | {"data": {"x": NAN}}]),
         *(("name", wrong) for wrong in ("../../x", "/etc/x", "..", "a/b", "a\\b", "C:x", "", "x" * 256)),
         *(("type", wrong) for wrong in (None, 3, HALF, "a\nb", "")),
+        ("job", JOB | {"note": "x"}),
+        ("events", [EVENT | {"note": "x"}]),
+        ("result", RESULT | {"note": "x"}),
+        ("result", RESULT | {"process": {"id": "coverage"}}),
+        ("result", RESULT | {"process": {"id": "coverage", "version": "1.0.0", "note": "x"}}),
+        ("result", RESULT | {"schema_version": 2}),
+        ("result", RESULT | {"provenance": {}}),
+        ("result", RESULT | {"process": {"id": "benchmark", "version": "1.0.0"}}),
+        ("result", RESULT | {"inputs": {"a": 2}}),
+        ("result", RESULT | {"inputs": {}}),
+        ("result", RESULT | {"inputs": {"a": [1]}}),
+        ("job", JOB | {"inputs": {"a": True}}),
+        ("manifest", {"note": "x"}),
+        ("manifest", {"files": {"note.txt": {"sha256": "", "size": 0}}}),
     ],
 )
 def test_parts_that_no_job_has_are_refused(part: str, value: Any) -> None:
     with pytest.raises(InvalidInput, match="bundle"):
         unpack(sealed(**{part: value}))
+
+
+def test_inputs_that_the_job_leaves_to_their_defaults_are_no_contradiction() -> None:
+    assert unpack(sealed(result=RESULT | {"inputs": {"a": 1, "b": 2}})).job["inputs"] == {"a": 1}
+
+
+def test_a_field_twice_is_refused() -> None:
+    """One reader would see a job that was dismissed, the next one that succeeded."""
+    with zipfile.ZipFile(io.BytesIO(sealed())) as archive:
+        files = {name: archive.read(name) for name in archive.namelist()}
+    files["job.json"] = b'{"status": "dismissed", ' + files["job.json"][1:]
+    manifest = json.loads(files["manifest.json"])
+    entry = {"sha256": sha256(files["job.json"]).hexdigest(), "size": len(files["job.json"])}
+    manifest["files"]["job.json"] = entry
+    files["manifest.json"] = json.dumps(manifest).encode()
+    target = io.BytesIO()
+    with zipfile.ZipFile(target, "w") as archive:
+        for name, data in files.items():
+            archive.writestr(name, data)
+    with pytest.raises(InvalidInput, match=r"job\.json is no JSON with each field once"):
+        unpack(target.getvalue())
 
 
 def test_what_unpack_does_not_see_the_database_refuses_in_words(database: Database) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 from dataclasses import replace
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -53,7 +54,7 @@ def test_a_replay_compares_what_a_store_would_give_back(
     again = replace(execution, document=execution.document | {"outputs": outputs})
     monkeypatch.setattr("safestart.replay.execute", lambda *_: again)
     assert replay(stored, files).verdict == "identical"
-    with pytest.raises(InvalidInput, match="required process, inputs, outputs and provenance"):
+    with pytest.raises(InvalidInput, match="required schema_version, process, inputs, outputs"):
         replay({"outputs": {}}, files)
 
 
@@ -68,6 +69,7 @@ def test_elsewhere_tables_and_documents_are_compared_by_value(
     def kept(name: str, before: bytes, now: bytes) -> bool:
         made = replace(execution, artifacts=(Artifact(name, "x/y", now),))
         monkeypatch.setattr("safestart.replay.execute", lambda *_: made)
+        elsewhere["provenance"]["artifacts"] = {name: sha256(before).hexdigest()}
         return replay(elsewhere, {name: before}).kept
 
     elsewhere = json.loads(json.dumps(execution.document))
@@ -109,3 +111,66 @@ def test_documents_differ_by_name_kind_and_length() -> None:
     assert differing({"a": 1e6}, {"a": 1e6 + 1e-4}, 1e-9) == []
     assert differing({"a": 1e-12}, {"a": 2e-12}, 1e-9) == []
     assert len(differing({"a": True}, {"a": False}, 1e9)) == 1
+
+
+def test_a_replay_says_what_was_asked_and_refuses_what_it_does_not_compare(execution: Any) -> None:
+    """The outputs are compared with those of the inputs stated; a field beside them would go unread."""
+    files = {item.name: item.data for item in execution.artifacts}
+
+    def other(**change: Any) -> dict[str, Any]:
+        return json.loads(json.dumps(execution.document)) | change
+
+    for wrong in ({"note": "GO"}, {"schema_version": 2}, {"process": {}}, {"provenance": {}}):
+        with pytest.raises(InvalidInput, match="result"):
+            replay(other(**wrong), files)
+    seed = other()
+    seed["provenance"]["seed"] = 7
+    assert replay(seed, files).differences == ("provenance.seed: 7 before, 0 now",)
+    fewer = other()
+    del fewer["inputs"]["rest"]
+    assert any(line.startswith("inputs.rest") for line in replay(fewer, files).differences)
+    hashed = other()
+    name = next(iter(files))
+    hashed["provenance"]["artifacts"][name] = "0" * 64
+    assert replay(hashed, files).differences == (f"artifact {name}: not the one that the result names",)
+    version = other(process=execution.document["process"] | {"version": "0.9"})
+    assert any(line.startswith("process: ") for line in replay(version, files).environment)
+
+
+def test_elsewhere_pictures_are_not_vouched_for(execution: Any) -> None:
+    """A forged picture was within the tolerance on every other machine."""
+    picture = next(item.name for item in execution.artifacts if item.name.endswith(".png"))
+    files = {item.name: item.data for item in execution.artifacts} | {picture: b"forged"}
+    document = json.loads(json.dumps(execution.document))
+    document["provenance"]["artifacts"][picture] = sha256(b"forged").hexdigest()
+    assert not replay(document, files).kept
+    document["provenance"]["packages"]["numpy"] = "1.0"
+    found = replay(document, files)
+    assert (found.verdict, found.uncompared) == ("within tolerance", (picture,))
+
+
+@pytest.mark.parametrize("name", ["a.npz", "a.json", "a.parquet"])
+def test_elsewhere_what_cannot_be_read_is_different(
+    execution: Any, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    made = replace(execution, artifacts=(Artifact(name, "x/y", b"{}"),))
+    monkeypatch.setattr("safestart.replay.execute", lambda *_: made)
+    document = json.loads(json.dumps(execution.document))
+    document["provenance"]["packages"]["numpy"] = "1.0"
+    for data in (b"", b"{", b"PK\x03\x04", b'{"a": 1, "a": 1}'):
+        document["provenance"]["artifacts"] = {name: sha256(data).hexdigest()}
+        assert replay(document, {name: data}).differences == (f"artifact {name}: other content",)
+
+
+def test_elsewhere_arrays_are_of_the_same_kind(execution: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    def archive(array: Any) -> bytes:
+        target = io.BytesIO()
+        np.savez(target, x=array)
+        return target.getvalue()
+
+    now, before = archive(np.ones(2)), archive(np.ones(2, dtype=np.float32))
+    made = replace(execution, artifacts=(Artifact("a.npz", "x/y", now),))
+    monkeypatch.setattr("safestart.replay.execute", lambda *_: made)
+    document = json.loads(json.dumps(execution.document))
+    document["provenance"] |= {"artifacts": {"a.npz": sha256(before).hexdigest()}, "python": "3.0"}
+    assert not replay(document, {"a.npz": before}).kept

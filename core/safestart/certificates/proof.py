@@ -18,6 +18,7 @@ from safestart.certificates.balls import PRECISION, Motion
 from safestart.certificates.refute import refute
 from safestart.certificates.statement import Stated, read
 from safestart.certificates.strict import ProofRejected
+from safestart.certificates.wording import lines
 from safestart.precision import precise
 
 _MOST_PIECES = 100_000
@@ -27,12 +28,13 @@ _MOST_PIECES = 100_000
 class Verified:
     """What a document proves: its verdict and the margin (m) that bounds the best one, from below (GO) or above.
 
-    ``pieces`` is the number of time intervals a GO took, 0 for a NO_GO.
+    ``pieces`` is the number of time intervals a GO took, 0 for a NO_GO. ``statement`` says in lines all that is proved.
     """
 
     verdict: str
     margin_m: float
     pieces: int
+    statement: tuple[str, ...]
 
 
 def check(document: Any) -> Verified:
@@ -40,7 +42,7 @@ def check(document: Any) -> Verified:
     stated = read(document)
     with precise(PRECISION):
         pieces = Witness(stated).check() if stated.verdict == "GO" else refute(stated)
-    return Verified(stated.verdict, float(document["margin_m"]), pieces)
+    return Verified(stated.verdict, float(document["margin_m"]), pieces, lines(stated))
 
 
 def _square(vector: list[arb]) -> arb:
@@ -65,8 +67,6 @@ class Witness:
 
         The number of pieces of time it took; raises :class:`ProofRejected`.
         """
-        if not self.claim > 0:
-            raise ProofRejected(f"margin_m: required > 0 for GO, received {float(self.claim):.9g}")
         phi, held = self.motion.over(arb(self.dt))
         state = self.start
         for k, entry in enumerate(self.stated.thrust):

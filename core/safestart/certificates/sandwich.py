@@ -52,13 +52,33 @@ def refine(oracle: Callable[[Floats], Support[Evidence]], tolerance: float, most
     while True:
         triangles = [_triangle(known, k) for k in range(len(known))]
         inner = _area(np.array([support.point for _, support in known]))
-        outer = inner + sum(area for area, _ in triangles)
+        outer = max(inner, _area(_outer([support for _, support in known])))
         worst = max(range(len(known)), key=lambda k: triangles[k][0])
         closed = outer <= 0.0 or (outer - inner) <= tolerance * outer
         if closed or len(known) >= most or triangles[worst][0] <= 0.0:
             return Sandwich(tuple(support for _, support in known), inner, outer)
         angle = triangles[worst][1]
         known.insert(worst + 1, (angle, oracle(_unit(angle))))
+
+
+def _outer(supports: Sequence[Support[Evidence]]) -> Floats:
+    """Corners (n, 2) of the polygon that all half-planes leave of a square around them."""
+    half = 4.0 * max(1.0, *(abs(support.bound) for support in supports))
+    polygon = half * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+    for support in supports:
+        beyond = polygon @ support.direction - support.bound
+        out = []
+        for a, b, over, after in zip(
+            polygon, np.roll(polygon, -1, 0), beyond, np.roll(beyond, -1), strict=True
+        ):
+            if over <= 0.0:
+                out.append(a)
+            if over * after < 0.0:
+                out.append(a + (over / (over - after)) * (b - a))
+        if len(out) < 3:
+            return np.zeros((1, 2))
+        polygon = np.array(out)
+    return polygon
 
 
 def _unit(angle: float) -> Floats:

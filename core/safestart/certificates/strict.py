@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 from flint import fmpq
@@ -20,6 +20,25 @@ class ProofRejected(SafestartError):
     title = "Proof rejected"
 
 
+def shown(value: Any, most: int = 60) -> str:
+    """What came, for a message: short, and without characters that could forge lines of output."""
+    return ascii(value)[:most]
+
+
+def fields(document: Any, name: str, needed: Collection[str], optional: Collection[str] = ()) -> None:
+    """The object called ``name`` holds every field needed, maybe optional ones, and no other.
+
+    A field that the checker does not know would be believed and never checked.
+    """
+    if not isinstance(document, Mapping):
+        raise ProofRejected(f"{name}: required an object, received {type(document).__name__}")
+    missing = [key for key in needed if key not in document]
+    unknown = [key for key in document if key not in needed and key not in optional]
+    if missing or unknown:
+        found = [f"{key} missing" for key in missing] + [f"{shown(key, 40)} unknown" for key in unknown[:9]]
+        raise ProofRejected(f"{name}: required the fields {', '.join(needed)}: {', '.join(found)}")
+
+
 def part(document: Any, key: str, kind: type) -> Any:
     """The value under ``key``, of the type asked for."""
     value = document.get(key) if isinstance(document, Mapping) else None
@@ -31,19 +50,19 @@ def part(document: Any, key: str, kind: type) -> Any:
 def exact(value: Any, name: str, low: float, high: float = LARGEST) -> fmpq:
     """A number in [low, high] as the rational it is."""
     if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
-        raise ProofRejected(f"{name}: required a number in [{low:g}, {high:g}], received {str(value)[:60]}")
+        raise ProofRejected(f"{name}: required a number in [{low:g}, {high:g}], received {shown(value)}")
     return fmpq(*value.as_integer_ratio())
 
 
 def number(document: Any, key: str, low: float, high: float = LARGEST) -> fmpq:
     """The number under ``key``, in [low, high]."""
     if not isinstance(document, Mapping):
-        raise ProofRejected(f"{key}: required an object that holds it, received {str(document)[:60]}")
+        raise ProofRejected(f"{key}: required an object that holds it, received {shown(document)}")
     return exact(document.get(key), key, low, high)
 
 
 def vector(value: Any, name: str, size: int) -> list[fmpq]:
     """A list of ``size`` numbers."""
     if not isinstance(value, list) or len(value) != size:
-        raise ProofRejected(f"{name}: required a list of {size} numbers, received {str(value)[:60]}")
+        raise ProofRejected(f"{name}: required a list of {size} numbers, received {shown(value)}")
     return [exact(entry, name, -LARGEST) for entry in value]

@@ -32,7 +32,7 @@ def build(question: Question, y_max: float = 150.0, tolerance: float = TOLERANCE
     if not question.plain:
         raise invalid("question", "stay without a speed limit: an atlas answers no other", question.kind)
     number("tolerance", tolerance, 1e-4, 1.0)
-    number("y_max", y_max, question.scenario.corridor.hold_radius, MAX_RANGE, open_low=True)
+    y_max = number("y_max", y_max, question.scenario.corridor.hold_radius, MAX_RANGE, open_low=True)
     watch = watch_of(question)
     extent = Extent(watch, y_max)
     deepest, ceiling = extent.deepest()

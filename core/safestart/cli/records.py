@@ -52,7 +52,11 @@ def replay(
     else:
         promise = "bit for bit" if found.tolerance is None else f"within {found.tolerance:g}"
         out.print(f"{found.verdict} (promised: {promise})")
-        for title, lines in (("not as it was", found.environment), ("differs", found.differences)):
+        for title, lines in (
+            ("not as it was", found.environment),
+            ("differs", found.differences),
+            ("not compared", found.uncompared),
+        ):
             for line in lines:
                 out.print(f"  {title}: {line}", soft_wrap=True, markup=False)
     raise typer.Exit(0 if found.kept else 1)

@@ -19,6 +19,7 @@ from safestart.certificates.families.statement import StatedForAll, read
 from safestart.certificates.proof import Verified
 from safestart.certificates.refute import Refutation
 from safestart.certificates.statement import ProofRejected, Stated
+from safestart.certificates.wording import lines_for_all
 from safestart.precision import precise
 
 _MOST_PIECES, _MOST_PARTS = 100_000, 4096
@@ -35,7 +36,7 @@ def check(document: Any) -> Verified:
             pieces = 0
             for case, rates in zip(stated.cases, stated.pieces, strict=True):
                 _no_go(stated, case, rates)
-    return Verified(stated.verdict, float(document["margin_m"]), pieces)
+    return Verified(stated.verdict, float(document["margin_m"]), pieces, lines_for_all(stated))
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,8 +86,6 @@ class _Flight:
         self.start = arb_mat(2 * d, 1, start)
         self.axes = [i for i, e in enumerate(stated.half) if e > 0]
         self.claim = arb(case.claim)
-        if not self.claim > 0:
-            raise ProofRejected(f"margin_m: required > 0 for GO, received {float(self.claim):.9g}")
         between = arb(_gap(stated.motions)) ** 2 / 8 * _reach(stated, case).bend
         delta = arb(_gap(stated.rates) * case.dt * case.steps) / 2
         if not delta < 1:

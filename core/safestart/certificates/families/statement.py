@@ -15,9 +15,11 @@ from flint import fmpq
 
 from safestart.certificates import statement
 from safestart.certificates.statement import Stated
-from safestart.certificates.strict import ProofRejected, exact, part, vector
+from safestart.certificates.strict import ProofRejected, exact, fields, part, shown, vector
 
 SCHEMA = "safestart-proof-for-all/1"
+_HALF = ("position_half_width_m", "velocity_half_width_m_s")
+_GO = ("witness", "tumble_rates_rad_s", "mean_motions_rad_s", "histories")
 _MOST, _MOST_CASES = 4096, 8192
 Rationals = list[fmpq]
 
@@ -26,11 +28,17 @@ Rationals = list[fmpq]
 class StatedForAll:
     """A document's statement: intervals (low, high) as exact rationals, the box's half-widths, and its cases.
 
-    GO: ``rates`` and ``motions`` are the nodes, ``cases`` the statements at each of them, ``half`` the half-widths that
-    each history must bear. NO_GO: ``cases`` go with ``pieces``, intervals of the tumble rate.
+    ``middle`` is the question about the middle of the start box, with the ends of the intervals that bind; ``box`` the
+    half-widths around it. GO: ``rates`` and ``motions`` are the nodes, ``cases`` the statements at each of them,
+    ``half`` the half-widths that each history must bear. NO_GO: ``cases`` go with ``pieces``, intervals of the tumble
+    rate, and ``half`` is the box.
     """
 
     verdict: str
+    witness: str
+    middle: Stated
+    thrusts: Rationals
+    box: Rationals
     rates: Rationals
     motions: Rationals
     half: Rationals
@@ -41,18 +49,21 @@ class StatedForAll:
 def read(document: Any) -> StatedForAll:
     """The statement of a document; raise :class:`ProofRejected` when it is malformed."""
     statement.check_seal(document, SCHEMA)
-    question, start = part(document, "question", dict), part(document, "start", dict)
-    if question.get("kind") != "stay" or question.get("speed_limit") is not None:
+    verdict, question, start = document.get("verdict"), document.get("question"), document.get("start")
+    go = verdict == "GO"
+    fields(document, "document", (*statement.DOCUMENT, *(_GO if go else ("pieces",))))
+    if part(question, "kind", str) != "stay" or "speed_limit" in question:
         raise ProofRejected("kind: required stay without a speed limit")
     rates, motions, thrusts = (
         _ascending(question, key, 2, 2)
         for key in ("tumble_rate_rad_s", "mean_motion_rad_s", "max_acceleration_m_s2")
     )
-    go = document.get("verdict") == "GO"
+    d = part(question, "dimensions", int)
+    half = [e for key in _HALF for e in _half_widths(start, key, d)]
     plain = {
         "schema": statement.SCHEMA,
-        "verdict": document.get("verdict"),
-        "margin_m": document.get("margin_m"),
+        "verdict": verdict,
+        "margin_m": document["margin_m"],
         "question": question
         | {
             "tumble_rate_rad_s": rates[1],
@@ -60,10 +71,33 @@ def read(document: Any) -> StatedForAll:
             # The smaller disk lies in the larger: GO needs the least thrust, NO_GO the most.
             "max_acceleration_m_s2": thrusts[0 if go else 1],
         },
-        "start": start,
+        "start": {key: value for key, value in start.items() if key not in _HALF},
     }
-    half = _half_widths(start, part(question, "dimensions", int))
-    return _go(document, plain, half, rates, motions) if go else _no_go(document, plain, half, rates, motions)
+    cases, pieces = _go(document, plain, half, rates, motions) if go else _no_go(document, plain, rates)
+    ends = [[exact(e, "interval", 0.0) for e in pair] for pair in (rates, motions, thrusts)]
+    nodes = (
+        [[exact(e, key, 0.0) for e in document[key]] for key in ("tumble_rates_rad_s", "mean_motions_rad_s")]
+        if go
+        else ends[:2]
+    )
+    common = not go or document["witness"] == "common"
+    return StatedForAll(
+        verdict=str(verdict),
+        witness=document["witness"] if go else "",
+        middle=replace(cases[0], start=_middle(start, d)),
+        thrusts=ends[2],
+        box=half,
+        rates=nodes[0],
+        motions=nodes[1],
+        # The history of a corner starts there and nowhere else.
+        half=half if common else [fmpq(0)] * len(half),
+        cases=cases,
+        pieces=pieces,
+    )
+
+
+def _middle(start: Mapping[str, Any], d: int) -> Rationals:
+    return vector(start["position_m"], "position_m", d) + vector(start["velocity_m_s"], "velocity_m_s", d)
 
 
 def _go(
@@ -72,14 +106,14 @@ def _go(
     half: Rationals,
     rates: list[float],
     motions: list[float],
-) -> StatedForAll:
+) -> tuple[list[Stated], list[Rationals]]:
     at = [
         _nodes(document, "tumble_rates_rad_s", rates),
         _nodes(document, "mean_motions_rad_s", motions),
     ]
-    witness, histories = document.get("witness"), part(document, "histories", list)
+    witness, histories = document["witness"], part(document, "histories", list)
     if witness not in ("common", "per_corner"):
-        raise ProofRejected(f"witness: required common or per_corner, received {str(witness)[:60]}")
+        raise ProofRejected(f"witness: required common or per_corner, received {shown(witness)}")
     wide = [i for i, width in enumerate(half) if width > 0]
     required = [[0] * len(half)]
     if witness == "per_corner":
@@ -87,6 +121,8 @@ def _go(
         for ends in itertools.product((1, -1), repeat=len(wide)):
             sign = dict(zip(wide, ends, strict=True))
             required.append([sign.get(i, 0) for i in range(len(half))])
+    for history in histories:
+        fields(history, "histories", ("corner", "thrust_m_s2"))
     corners = [part(history, "corner", list) for history in histories]
     if sorted(map(str, corners)) != sorted(map(str, required)):
         raise ProofRejected(
@@ -96,23 +132,19 @@ def _go(
         raise ProofRejected(f"histories, nodes: required at most {_MOST_CASES} pairs of them")
     cases = []
     for history, corner in zip(histories, corners, strict=True):
-        stated = _plain(plain | {"thrust_m_s2": history.get("thrust_m_s2")})
+        stated = _plain(plain | {"thrust_m_s2": history["thrust_m_s2"]})
         moved = [e + int(sign) * width for e, sign, width in zip(stated.start, corner, half, strict=True)]
         cases += [replace(stated, start=moved, w=w, n=n) for w, n in itertools.product(*at)]
-    borne = half if witness == "common" else [fmpq(0)] * len(half)
-    return StatedForAll("GO", at[0], at[1], borne, cases, [])
+    return cases, []
 
 
 def _no_go(
-    document: Mapping[str, Any],
-    plain: dict[str, Any],
-    half: Rationals,
-    rates: list[float],
-    motions: list[float],
-) -> StatedForAll:
+    document: Mapping[str, Any], plain: dict[str, Any], rates: list[float]
+) -> tuple[list[Stated], list[Rationals]]:
     cases, pieces, reached = [], [], rates[0]
     entries = part(document, "pieces", list)
     for entry in entries[:_MOST]:
+        fields(entry, "pieces", ("tumble_rate_rad_s", "multipliers"))
         ends = _ascending(entry, "tumble_rate_rad_s", 2, 2)
         if ends[0] != reached:
             raise ProofRejected(
@@ -120,13 +152,12 @@ def _no_go(
             )
         reached = ends[1]
         pieces.append([exact(e, "tumble_rate_rad_s", 0.0) for e in ends])
-        cases.append(_plain(plain | {"multipliers": entry.get("multipliers")}))
+        cases.append(_plain(plain | {"multipliers": entry["multipliers"]}))
     if not entries or len(entries) > _MOST or reached != rates[1]:
         raise ProofRejected(
             f"pieces: required them up to tumble rate {rates[1]!r} rad/s, received up to {reached!r}"
         )
-    of = [[exact(e, "interval", 0.0) for e in ends] for ends in (rates, motions)]
-    return StatedForAll("NO_GO", of[0], of[1], half, cases, pieces)
+    return cases, pieces
 
 
 def _plain(document: dict[str, Any]) -> Stated:
@@ -147,14 +178,14 @@ def _ascending(document: Any, key: str, least: int, most: int) -> list[float]:
     if not least <= len(values) <= most:
         raise ProofRejected(f"{key}: required {least} to {most} numbers, received {len(values)}")
     if any(b < a for a, b in itertools.pairwise([exact(e, key, 0.0) for e in values])):
-        raise ProofRejected(f"{key}: required ascending numbers, received {str(values)[:60]}")
+        raise ProofRejected(f"{key}: required ascending numbers, received {shown(values)}")
     return values
 
 
-def _half_widths(start: Mapping[str, Any], d: int) -> Rationals:
-    out = []
-    for key in ("position_half_width_m", "velocity_half_width_m_s"):
-        out += vector(start.get(key), key, d)
+def _half_widths(start: Any, key: str, d: int) -> Rationals:
+    if not isinstance(start, Mapping):
+        raise ProofRejected(f"start: required an object, received {type(start).__name__}")
+    out = vector(start.get(key), key, d)
     if any(e < 0 for e in out):
-        raise ProofRejected("position_half_width_m, velocity_half_width_m_s: required numbers >= 0")
+        raise ProofRejected(f"{key}: required numbers >= 0")
     return out

@@ -31,7 +31,7 @@ def atlas_for(question: Question, farthest: float, shelf: Shelf, *, make: bool) 
         if key in _kept:
             _kept.move_to_end(key)
             return _kept[key]
-    atlas = _from(shelf, key)
+    atlas = _from(shelf, key, question, cut)
     if atlas is None and make:
         from safestart.certificates.survey import build
 
@@ -45,12 +45,13 @@ def atlas_for(question: Question, farthest: float, shelf: Shelf, *, make: bool) 
     return atlas
 
 
-def _from(shelf: Shelf, key: str) -> Atlas | None:
+def _from(shelf: Shelf, key: str, question: Question, cut: float) -> Atlas | None:
     data = shelf.find(key)
     if data is None:
         return None
     try:
-        return unpack(data)
+        atlas = unpack(data)
     except InvalidInput:
-        # What cannot be read is computed again.
+        # What cannot be read is computed again, and so is what answers another question than the key says.
         return None
+    return atlas if (atlas.question, atlas.y_max) == (question, cut) else None
