@@ -106,6 +106,12 @@ def unpack(data: bytes, seal: str | None = None) -> Bundle:
     return Bundle(job, result, events, artifacts)
 
 
+def own_page(data: bytes, bundle: Bundle) -> bool:
+    """Whether the page inside is the one that this version makes of the job: nothing else vouches for what it says."""
+    there = _read(data).get("index.html")
+    return there is None or there == page(bundle.job, bundle.result, bundle.events, bundle.artifacts).encode()
+
+
 def _read(data: bytes) -> dict[str, bytes]:
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:

@@ -6,12 +6,15 @@ import io
 import json
 import zipfile
 from hashlib import sha256
+from pathlib import Path
 from typing import Any
 
 import pytest
+from typer.testing import CliRunner
 
 from safestart.artifact import Artifact
 from safestart.bundle import Bundle, pack, unpack
+from safestart.cli import build
 from safestart.comparable import digest
 from safestart.errors import InvalidInput
 from safestart.store.database import Database
@@ -152,6 +155,30 @@ def test_a_field_twice_is_refused() -> None:
             archive.writestr(name, data)
     with pytest.raises(InvalidInput, match=r"job\.json is no JSON with each field once"):
         unpack(target.getvalue())
+
+
+def test_a_page_that_says_something_else_is_told(tmp_path: Path) -> None:
+    """The page is what a reader opens, and a manifest can be written around any."""
+    data, seal = pack(Bundle(JOB, RESULT, [EVENT], (PICTURE,)))
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        files = {name: archive.read(name) for name in archive.namelist()}
+    files["index.html"] = files["index.html"].replace(b"successful", b"proved safe")
+    manifest = json.loads(files["manifest.json"])
+    entry = {"sha256": sha256(files["index.html"]).hexdigest(), "size": len(files["index.html"])}
+    manifest["files"]["index.html"] = entry
+    files["manifest.json"] = json.dumps(manifest).encode()
+    target = io.BytesIO()
+    with zipfile.ZipFile(target, "w") as archive:
+        for name, content in files.items():
+            archive.writestr(name, content)
+    url, file = f"sqlite:///{tmp_path / 'other.sqlite3'}", tmp_path / "job.zip"
+    for whole, told in ((data, False), (target.getvalue(), True)):
+        file.write_bytes(whole)
+        found = CliRunner().invoke(build(), ["import", str(file), "--database-url", url])
+        assert found.exit_code == 0, found.output
+        assert ("index.html is not the page" in found.stderr) is told
+    with pytest.raises(InvalidInput, match="its seal is"):
+        unpack(target.getvalue(), seal)
 
 
 def test_what_unpack_does_not_see_the_database_refuses_in_words(database: Database) -> None:

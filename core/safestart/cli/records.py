@@ -83,10 +83,13 @@ def import_(
     database_url: DatabaseUrl = "",
 ) -> None:
     """Check a bundle and add its job to the database."""
-    from safestart.bundle import unpack
+    from safestart.bundle import own_page, unpack
     from safestart.store.transfer import Transfer
 
-    opened = unpack(_bytes(bundle), seal)
+    data = _bytes(bundle)
+    opened = unpack(data, seal)
+    if not own_page(data, opened):
+        err.print("its index.html is not the page that this version makes of the job: it was not checked")
     with _database(database_url, new=True) as database:
         new = Transfer(database).add(opened)
     out.print(f"job {opened.job['id']}: {'imported' if new else 'is here already, with the same content'}")
