@@ -107,9 +107,11 @@ def _require_result(document: Mapping[str, Any]) -> None:
         raise invalid("result", required, "; ".join(found))
     if document["schema_version"] != SCHEMA_VERSION:
         raise invalid("result.schema_version", str(SCHEMA_VERSION), document["schema_version"])
-    for name, inside in (("process", "id"), ("provenance", "artifacts")):
-        if not isinstance(document[name], Mapping) or inside not in document[name]:
-            raise invalid(f"result.{name}", f"an object with {inside}", document[name])
+    made, source = document["process"], document["provenance"]
+    if not isinstance(made, Mapping) or set(made) != {"id", "version"} or not isinstance(made["id"], str):
+        raise invalid("result.process", "an object of id and version", made)
+    if not isinstance(source, Mapping) or not isinstance(source.get("artifacts"), Mapping):
+        raise invalid("result.provenance", "an object with artifacts", source)
 
 
 def _named(before: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
@@ -117,15 +119,13 @@ def _named(before: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
     return [] if before.get("seed") == seed else [f"provenance.seed: {before.get('seed')} before, {seed} now"]
 
 
-def _hashes(stated: Any, artifacts: Mapping[str, bytes]) -> list[str]:
-    """Artifacts that are not those which the result names; others are found when they are compared."""
-    if not isinstance(stated, Mapping):
-        return ["provenance.artifacts: no names with hashes"]
+def _hashes(stated: Mapping[str, Any], artifacts: Mapping[str, bytes]) -> list[str]:
+    """Artifacts that are not those which the result names."""
     there = {name: sha256(data).hexdigest() for name, data in artifacts.items()}
     return [
         f"artifact {name}: not the one that the result names"
-        for name in sorted(stated)
-        if stated[name] != there.get(name)
+        for name in sorted({*there, *stated})
+        if (name in stated, stated.get(name)) != (name in there, there.get(name))
     ]
 
 

@@ -40,6 +40,7 @@ def test_a_replay_tells_what_differs_and_keeps_to_the_tolerance_elsewhere(execut
     document["outputs"]["rows"][0]["area_m2"] *= 1 + 1e-6
     assert replay(document, files).kept is False
     assert replay(execution.document, files | {"x.npz": b""}).differences == (
+        "artifact x.npz: not the one that the result names",
         "artifact x.npz: not made any more",
     )
 
@@ -120,7 +121,14 @@ def test_a_replay_says_what_was_asked_and_refuses_what_it_does_not_compare(execu
     def other(**change: Any) -> dict[str, Any]:
         return json.loads(json.dumps(execution.document)) | change
 
-    for wrong in ({"note": "GO"}, {"schema_version": 2}, {"process": {}}, {"provenance": {}}):
+    process = execution.document["process"]
+    for wrong in (
+        {"note": "GO"},
+        {"schema_version": 2},
+        {"process": {}},
+        {"process": process | {"x": 1}},
+        {"provenance": {}},
+    ):
         with pytest.raises(InvalidInput, match="result"):
             replay(other(**wrong), files)
     seed = other()

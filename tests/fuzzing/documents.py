@@ -1,0 +1,155 @@
+"""One small document of every kind of proof, and what happens to its mutants."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from functools import cache
+from random import Random
+from typing import Any
+
+import numpy as np
+
+from safestart.certificates.checker import check
+from safestart.certificates.exact import decide
+from safestart.certificates.families.decide import decide_for_all
+from safestart.certificates.families.members import Family
+from safestart.certificates.families.prove import proof_for_all
+from safestart.certificates.prove import proof_of
+from safestart.certificates.question import Goal, Question
+from safestart.certificates.statement import ProofRejected, digest_of
+from safestart.plain_json import loads
+from safestart.scenario import Chaser, CorridorShape, Scenario, Target
+from tests.fuzzing.decided import truth
+from tests.fuzzing.mutants import known_fields, mutants, paths
+from tests.fuzzing.printed import printed
+
+Document = dict[str, Any]
+SHAPE = CorridorShape(1.2, 0.7, 3.0, 2.0, 0.75)
+GOAL = Goal(0.5, 0.05, (0.0, 1.5))
+
+
+def _scenario(rate: float, a_max: float) -> Scenario:
+    return Scenario(Target(rate, 1.1e-3), Chaser(a_max), SHAPE)
+
+
+def _one(question: Question, *start: float) -> Document:
+    state = np.array(start)
+    return proof_of(question, state, decide(question, state))
+
+
+def _all(verdict_start: tuple[float, ...], rate: float, **change: Any) -> Document:
+    question = Question(_scenario(rate, 0.1), 2.0, 3, 2, None, None, 0.5)
+    family = Family(question, 2e-3, 5e-3, 1e-5, (0.0, 0.2, 0.01, 0.0))
+    state = np.array(verdict_start)
+    return proof_for_all(family, state, decide_for_all(family, state, **change))
+
+
+MAKERS: dict[str, Callable[[], Document]] = {
+    "stay-go": lambda: _one(Question(_scenario(0.05, 0.1), 2.0, 4), 2.0, 6.0, 0.1, -0.2),
+    "stay-no-go": lambda: _one(Question(_scenario(0.1, 0.05), 2.0, 4), 8.0, 6.0, 0.2, 0.0),
+    "stay-go-space": lambda: _one(
+        Question(_scenario(0.05, 0.1), 2.0, 3, 3, None, 0.8, 0.5), 2.0, 6.0, 1.0, 0.1, -0.2, 0.05
+    ),
+    "stay-no-go-space": lambda: _one(
+        Question(_scenario(0.05, 0.05), 2.0, 3, 3, None, 0.5, 0.5), 1.0, 1.2, 0.5, 0.3, -0.35, 0.1
+    ),
+    "synchronize-go": lambda: _one(
+        Question(_scenario(0.05, 0.3), 2.0, 4, 2, GOAL, 1.5, 0.5), 0.3, 2.0, 0.0, -0.1
+    ),
+    "synchronize-no-go": lambda: _one(
+        Question(_scenario(0.05, 0.05), 2.0, 4, 2, GOAL, 1.5, 0.5), 0.5, 3.0, 0.3, 0.0
+    ),
+    "family-go": lambda: _all((1.0, 6.0, 0.0, 0.0), 0.05),
+    "family-go-per-corner": lambda: _all((1.0, 6.0, 0.0, 0.0), 0.05, witness="per_corner"),
+    "family-no-go": lambda: _all((7.0, 6.0, 0.5, 0.0), 0.1),
+}
+KINDS = tuple(MAKERS)
+
+
+@cache
+def original(kind: str) -> str:
+    """The document as text, small enough for a mutant to be checked in milliseconds."""
+    made = MAKERS[kind]()
+    assert made["verdict"] == ("NO_GO" if "no-go" in kind else "GO"), kind
+    return json.dumps(made)
+
+
+@dataclass
+class Run:
+    """What became of the mutants; ``false`` lists those accepted that print a false statement or hold an unread field,
+    ``open`` those accepted that could not be decided."""
+
+    outcomes: Counter[str]
+    false: list[tuple[str, Document]]
+    open: list[tuple[str, Document]]
+
+
+def run(kind: str, number: int, seed: int) -> Run:
+    """Check mutants of one kind; each accepted one is printed, read back and decided anew."""
+    rng = Random(f"{kind} {seed}")
+    document = json.loads(original(kind))
+    fields = known_fields(*(json.loads(original(other)) for other in KINDS))
+    first = check(document)
+    known = {(first.verdict, first.statement): first.margin_m}
+    made = _sealed(mutants(document, fields, rng, number), rng)
+    return tally((done, mutant, _outcome(mutant, known, rng)) for done, mutant in made)
+
+
+def tally(outcomes: Iterable[tuple[str, Any, str]]) -> Run:
+    """Outcomes counted, with the mutants that should not have been accepted."""
+    out = Run(Counter(), [], [])
+    for done, mutant, outcome in outcomes:
+        out.outcomes[outcome] += 1
+        if outcome in ("accepted: false", "accepted: unread"):
+            out.false.append((done, mutant))
+        if outcome == "accepted: open":
+            out.open.append((done, mutant))
+    return out
+
+
+def names(document: Any) -> set[tuple[str, ...]]:
+    """Which fields it holds where, whatever the place in a list."""
+    return {tuple(key if isinstance(key, str) else "*" for key in path) for path in paths(document)}
+
+
+@cache
+def _known_names() -> set[tuple[str, ...]]:
+    return set().union(*(names(json.loads(original(kind))) for kind in KINDS))
+
+
+def _sealed(made: Iterator[tuple[str, Any]], rng: Random) -> Iterator[tuple[str, Any]]:
+    """A forger writes the digest, too; now and then one does not."""
+    for done, mutant in made:
+        if isinstance(mutant, dict) and "digest" not in done and rng.random() < 0.98:
+            with contextlib.suppress(TypeError, ValueError):
+                mutant["digest"] = digest_of(mutant)
+        yield done, mutant
+
+
+def _outcome(mutant: Any, known: dict[tuple[str, tuple[str, ...]], float], rng: Random) -> str:
+    try:
+        # As a file would give it, where it can be one.
+        mutant = loads(json.dumps(mutant))
+    except (TypeError, ValueError):
+        return "no JSON"
+    try:
+        found = check(mutant)
+    except ProofRejected:
+        return "rejected"
+    if not names(mutant) <= _known_names():
+        return "accepted: unread"
+    key = found.verdict, found.statement
+    if key in known:
+        implied = found.margin_m <= known[key] if found.verdict == "GO" else found.margin_m >= known[key]
+        if implied:
+            return (
+                "accepted: the same statement" if found.margin_m == known[key] else "accepted: a weaker claim"
+            )
+    answer = truth(printed(found.verdict, found.margin_m, found.statement), rng)
+    if answer == "true" and key not in known:
+        known[key] = found.margin_m
+    return f"accepted: {answer}"

@@ -1,0 +1,91 @@
+"""A seeded part of the long run (``python -m tests.fuzzing``), and that it finds what it is there to find."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from random import Random
+from typing import Any
+
+import pytest
+
+from safestart.certificates import refute, statement, weights
+from safestart.certificates.checker import check
+from tests.fuzzing.decided import truth
+from tests.fuzzing.documents import KINDS, original, run
+from tests.fuzzing.files import FILES
+from tests.fuzzing.printed import Printed, printed
+
+
+def claim(kind: str) -> Printed:
+    found = check(json.loads(original(kind)))
+    return printed(found.verdict, found.margin_m, found.statement)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_no_mutant_is_accepted_with_a_false_statement(kind: str) -> None:
+    found = run(kind, 150, 1)
+    assert not found.false, found.false[0]
+    assert found.outcomes["accepted: the same statement"] > 0
+    assert found.outcomes["rejected"] > 75
+
+
+@pytest.mark.parametrize("kind", sorted(FILES))
+def test_no_file_is_accepted_that_says_more_than_it_holds(kind: str) -> None:
+    found = FILES[kind](400, 1)
+    assert not found.false, found.false[0]
+    assert found.outcomes["rejected"] > 80
+    assert sum(count for name, count in found.outcomes.items() if name.startswith("accepted")) > 20
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_decision_is_one(kind: str) -> None:
+    """The original's statement is true; with a little more it is false."""
+    said, rng = claim(kind), Random(2)
+    assert truth(said, rng) == "true"
+    # A search that ends with the verdict may stop short of the best claim.
+    more = {"synchronize-no-go": 1.0}.get(kind, 0.2 if said.who != "one" else 1e-3)
+    assert (
+        truth(replace(said, margin=said.margin + (more if said.verdict == "GO" else -more)), rng) == "false"
+    )
+    assert truth(replace(said, margin=-said.margin), rng) == "false"
+
+
+def test_a_checker_that_does_not_mind_the_sign_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(
+        statement, "_claim", lambda document, go: statement.number(document, "margin_m", -1e7)
+    )
+    monkeypatch.setattr(refute.Refutation, "check", lambda self: None)
+    assert run("synchronize-no-go", 600, 3).false
+
+
+def test_a_checker_that_does_not_mind_the_ends_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As it was: no parts refuted no end, and that was a proof."""
+    whole = weights.parts_of
+
+    def lenient(rows: list[Any], *rest: Any) -> Any:
+        return whole(rows, *rest) if rows else []
+
+    monkeypatch.setattr(statement, "parts_of", lenient)
+    out = json.loads(original("synchronize-go"))
+    del out["thrust_m_s2"]
+    out |= {"verdict": "NO_GO", "margin_m": -0.5, "parts": []}
+    out["digest"] = statement.digest_of(out)
+    found = check(out)
+    assert truth(printed(found.verdict, found.margin_m, found.statement), Random(4)) == "false"
+
+
+def test_a_checker_with_open_schemas_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = statement.fields
+
+    def lenient(document: Any, name: str, needed: Any, optional: Any = ()) -> None:
+        kept = {*needed, *optional}
+        whole(
+            {k: v for k, v in document.items() if k in kept} if isinstance(document, dict) else document,
+            name,
+            needed,
+            optional,
+        )
+
+    monkeypatch.setattr(statement, "fields", lenient)
+    assert run("stay-go", 300, 3).outcomes["accepted: unread"] > 0
