@@ -56,8 +56,8 @@ def _go(claim: Printed, rng: Random) -> Truth:
     known = replace(claim, half=(0.0,) * len(claim.half)) if claim.who == "per_corner" else claim
     for centre in _corners(claim) if claim.who == "per_corner" else [claim.start]:
         members = _members(replace(known, start=centre), claim.thrusts[0], rng)
-        best = max(best(claim, members, end)[0] for end in range(claim.ends[0], claim.ends[1] + 1))
-        if best < claim.margin - _slack(claim):
+        reached = max(best(claim, members, end)[0] for end in range(claim.ends[0], claim.ends[1] + 1))
+        if reached < claim.margin - _slack(claim):
             return "false"
     return "true"
 

@@ -24,18 +24,19 @@ def claim(kind: str) -> Printed:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_no_mutant_is_accepted_with_a_false_statement(kind: str) -> None:
-    found = run(kind, 150, 1)
+    number = 60 if kind.startswith("family") else 150
+    found = run(kind, number, 1)
     assert not found.false, found.false[0]
     assert found.outcomes["accepted: the same statement"] > 0
-    assert found.outcomes["rejected"] > 75
+    assert found.outcomes["rejected"] > number // 2
 
 
 @pytest.mark.parametrize("kind", sorted(FILES))
 def test_no_file_is_accepted_that_says_more_than_it_holds(kind: str) -> None:
-    found = FILES[kind](400, 1)
+    found = FILES[kind](250, 1)
     assert not found.false, found.false[0]
-    assert found.outcomes["rejected"] > 80
-    assert sum(count for name, count in found.outcomes.items() if name.startswith("accepted")) > 20
+    assert found.outcomes["rejected"] > 50
+    assert sum(count for name, count in found.outcomes.items() if name.startswith("accepted")) > 15
 
 
 @pytest.mark.parametrize("kind", KINDS)
