@@ -15,6 +15,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from safestart.avoidance.admissible import INSIDE, inner_radii, realisable, square_limits
 from safestart.avoidance.closing_kernel import closest_certain
 from safestart.avoidance.directions import covering, guesses
 from safestart.avoidance.game import Game
@@ -142,12 +143,13 @@ def _search(
 ) -> Witness:
     flat, lead = _check(game, states)
     horizon = number("horizon_s", horizon, 0.0, MAX_HORIZON_S, open_low=True)
-    m, w = game.channels, game.realisable
+    m, radii = game.channels, inner_radii(game)
     pieces = min(max(math.ceil(horizon / 0.75), 40), 1024)
     h = horizon / pieces
     out = np.full(len(flat), -np.inf)
     best = np.zeros((len(flat) if keep else 0, pieces, m))
-    if w is not None:
+    if radii is not None:
+        w = game.control.with_bound(tuple(INSIDE * radius for radius in radii))
         goals = np.broadcast_to(np.asarray(goal, dtype=np.float64), lead).ravel() + game.keep_out_m
         farthest(
             flat,
@@ -157,6 +159,7 @@ def _search(
             w.extreme(guesses(m)),
             np.array([[part.begin, part.end] for part in w.parts]),
             np.array([part.radius for part in w.parts]),
+            square_limits(radii),
             pieces,
             np.ascontiguousarray(goals),
             effort,
@@ -165,6 +168,9 @@ def _search(
             best,
         )
     out -= game.keep_out_m + _SLACK * np.abs(flat).max(axis=1, initial=0.0)
+    if keep:
+        # Nothing is claimed of inputs that Player 1 does not have.
+        out[~realisable(game, best)] = -np.inf
     return Witness(h, best.reshape(*lead, pieces, m) if keep else best, out.reshape(lead))
 
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from safestart.errors import invalid
 from safestart.scenario import MAX_ACCELERATION, Floats, number
+from safestart.unit import unit
 
 SIZES = {"box": None, "disk": (2,), "ball": (3,), "cylinder": (2, 1)}
 """Channels of every part by shape; a box has one part per channel."""
@@ -90,15 +91,12 @@ class InputSet:
         """Input (..., m) with the largest s . w for directions s (..., m); zero where s has no part in it."""
         found = np.zeros_like(directions)
         for part in self.parts:
-            s = directions[..., part.begin : part.end]
-            size = np.linalg.norm(s, axis=-1, keepdims=True)
-            found[..., part.begin : part.end] = part.radius * np.divide(
-                s, size, out=np.zeros_like(s), where=size > 0.0
-            )
+            found[..., part.begin : part.end] = part.radius * unit(directions[..., part.begin : part.end])
         return found
 
 
-def _meeting(part: Part, others: tuple[Part, ...]) -> list[Part]:
+def meeting(part: Part, others: tuple[Part, ...]) -> list[Part]:
+    """The balls that share a channel with ``part``."""
     return [other for other in others if other.begin < part.end and part.begin < other.end]
 
 
@@ -108,8 +106,7 @@ def left_over(own: InputSet, other: InputSet) -> InputSet | None:
     It is the Pontryagin difference where both have the same shape, or ``own`` is a box; inside it otherwise.
     """
     bound = tuple(
-        part.radius - math.hypot(*(meeting.radius for meeting in _meeting(part, other.parts)))
-        for part in own.parts
+        part.radius - math.hypot(*(met.radius for met in meeting(part, other.parts))) for part in own.parts
     )
     # Equal players leave a single point; rounding must not make that empty.
     slack = 1e-12 * max(own.radius, other.radius)
@@ -123,8 +120,8 @@ def held_down(own: InputSet, other: InputSet) -> InputSet:
     shares = []
     for part in own.parts:
         share = 1.0
-        for meeting in _meeting(part, other.parts):
-            size = math.hypot(*(mine.radius for mine in _meeting(meeting, own.parts)))
-            share = min(share, meeting.radius / size if size > 0.0 else 1.0)
+        for met in meeting(part, other.parts):
+            size = math.hypot(*(mine.radius for mine in meeting(met, own.parts)))
+            share = min(share, met.radius / size if size > 0.0 else 1.0)
         shares.append((1.0 - share) * part.radius)
     return own.with_bound(tuple(shares))

@@ -86,12 +86,30 @@ def _turn(
         for i in range(m):
             costate[i] += weight * (1.0 - near[j, 1]) * near[j, 2 + i]
         for g in range(len(radii)):
+            # Scaled by the largest entry first: the squares of short slopes would underflow, and lose their length.
+            largest = 0.0
+            for k in range(parts[g, 0], parts[g, 1]):
+                largest = max(largest, abs(slope[j, k]))
             size = 0.0
             for k in range(parts[g, 0], parts[g, 1]):
+                slope[j, k] = slope[j, k] / largest if largest > 0.0 else 0.0
                 size += slope[j, k] * slope[j, k]
             size = np.sqrt(size)
             for k in range(parts[g, 0], parts[g, 1]):
                 slope[j, k] = radii[g] * slope[j, k] / size if size > 0.0 else 0.0
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _admissible(controls: Floats, parts: Whole, limits: Floats) -> bool:
+    """Whether all ``controls`` (J, m) are surely within their balls: sums of squares in doubles against ``limits``."""
+    for j in range(len(controls)):
+        for g in range(len(limits)):
+            square = 0.0
+            for k in range(parts[g, 0], parts[g, 1]):
+                square += controls[j, k] * controls[j, k]
+            if not square <= limits[g]:
+                return False
+    return True
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -103,6 +121,7 @@ def farthest(
     guesses: Floats,
     parts: Whole,
     radii: Floats,
+    limits: Floats,
     pieces: int,
     goal: Floats,
     effort: int,
@@ -114,7 +133,8 @@ def farthest(
 
     Constant ``guesses`` (G, m) first, then from the best few of them ``effort`` steps of conditional-gradient ascent
     each (steps 2 / (k + 2), so that controls stay in the convex set of ``parts`` and ``radii``) on the softened
-    least distance, with ``blur`` (m) falling. A state is left as soon as it keeps ``goal``.
+    least distance, with ``blur`` (m) falling. A state is left as soon as it keeps ``goal``. Controls count only
+    where they are within their balls (``limits``, squared, less what rounding may hide).
     """
     m = guesses.shape[1]
     n = 2 * m
@@ -127,7 +147,7 @@ def farthest(
         for g in range(len(guesses)):
             controls[:] = guesses[g]
             scores[g] = _fly(states[p], step, push, controls, sag, path, near)
-            if scores[g] > found:
+            if scores[g] > found and _admissible(controls, parts, limits):
                 found = scores[g]
                 if len(best) > 0:
                     best[p] = controls
@@ -148,7 +168,7 @@ def farthest(
                         for i in range(m):
                             controls[j, i] += share * (target[j, i] - controls[j, i])
                     value = _fly(states[p], step, push, controls, sag, path, near)
-                    if value > found:
+                    if value > found and _admissible(controls, parts, limits):
                         found = value
                         if len(best) > 0:
                             best[p] = controls

@@ -11,6 +11,7 @@ from safestart.levelset.dynamics import Ball, Motion
 from safestart.levelset.lattice import Boundary, Lattice
 from safestart.levelset.lookup_kernel import lookup
 from safestart.scenario import Floats
+from safestart.unit import unit
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,8 +73,7 @@ def optimal_inputs(motion: Motion, gradient: Floats, states: Floats, time: float
             slope = -slope
         if isinstance(bound, Ball):
             size = np.linalg.norm(slope, axis=-1, keepdims=True)
-            unit = np.divide(slope, size, out=np.zeros_like(slope), where=size > price)
-            found.append(bound.middle + bound.radius * unit)
+            found.append(bound.middle + bound.radius * np.where(size > price, unit(slope), 0.0))
         else:
             ends = np.where(slope < 0.0, bound.low, bound.high)
             if aim == "min":

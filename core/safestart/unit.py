@@ -1,0 +1,24 @@
+"""Directions of vectors, however short or long they are."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from safestart.scenario import Floats
+
+# Within these the squares neither underflow nor overflow.
+_SHORT, _LONG = 1e-140, 1e140
+
+
+def unit(vectors: Floats) -> Floats:
+    """Vectors (..., m) of length 1, to rounding, in the directions of ``vectors``; zero where they are zero.
+
+    The square of 1e-160 keeps a few bits only: a vector divided by the root of such squares may come out per cents too
+    long. Such vectors are scaled first.
+    """
+    largest = np.abs(vectors).max(axis=-1, keepdims=True, initial=0.0)
+    odd = (largest != 0.0) & ((largest < _SHORT) | (largest > _LONG))
+    scaled = np.divide(vectors, largest, out=vectors.copy(), where=odd) if odd.any() else vectors
+    size = np.linalg.norm(scaled, axis=-1, keepdims=True)
+    out: Floats = np.divide(scaled, size, out=np.zeros_like(scaled), where=size > 0.0)
+    return out
