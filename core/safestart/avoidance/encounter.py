@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from safestart.avoidance.adversary import Adversary
+from safestart.avoidance.miss import segment_distance
 from safestart.avoidance.pilots import Pilot
 from safestart.avoidance.sight import Sight
 from safestart.errors import invalid
@@ -91,18 +92,10 @@ def fly(
         # The acceleration changes little within a period: its larger end and a tenth stand for all of it.
         ends = [np.linalg.norm(x @ matrix.T + total, axis=1) for x in (states, after)]
         sag = 1.1 * np.maximum(*ends) * clock.period_s**2 / 8.0
-        least = np.minimum(least, np.maximum(_chord(states[:, :m], after[:, :m]) - sag, 0.0))
+        least = np.minimum(least, np.maximum(segment_distance(states[:, :m], after[:, :m]) - sag, 0.0))
         for part in game.control.parts:
             spent += np.linalg.norm(u[:, part.begin : part.end], axis=1) * clock.period_s
         states = after
         if keep_path:
             path.append(states)
     return Flights(least, spent, states, np.array(path) if keep_path else None)
-
-
-def _chord(before: Floats, after: Floats) -> Floats:
-    """Distance (N,) of the segments between positions (N, m) from the origin."""
-    way = after - before
-    length = np.maximum((way * way).sum(axis=1), 1e-300)
-    share = np.clip(-(way * before).sum(axis=1) / length, 0.0, 1.0)
-    return np.asarray(np.linalg.norm(before + share[:, None] * way, axis=1))
