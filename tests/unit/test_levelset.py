@@ -48,7 +48,7 @@ def test_a_stage_is_what_the_twin_computes(n: int, boundary: str, precision: str
 
 
 def test_the_step_is_the_longest_stable_one() -> None:
-    lattice, motion = rough_lattice(3, "edge"), Rough(3, separable=True)
+    lattice, motion = rough_lattice(3, "edge"), Rough(3, separable=True, varies=False)
     march = March(lattice, motion, wavy(lattice), 0.0, Kind.FIXED, Options(Scheme.FIRST))
     x = lattice.coordinates()
     speeds = [sum(terms) for terms in motion.rates(lattice, 0.0).drift]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,15 +11,14 @@ from safestart.errors import invalid
 from safestart.levelset.dynamics import Motion
 from safestart.levelset.lattice import Boundary, Lattice
 from safestart.levelset.layout import Array
+from safestart.levelset.levels import Level, Levels
 from safestart.levelset.numbers import SLACK
 from safestart.levelset.scheme import FACTS, Flux, Kind, Scheme
 from safestart.levelset.stage import Stage
 from safestart.scenario import Floats
 
 COURANT = 0.75
-
-Level = Floats | Callable[[float], Floats]
-"""Values that broadcast against the lattice, or a function of time (s) that gives them."""
+_HALVINGS = 60
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +48,8 @@ class March:
 
     ``values`` (shape of the lattice) is the value at ``time``. ``cap`` keeps V <= cap (a target that moves: tube
     towards it), ``floor`` V >= floor (an obstacle, or a state constraint: positive where the state must not be);
-    both are applied after every step, at the time it ends at.
+    both are applied after every step. ``resolution`` (s) is how often at least they are looked at within a step, if
+    they move, and the longest step of a motion that varies; None: only where a step ends, steps as long as is stable.
     """
 
     def __init__(
@@ -63,12 +62,13 @@ class March:
         options: Options | None = None,
         cap: Level | None = None,
         floor: Level | None = None,
+        resolution: float | None = None,
     ) -> None:
         options = options or Options()
         if np.shape(values) != lattice.shape:
             raise invalid("values", f"shape {lattice.shape}, the lattice's", np.shape(values))
         self.time, self.steps = time, 0
-        self._kind, self._options, self._cap, self._floor = kind, options, cap, floor
+        self._options, self._levels, self._resolution = options, Levels(cap, floor, resolution), resolution
         dtype: Any = np.float32 if options.precision == "float32" else np.float64
         self._stage = Stage(lattice, motion, options.scheme, options.flux, kind, dtype, options.threads)
         self._stages = options.stages or FACTS[options.scheme].stages
@@ -77,19 +77,16 @@ class March:
         self._low, self._high = float(np.min(values)), float(np.max(values))
         self._spare = [layout.empty(dtype) for _ in range(1 if self._stages < 3 else 2)]
         self._stage.at(time)
-        self._clamp(time)
+        self._clamp(*self._levels.at(time))
         self._rate = self._stage.fastest()
         self._varies = motion.varies
 
-    def _clamp(self, time: float) -> None:
-        moving = callable(self._cap) or callable(self._floor)
-        if self.steps == 0 or moving:
-            cap, floor = (level(time) if callable(level) else level for level in (self._cap, self._floor))
-            if cap is not None:
-                self._low = min(self._low, float(np.min(cap)))
-            if floor is not None:
-                self._high = max(self._high, float(np.max(floor)))
-            self._stage.clamp(cap, floor)
+    def _clamp(self, cap: Floats | None, floor: Floats | None) -> None:
+        if cap is not None:
+            self._low = min(self._low, float(np.min(cap)))
+        if floor is not None:
+            self._high = max(self._high, float(np.max(floor)))
+        self._stage.clamp(cap, floor)
 
     @property
     def allowed(self) -> tuple[float, float]:
@@ -108,8 +105,12 @@ class March:
         if self._varies:
             self._rate = stage.fastest()
         dt = min(self._options.courant / self._rate, most) if self._rate > 0.0 else most
+        if self._varies:
+            dt = self._stable(dt)
+            stage.at(time)
         v, a = self._v, self._spare[0]
-        self._clamp(time - dt)
+        if self._levels.moving:
+            self._clamp(*self._levels.over(time, time - dt))
         if self._stages == 1:
             stage.run(v, v, a, 0.0, 1.0, dt, clamp=True)
             self._v, self._spare[0] = a, v
@@ -126,6 +127,20 @@ class March:
             stage.run(b, v, v, 1.0 / 3.0, 2.0 / 3.0, dt, clamp=True)
         self.time = time - dt
         self.steps += 1
+        return dt
+
+    def _stable(self, dt: float) -> float:
+        """A step no longer than ``dt`` that is stable at its beginning, middle and end: a motion may be at rest at one
+        of them and fast at the next."""
+        dt = dt if self._resolution is None else min(dt, self._resolution)
+        for _ in range(_HALVINGS):
+            rate = self._rate
+            for share in (0.5, 1.0):
+                self._stage.at(self.time - share * dt)
+                rate = max(rate, self._stage.fastest())
+            if rate * dt <= self._options.courant * (1.0 + 1e-12):
+                break
+            dt = max(self._options.courant / rate, 0.5 * dt)
         return dt
 
     def advance(self, span: float) -> None:

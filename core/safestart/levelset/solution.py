@@ -14,8 +14,10 @@ from safestart.levelset.adapter import as_motion
 from safestart.levelset.dynamics import Motion
 from safestart.levelset.field import ValueField, optimal_inputs
 from safestart.levelset.lattice import Lattice
-from safestart.levelset.march import Level, March, Options
+from safestart.levelset.levels import Level
+from safestart.levelset.march import March, Options
 from safestart.levelset.scheme import Kind, Scheme
+from safestart.levelset.walls import beyond_is_outside
 from safestart.progress import Context
 from safestart.scenario import Floats
 
@@ -24,6 +26,8 @@ MAX_STEPS = 1_000_000
 # and undershoot (measured: 1 %) for the others. A poisoned boundary leaves it several times over.
 MONOTONE_TOLERANCE, TOLERANCE = 1e-3, 0.05
 LOOKS = 20
+MOMENTS = 200
+"""How often at least levels that move, and a motion that varies, are looked at over the horizon."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,9 +72,11 @@ def solve(
     """Value at time ``start`` of the game that is worth ``values`` (shape of the lattice) at ``start + horizon``.
 
     ``dynamics`` is a motion (:class:`~safestart.levelset.dynamics.Linear`) or a model of hj-reachability's form.
-    ``cap`` and ``floor``: see :class:`~safestart.levelset.march.March`. Raises ``InvalidInput`` for bad input and
-    for more than a million steps, ``Cancelled`` between looks at the context. A value that is not finite, or
-    that leaves the range it must keep, is a solution with ``field`` None.
+    ``cap`` and ``floor``: see :class:`~safestart.levelset.march.March`; those that move, and a motion that varies, are
+    looked at 200 times over the horizon at least, a level more often where it changes by more than half a cell. What
+    ``always`` is to keep must be kept inside the lattice: a state that has to leave it counts as outside the set.
+    Raises ``InvalidInput`` for bad input and for more than a million steps, ``Cancelled`` between looks at the
+    context. A value that is not finite, or that leaves the range it must keep, is a solution with ``field`` None.
     """
     if not (math.isfinite(horizon) and horizon > 0.0):
         raise invalid("horizon", "a positive number of seconds", horizon)
@@ -80,7 +86,13 @@ def solve(
     context, options = context or Context(), options or Options()
     begin = clock.perf_counter()
     motion = as_motion(dynamics, lattice)
-    march = March(lattice, motion, values, start + horizon, Kind(kind), options, cap, floor)
+    if Kind(kind) is Kind.ALWAYS and values.shape == lattice.shape:
+        values = beyond_is_outside(
+            lattice, motion, values, list(np.linspace(start + horizon, start, MOMENTS + 1))
+        )
+    march = March(
+        lattice, motion, values, start + horizon, Kind(kind), options, cap, floor, horizon / MOMENTS
+    )
     try:
         steps = march.rate * horizon / options.courant
         if not steps <= MAX_STEPS:
@@ -93,6 +105,8 @@ def solve(
                 left = 0.0 if taken >= left else left - taken
                 if left == 0.0:
                     break
+            if march.steps > MAX_STEPS:
+                raise invalid("lattice", f"a lattice and horizon of at most {MAX_STEPS} steps", march.steps)
             context.step(horizon - left, horizon, "time steps")
             failure = _trouble(march, options, motion)
         field = None if failure else ValueField(lattice, np.array(march.nodes(), dtype=np.float64))
