@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
-from safestart.certificates.proof import check
+from safestart.certificates.checker import check
 from safestart.cli import build
 from safestart.errors import InvalidInput
 from safestart.processes.execute import execute
@@ -28,9 +28,14 @@ def test_three_verdicts_and_what_their_proofs_are_about() -> None:
     assert found["verdict"] == ["GO", "NO_GO", "UNDECIDED"]
     go, no_go, none = found["proof"]
     assert check(json.loads(json.dumps(go))).verdict == "GO"
-    # The plan's scenario: less thrust, a narrower corridor.
-    assert go["question"]["max_acceleration_m_s2"] == pytest.approx(0.05 - 1.583 * 0.004, abs=1e-5)
-    assert go["question"]["corridor"]["hold_radius_m"] == pytest.approx(0.5 + 36.2 * 0.004, abs=1e-3)
+    # The question that was asked, the bounds, and the tube: the plan has less thrust and a narrower corridor.
+    assert go["question"] == no_go["question"]
+    assert go["disturbance"] == {"acceleration_m_s2": 0.004, "position_m": 0.0, "velocity_m_s": 0.0}
+    assert go["tube"]["thrust_m_s2"] == pytest.approx(1.583 * 0.004, abs=1e-5)
+    assert go["tube"]["radius_m"] == pytest.approx(36.2 * 0.004, abs=1e-3)
+    said = " ".join(check(go).statement)
+    assert "an acceleration of at most 0.004 m/s^2" in said
+    assert "y >= 0.644902, |x| <= 2.23877 + 1.5 (y - 0.5), with 0.0436688 m/s^2" in said
     assert check(json.loads(json.dumps(no_go))).verdict == "NO_GO"
     assert no_go["question"]["max_acceleration_m_s2"] == 0.05
     assert none is None
@@ -50,7 +55,10 @@ def test_start_errors_space_and_auto() -> None:
     )
     alone = ask(states=[NEAR], disturbance_m_s2=0, start_error_m=2, method="auto")
     assert alone["margin_m"][0] > spread["margin_m"][0]
-    assert ask(states=[{"x_m": 3, "y_m": 40, "z_m": 2}])["verdict"] == ["GO"]
+    space = ask(states=[{"x_m": 3, "y_m": 40, "z_m": 2}], start_error_m=0.5, proofs=True)
+    assert space["verdict"] == ["GO"]
+    assert check(json.loads(json.dumps(space["proof"][0]))).verdict == "GO"
+    assert space["proof"][0]["tube"]["height_m"] > 0.5
     nothing = ask(states=[NEAR], disturbance_m_s2=0.04)
     assert nothing["verdict"] == ["UNDECIDED"]
     assert "the feedback may ask for" in nothing["reason"][0]

@@ -100,7 +100,7 @@ def _members(claim: Printed, thrust: float, rng: Random) -> list[Member]:
 
 
 @lru_cache(maxsize=256)
-def _steps(n: float, dt: float, d: int, count: int) -> tuple[Any, Any]:
+def steps_of(n: float, dt: float, d: int, count: int) -> tuple[Any, Any]:
     """Phi (count + 1, 2 d, 2 d) and held input (count + 1, 2 d, d) at equal times of an interval."""
     a = np.zeros((2 * d + d, 2 * d + d))
     a[:d, d : 2 * d] = np.eye(d)
@@ -119,7 +119,7 @@ def _steps(n: float, dt: float, d: int, count: int) -> tuple[Any, Any]:
 def _flown(claim: Printed, member: Member, end: int, count: int) -> tuple[Any, Any, Any]:
     """Times (K,), state from the start (K, 2 d, 2 d) and from the thrust (K, 2 d, end d)."""
     d = claim.d
-    phi, held = _steps(member.motion, claim.dt, d, count)
+    phi, held = steps_of(member.motion, claim.dt, d, count)
     carry, drive = np.eye(2 * d), np.zeros((2 * d, end * d))
     times, free, driven = [], [], []
     for k in range(end):
@@ -133,7 +133,7 @@ def _flown(claim: Printed, member: Member, end: int, count: int) -> tuple[Any, A
     return np.array(times), np.array(free), np.array(driven)
 
 
-def _rows(claim: Printed, member: Member, end: int, count: int) -> tuple[Any, Any, Any, list[Any]]:
+def rows_of(claim: Printed, member: Member, end: int, count: int) -> tuple[Any, Any, Any, list[Any]]:
     """Face distances constant + thrust . u, (J,), (J, end d), how the start moves them (J, 2 d), and the cones.
 
     A cone is (limit, constant, thrust, start): limit - |constant + thrust u| is a margin.
@@ -181,11 +181,11 @@ def best(claim: Printed, members: list[Member], end: int, *, free: bool = False)
     fastest = max(member.rate for member in members)
     wanted = max(_SAMPLES, math.ceil(claim.dt * fastest / _TURN), math.ceil(claim.dt / 2.0))
     count = min(_MOST, wanted)
-    rows = [_rows(claim, member, end, count) for member in members]
+    rows = [rows_of(claim, member, end, count) for member in members]
     bound, u, moved = _solve(claim, rows, members[0].thrust, end, free)
     kept, dense = math.inf, min(_MOST * _DENSE, _DENSE * count)
     for member in members:
-        constant, thrust, start, cones = _rows(claim, member, end, dense)
+        constant, thrust, start, cones = rows_of(claim, member, end, dense)
         kept = min(kept, float((constant + thrust @ u + start @ moved).min()))
         kept = min(
             kept, *(limit - np.linalg.norm(a + g @ u + f @ moved) for limit, a, g, f in cones), math.inf

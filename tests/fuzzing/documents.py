@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from safestart.certificates.checker import check
+from safestart.certificates.disturbed.prove import proof_against
 from safestart.certificates.exact import decide
 from safestart.certificates.families.decide import decide_for_all
 from safestart.certificates.families.members import Family
@@ -21,9 +22,11 @@ from safestart.certificates.families.prove import proof_for_all
 from safestart.certificates.prove import proof_of
 from safestart.certificates.question import Goal, Question
 from safestart.certificates.statement import ProofRejected, digest_of
+from safestart.certificates.tube import Disturbance, decide_disturbed, tube_of
 from safestart.plain_json import loads
 from safestart.scenario import Chaser, CorridorShape, Scenario, Target
 from tests.fuzzing.decided import truth
+from tests.fuzzing.disturbed import truth_against
 from tests.fuzzing.mutants import known_fields, mutants, paths
 from tests.fuzzing.printed import printed
 
@@ -48,6 +51,12 @@ def _all(verdict_start: tuple[float, ...], rate: float, **change: Any) -> Docume
     return proof_for_all(family, state, decide_for_all(family, state, **change))
 
 
+def _against(question: Question, disturbance: Disturbance, *start: float) -> Document:
+    state = np.array(start)
+    answer = decide_disturbed(question, state, disturbance)
+    return proof_against(question, disturbance, tube_of(question, disturbance), state, answer)
+
+
 MAKERS: dict[str, Callable[[], Document]] = {
     "stay-go": lambda: _one(Question(_scenario(0.05, 0.1), 2.0, 4), 2.0, 6.0, 0.1, -0.2),
     "stay-no-go": lambda: _one(Question(_scenario(0.1, 0.05), 2.0, 4), 8.0, 6.0, 0.2, 0.0),
@@ -65,6 +74,17 @@ MAKERS: dict[str, Callable[[], Document]] = {
     ),
     "family-go": lambda: _all((1.0, 6.0, 0.0, 0.0), 0.05),
     "family-go-per-corner": lambda: _all((1.0, 6.0, 0.0, 0.0), 0.05, witness="per_corner"),
+    "disturbed-go": lambda: _against(
+        Question(_scenario(0.05, 0.1), 0.5, 8, 2, None, None, 0.5),
+        Disturbance(0.01, 0.02, 0.01),
+        1.0,
+        6.0,
+        0.1,
+        -0.2,
+    ),
+    "disturbed-go-space": lambda: _against(
+        Question(_scenario(0.05, 0.1), 0.5, 6, 3), Disturbance(0.01), 1.0, 6.0, 0.5, 0.1, -0.2, 0.05
+    ),
     "family-no-go": lambda: _all((7.0, 6.0, 0.5, 0.0), 0.1),
 }
 KINDS = tuple(MAKERS)
@@ -149,7 +169,8 @@ def _outcome(mutant: Any, known: dict[tuple[str, tuple[str, ...]], float], rng: 
             return (
                 "accepted: the same statement" if found.margin_m == known[key] else "accepted: a weaker claim"
             )
-    answer = truth(printed(found.verdict, found.margin_m, found.statement), rng)
+    claim = printed(found.verdict, found.margin_m, found.statement)
+    answer = truth_against(claim, mutant, rng) if claim.who == "against" else truth(claim, rng)
     if answer == "true" and key not in known:
         known[key] = found.margin_m
     return f"accepted: {answer}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 from dataclasses import dataclass, field
 from typing import Any
@@ -28,6 +29,16 @@ _LINES = (
     rf"tumble rate about the orbit normal, from the axes of LVLH on: (?P<rate>{_VALUE}) rad/s{_BRACKET}",
     rf"mean motion: (?P<motion>{_VALUE}) rad/s",
     rf"thrust: at most (?P<thrust>{_VALUE}) m/s\^2, no disturbance",
+    rf"thrust: at most (?P<thrust>{_VALUE}) m/s\^2, plan and feedback together",
+    rf"disturbance: an acceleration of at most (?P<push>{_NUMBER}) m/s\^2 at all times, in any direction "
+    rf"and any course",
+    rf"start: within (?P<away>{_NUMBER}) m and (?P<slip>{_NUMBER}) m/s of where it is believed to be",
+    rf"feedback on the state met at each step; the flight stays within (?P<tube>{_NUMBER}) m"
+    rf"(?: in the orbit plane and (?P<height>{_NUMBER}) m across it)? of the plan, the feedback asks for at most "
+    rf"(?P<asks>{_NUMBER}) m/s\^2",
+    rf"the plan stays in the tightened corridor \(rounded\), m: y >= (?P<tight>{_NUMBER}), "
+    rf"\|x\| <= (?P<tight_x>{_NUMBER}) \+ {_NUMBER} \(y - {_NUMBER}\)"
+    rf"(?:, \|z\| <= (?P<tight_z>{_NUMBER}) \+ {_NUMBER} \(y - {_NUMBER}\))?, with (?P<left>{_NUMBER}) m/s\^2",
     rf"start, position in LVLH: (?P<position>{_VECTOR})(?: \+- (?P<wide>{_VECTOR}))? m",
     rf"start, velocity in LVLH: (?P<velocity>{_VECTOR})(?: \+- (?P<fast>{_VECTOR}))? m/s",
 )
@@ -37,6 +48,7 @@ _WHO = {
     "one thrust history keeps the margin for all members of these sets": ("GO", "common"),
     "each corner of the start box has a thrust history that keeps the margin for all values of the intervals; a start "
     "between the corners has their mixture": ("GO", "per_corner"),
+    "a plan with feedback keeps the margin against every disturbance within these bounds": ("GO", "against"),
     "no member of these sets has a thrust history that keeps more than the margin": ("NO_GO", "any"),
 }
 _FACES = "the distance to the nearest face"
@@ -65,6 +77,12 @@ class Printed:
     speed: float | None = None
     scale: float = 0.0
     keep_out: float = 0.0
+    push: float = 0.0
+    away: float = 0.0
+    fast: float = 0.0
+    radius_m: float = 0.0
+    height_m: float = 0.0
+    feedback: float = 0.0
     lines: tuple[str, ...] = field(default=(), compare=False)
 
 
@@ -88,6 +106,18 @@ def printed(verdict: str, margin: float, lines: tuple[str, ...]) -> Printed:
     number = {key: float(found[key]) for key in ("dt", "plane", "x0", "c_x", "z0", "c_z") if key in found}
     out: dict[str, Any] = {}
     terms = [_FACES]
+    assert (who == "against") is ("push" in found) is ("tube" in found) is ("tight" in found), lines
+    if who == "against":
+        out |= {
+            **{
+                name: float(found[key])
+                for name, key in (("push", "push"), ("away", "away"), ("fast", "slip"))
+            },
+            "radius_m": float(found["tube"]),
+            "height_m": float(found.get("height", 0.0)),
+            "feedback": float(found["asks"]),
+        }
+        _tightened(found, number, out)
     if "speed" in found:
         (scale,) = re.findall(rf"({_NUMBER}) s times the speed left to the limit", found["margin"])
         out |= {"speed": float(found["speed"]), "scale": float(scale)}
@@ -122,6 +152,20 @@ def printed(verdict: str, margin: float, lines: tuple[str, ...]) -> Printed:
         lines=lines,
         **out,
     )
+
+
+def _tightened(found: dict[str, str], number: dict[str, float], out: dict[str, Any]) -> None:
+    """The rounded corridor is the real one less what the tube takes."""
+    radius = out["radius_m"]
+    wanted = {
+        "tight": number["plane"] + radius,
+        "tight_x": number["x0"] - radius * math.hypot(1.0, number["c_x"]),
+        "left": float(found["thrust"]) - out["feedback"],
+    }
+    if "z0" in number:
+        wanted["tight_z"] = number["z0"] - number["c_z"] * radius - out["height_m"]
+    for key, value in wanted.items():
+        assert math.isclose(float(found[key]), value, rel_tol=1e-5, abs_tol=1e-5), (key, found[key], value)
 
 
 def _vector(found: dict[str, str], key: str, d: int) -> tuple[float, ...]:

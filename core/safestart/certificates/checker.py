@@ -1,4 +1,4 @@
-"""Any proof document checked: single starts (``proof.py``) and families (``families/proof.py``)."""
+"""Any proof document checked: single starts (``proof.py``), families (``families/``), disturbances (``disturbed/``)."""
 
 from __future__ import annotations
 
@@ -6,13 +6,18 @@ from collections.abc import Mapping
 from typing import Any
 
 from safestart.certificates import proof
+from safestart.certificates.disturbed import proof as disturbed
+from safestart.certificates.disturbed import statement as disturbed_statement
 from safestart.certificates.families import proof as for_all
 from safestart.certificates.families import statement as family_statement
 from safestart.certificates.proof import Verified
 
 
 def check(document: Any) -> Verified:
-    """Check a proof of either schema; raise ``ProofRejected`` when it is malformed or an inequality fails."""
-    if isinstance(document, Mapping) and document.get("schema") == family_statement.SCHEMA:
+    """Check a proof of any schema; raise ``ProofRejected`` when it is malformed or an inequality fails."""
+    schema = document.get("schema") if isinstance(document, Mapping) else None
+    if schema == family_statement.SCHEMA:
         return for_all.check(document)
+    if schema == disturbed_statement.SCHEMA:
+        return disturbed.check(document)
     return proof.check(document)

@@ -8,7 +8,7 @@ comparison counts only when it holds for the whole ball. docs/theory/exact.md st
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -50,16 +50,17 @@ def _square(vector: list[arb]) -> arb:
 
 
 class Witness:
-    """The thrust history of one statement, flown in balls."""
+    """The thrust history of one statement, flown in balls; every face stands back by what is ``taken`` of it (m)."""
 
-    def __init__(self, stated: Stated) -> None:
+    def __init__(self, stated: Stated, taken: Mapping[str, arb] | None = None) -> None:
         self.stated, self.pieces = stated, 0
         self.d, self.dt = stated.d, stated.dt
         self.motion, self.claim, self.limits = Motion(stated), arb(stated.claim), stated.limits
         self.faces = {}
         for name, (normal, offset) in stated.faces.items():
             length = arb(sum((e * e for e in normal), fmpq(0))).sqrt()
-            self.faces[name] = [arb(e) / length for e in normal], arb(offset) / length
+            room = arb(offset) / length - (taken or {}).get(name, arb(0))
+            self.faces[name] = [arb(e) / length for e in normal], room
         self.start = arb_mat(2 * self.d, 1, [arb(e) for e in stated.start])
 
     def check(self) -> int:

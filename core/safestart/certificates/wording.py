@@ -12,6 +12,7 @@ from typing import Any
 
 from flint import fmpq
 
+from safestart.certificates.disturbed.statement import StatedDisturbed
 from safestart.certificates.families.statement import StatedForAll
 from safestart.certificates.statement import Stated
 
@@ -47,6 +48,39 @@ def lines_for_all(stated: StatedForAll) -> tuple[str, ...]:
         f"mean motion: {_value(stated.motions[0], stated.motions[-1])} rad/s",
         f"thrust: at most {_value(stated.thrusts[0], stated.thrusts[1])} m/s^2, no disturbance",
         *_start(middle, stated.box),
+    )
+
+
+def lines_disturbed(stated: StatedDisturbed) -> tuple[str, ...]:
+    """The statement about one start that withstands every disturbance within its bounds."""
+    plan, space = stated.plan, stated.plan.d == 3
+    tube = f"{_number(stated.radius)} m" + (
+        f" in the orbit plane and {_number(stated.height)} m across it" if space else ""
+    )
+    radius, hold = stated.radius, plan.shape["hold_radius_m"]
+    across = (plan.shape["c_z"] * radius + stated.height) if space else fmpq(0)
+    # Every face moved in by what the error may take: |A| radius off the sides' offsets, as roots that are rounded.
+    narrow = [f"y >= {_double(hold + radius):g}"]
+    c_x, x0 = (_double(plan.shape[key]) for key in ("c_x", "x0_m"))
+    narrow.append(f"|x| <= {x0 - _double(radius) * math.hypot(1.0, c_x):g} + {c_x:g} (y - {_double(hold):g})")
+    if space:
+        c_z, z0 = (_double(plan.shape[key]) for key in ("c_z", "z0_m"))
+        narrow.append(f"|z| <= {z0 - _double(across):g} + {c_z:g} (y - {_double(hold):g})")
+    return (
+        "a plan with feedback keeps the margin against every disturbance within these bounds; the margin is "
+        f"{_margin(plan)}",
+        *_asked(plan),
+        f"disturbance: an acceleration of at most {_number(stated.push)} m/s^2 at all times, in any direction and any "
+        "course",
+        f"start: within {_number(stated.away)} m and {_number(stated.fast)} m/s of where it is believed to be",
+        f"feedback on the state met at each step; the flight stays within {tube} of the plan, the feedback asks for at "
+        f"most {_number(stated.thrust)} m/s^2",
+        f"the plan stays in the tightened corridor (rounded), m: {', '.join(narrow)}, with "
+        f"{_double(plan.a_max - stated.thrust):g} m/s^2",
+        f"tumble rate about the orbit normal, from the axes of LVLH on: {_rate(plan.w, plan.w)}",
+        f"mean motion: {_value(plan.n, plan.n)} rad/s",
+        f"thrust: at most {_value(plan.a_max, plan.a_max)} m/s^2, plan and feedback together",
+        *_start(plan, None),
     )
 
 

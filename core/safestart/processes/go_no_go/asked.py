@@ -55,7 +55,7 @@ class Asked(Widths):
         ge=0,
         le=1,
         description="Bound on an unknown acceleration at all times, m/s^2 (stay): GO then holds against every such "
-        "disturbance, by a feedback whose margin and thrust are set aside; its proof is that of the plan.",
+        "disturbance, by a feedback whose margin and thrust are set aside; its proof holds the tube.",
     )
     start_error_m: float = Field(
         0.0, ge=0, le=1000, description="How far the start may be from where it is said to be, m (stay)."

@@ -1,6 +1,8 @@
-"""go-no-go against a bounded disturbance: the tube's answers, and the question each of them is about."""
+"""go-no-go against a bounded disturbance: the tube's answers, and their proofs."""
 
 from __future__ import annotations
+
+from typing import Any
 
 from safestart.certificates.answer import Answer, Verdict
 from safestart.certificates.question import Question
@@ -17,21 +19,28 @@ def disturbance_of(inputs: GoNoGoInputs) -> Disturbance | None:
     return found if found.vector().any() else None
 
 
-def under(
-    disturbance: Disturbance, question: Question, starts: Floats, context: Context
-) -> tuple[list[Question], list[Answer]]:
-    """Answers, and the question that a proof of each is about: the tightened one for GO, the asked one for NO_GO."""
+def under(disturbance: Disturbance, question: Question, starts: Floats, context: Context) -> list[Answer]:
+    """Answers, one for each start."""
     if not question.plain:
         raise invalid(
             "disturbance_m_s2", "question stay without a speed limit: the tube knows no other", question.kind
         )
-    tight = tube_of(question, disturbance).question or question
-    asked, answers = [], []
+    answers = []
     for k, start in enumerate(starts):
         answers.append(decide_disturbed(question, start, disturbance))
-        asked.append(tight if answers[-1].verdict is Verdict.GO else question)
         context.step(k + 1, len(starts), "starts")
-    return asked, answers
+    return answers
+
+
+def proof_under(
+    disturbance: Disturbance, question: Question, start: Floats, answer: Answer
+) -> dict[str, Any] | None:
+    """The document with disturbance, feedback, tube and plan for GO, the plain one for NO_GO, none where undecided."""
+    from safestart.certificates.disturbed.prove import proof_against
+
+    if answer.verdict is Verdict.UNDECIDED:
+        return None
+    return proof_against(question, disturbance, tube_of(question, disturbance), start, answer)
 
 
 def told(disturbance: Disturbance, question: Question, answer: Answer) -> str:

@@ -12,7 +12,7 @@ from safestart.certificates.question import Question
 from safestart.dynamics.body_frame import body_to_lvlh
 from safestart.errors import invalid
 from safestart.processes.go_no_go.atlases import atlas_for
-from safestart.processes.go_no_go.disturbed import disturbance_of, told, under
+from safestart.processes.go_no_go.disturbed import disturbance_of, proof_under, told, under
 from safestart.processes.go_no_go.families import decide_families
 from safestart.processes.go_no_go.posed import question_of, sentence
 from safestart.processes.go_no_go.spec import GoNoGoInputs
@@ -37,7 +37,7 @@ def prove_all(inputs: GoNoGoInputs, points: Floats, context: Context) -> dict[st
     rate = question.scenario.target.tumble_rate if inputs.rest is Rest.BODY else 0.0
     at, velocity = body_to_lvlh(points, np.zeros_like(points), rate, 0.0)
     starts = np.concatenate([at, velocity], axis=-1)
-    asked, disturbance = [question] * len(starts), disturbance_of(inputs)
+    disturbance = disturbance_of(inputs)
     if inputs.uncertain:
         if disturbance is not None:
             raise invalid("disturbance_m_s2", "no half-widths beside it", "both")
@@ -45,7 +45,7 @@ def prove_all(inputs: GoNoGoInputs, points: Floats, context: Context) -> dict[st
     if disturbance is not None:
         if len(points) > MOST_PROGRAMS:
             raise invalid("states", f"at most {MOST_PROGRAMS} against a disturbance", len(points))
-        asked, answers = under(disturbance, question, starts, context)
+        answers = under(disturbance, question, starts, context)
     elif inputs.method == "auto" and question.plain and points.shape[-1] == 2 and inputs.rest is Rest.LVLH:
         answers = _by_atlas(question, starts, context)
     else:
@@ -62,7 +62,12 @@ def prove_all(inputs: GoNoGoInputs, points: Floats, context: Context) -> dict[st
             for answer in answers
         ],
         "end_s": [_end(question, answer) for answer in answers] if question.goal else None,
-        "proof": [_proof(q, s, a) for q, s, a in zip(asked, starts, answers, strict=True)]
+        "proof": [
+            _proof(question, start, answer)
+            if disturbance is None
+            else proof_under(disturbance, question, start, answer)
+            for start, answer in zip(starts, answers, strict=True)
+        ]
         if inputs.proofs
         else None,
     }
