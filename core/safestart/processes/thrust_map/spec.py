@@ -10,6 +10,10 @@ from safestart.processes.wire import CorridorInput
 from safestart.scenario import MAX_MEAN_MOTION, Rest
 
 
+PROVED_FOR_S = 60.0
+"""How long a start that the required thrust is named for is proved to stay, s."""
+
+
 class ThrustMapInputs(WireModel):
     """Tumble rates, thrust levels, and the distance at which the approach is to start."""
 
@@ -38,7 +42,8 @@ class ThrustMapOutputs(WireModel):
     a_max_m_s2: list[float]
     safe_percent: list[list[float]] = Field(description="Certified share of the corridor, percent.")
     required_a_max_m_s2: list[float | None] = Field(
-        description="Smallest thrust for which the start (0, stand_off_m) is certified; null: none up to 10 m/s^2."
+        description="Smallest thrust for which the start (0, stand_off_m) is certified and a thrust history is proved to "
+        "keep it in the corridor for 60 s; null: none up to 10 m/s^2."
     )
 
 
@@ -47,7 +52,8 @@ SPEC = ProcessSpec(
     title="What more thrust buys",
     description=(
         "Certified share of the corridor for each pair of tumble rate and thrust, and for each tumble rate the "
-        "smallest thrust that certifies a start on the corridor's axis at the wanted stand-off. Closed form."
+        "smallest thrust that certifies a start on the corridor's axis at the wanted stand-off and is proved to keep it "
+        "in the corridor for 60 s. The share is that of the paper's conditions; not a proof next to the range limit."
     ),
     inputs=ThrustMapInputs,
     outputs=ThrustMapOutputs,
