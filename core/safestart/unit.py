@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from safestart.scenario import Floats
+from safestart.model.scenario import Floats
 
 # Within these the squares neither underflow nor overflow.
 _SHORT, _LONG = 1e-140, 1e140

@@ -13,18 +13,18 @@ from typing import Any
 
 import numpy as np
 
-from safestart.certificates.checker import check
 from safestart.certificates.disturbed.prove import proof_against
-from safestart.certificates.exact import decide
-from safestart.certificates.families.decide import decide_for_all
-from safestart.certificates.families.members import Family
-from safestart.certificates.families.prove import proof_for_all
-from safestart.certificates.prove import proof_of
-from safestart.certificates.question import Goal, Question
-from safestart.certificates.statement import ProofRejected, digest_of
-from safestart.certificates.tube import Disturbance, decide_disturbed, tube_of
+from safestart.disturbance.tube import Disturbance, decide_disturbed, tube_of
+from safestart.exact.decide import decide
+from safestart.exact.prove import proof_of
+from safestart.exact.question import Goal, Question
+from safestart.families.decide import decide_for_all
+from safestart.families.members import Family
+from safestart.families.prove import proof_for_all
+from safestart.model.scenario import Chaser, CorridorShape, Scenario, Target
 from safestart.plain_json import loads
-from safestart.scenario import Chaser, CorridorShape, Scenario, Target
+from safestart.proofs.checker import check
+from safestart.proofs.statement import ProofRejected, digest_of
 from tests.fuzzing.decided import truth
 from tests.fuzzing.disturbed import truth_against
 from tests.fuzzing.mutants import known_fields, mutants, paths

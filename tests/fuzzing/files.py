@@ -15,19 +15,19 @@ from unittest.mock import patch
 
 import numpy as np
 
-from safestart.artifact import Artifact
-from safestart.bundle import unpack as open_bundle
-from safestart.certificates.atlas import Atlas
-from safestart.certificates.atlas_file import pack as pack_atlas
-from safestart.certificates.atlas_file import unpack as open_atlas
-from safestart.certificates.question import Question
-from safestart.certificates.survey import build
-from safestart.comparable import TIMING_KEYS, digest
+from safestart.atlas.atlas import Atlas
+from safestart.atlas.file import pack as pack_atlas
+from safestart.atlas.file import unpack as open_atlas
+from safestart.atlas.survey import build
 from safestart.errors import SafestartError
+from safestart.exact.question import Question
+from safestart.model.scenario import Scenario
 from safestart.processes.execute import Execution, execute
 from safestart.processes.registry import process
-from safestart.replay import replay
-from safestart.scenario import Scenario
+from safestart.records.artifact import Artifact
+from safestart.records.bundle import unpack as open_bundle
+from safestart.records.comparable import TIMING_KEYS, digest
+from safestart.records.replay import replay
 from tests.fuzzing.decided import Member, best
 from tests.fuzzing.documents import Run, names, tally
 from tests.fuzzing.mutants import known_fields, mutants
@@ -132,7 +132,7 @@ def run_replays(number: int, seed: int) -> Run:
     """Kept is only what has the inputs, the outputs and the files of the same computation."""
     rng, document = Random(f"replay {seed}"), _execution().document
     made = mutants(document, known_fields(_parts()), rng, number)
-    with patch("safestart.replay.execute", _again):
+    with patch("safestart.records.replay.execute", _again):
         return tally((done, mutant, _replay_outcome(mutant)) for done, mutant in made)
 
 

@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
-from safestart.certificates import refute, statement, weights
-from safestart.certificates.checker import check
+from safestart.proofs import refute, statement, weights
+from safestart.proofs.checker import check
 from tests.fuzzing.decided import truth
 from tests.fuzzing.disturbed import truth_against
 from tests.fuzzing.documents import KINDS, original, run

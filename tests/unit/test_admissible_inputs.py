@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from safestart.avoidance.admissible import fits, inner_radii, realisable
-from safestart.avoidance.certified import lower, witness
-from safestart.avoidance.game import Game
-from safestart.avoidance.inputs import InputSet
+from safestart.collision_avoidance.bounds.certified import lower, witness
+from safestart.collision_avoidance.game import Game
+from safestart.collision_avoidance.inputs import InputSet
 from safestart.levelset import Ball, Box, Input, Linear
 from safestart.levelset.field import optimal_inputs
-from safestart.scenario import Floats
+from safestart.model.scenario import Floats
 from safestart.unit import unit
 
 W = 1.1e-3

@@ -12,17 +12,17 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from safestart.certificates.checker import check
-from safestart.certificates.exact import decide
-from safestart.certificates.families.decide import decide_for_all
-from safestart.certificates.families.members import Family
-from safestart.certificates.families.prove import proof_for_all
-from safestart.certificates.prove import proof_of
-from safestart.certificates.question import Goal, Question
-from safestart.certificates.statement import ProofRejected
 from safestart.cli import build
-from safestart.scenario import Chaser, CorridorShape, Scenario, Target
-from tests.unit.forgery import Document, sealed
+from safestart.exact.decide import decide
+from safestart.exact.prove import proof_of
+from safestart.exact.question import Goal, Question
+from safestart.families.decide import decide_for_all
+from safestart.families.members import Family
+from safestart.families.prove import proof_for_all
+from safestart.model.scenario import Chaser, CorridorShape, Scenario, Target
+from safestart.proofs.checker import check
+from safestart.proofs.statement import ProofRejected
+from tests.unit.proofs.forgery import Document, sealed
 
 PAPER = Question(Scenario.of(3.0, 0.1))
 ENDS = Question(Scenario.of(3.0, 0.05), 2.0, 30, 2, Goal(), 0.8, 0.5)

@@ -10,7 +10,7 @@ import pytest
 
 from safestart.levelset import Ball, Boundary, Input, Kind, Lattice, Linear, March, Options, Scheme
 from safestart.levelset.levels import Levels
-from tests.unit.levelset_problems import DOUBLE, PUSH, box, solved
+from tests.unit.levelset.levelset_problems import DOUBLE, PUSH, box, solved
 
 PLANE = Lattice.of([-10.0, -10.0], [10.0, 10.0], (81, 81))
 SCHEMES = [Scheme.FIRST, Scheme.ENO2, Scheme.WENO5]

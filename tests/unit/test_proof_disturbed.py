@@ -10,16 +10,16 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from safestart.certificates.checker import check
 from safestart.certificates.disturbed.prove import proof_against
-from safestart.certificates.prove import proof_of
-from safestart.certificates.question import Question
-from safestart.certificates.statement import ProofRejected
-from safestart.certificates.tube import Disturbance, Verdict, decide_disturbed, tube_of
 from safestart.cli import build
+from safestart.disturbance.tube import Disturbance, Verdict, decide_disturbed, tube_of
 from safestart.errors import InvalidInput
-from safestart.scenario import Chaser, CorridorShape, Scenario, Target
-from tests.unit.forgery import Document, assert_every_digit_counts, changed, sealed
+from safestart.exact.prove import proof_of
+from safestart.exact.question import Question
+from safestart.model.scenario import Chaser, CorridorShape, Scenario, Target
+from safestart.proofs.checker import check
+from safestart.proofs.statement import ProofRejected
+from tests.unit.proofs.forgery import Document, assert_every_digit_counts, changed, sealed
 
 PLANE = Question(Scenario.of(2.0, 0.05), 2.0, 12)
 SPACE = Question(Scenario(Target(0.02), Chaser(0.1), CorridorShape(1.2, 0.7, 3.0, 2.0, 1.0)), 1.0, 6, 3)

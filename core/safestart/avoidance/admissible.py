@@ -13,9 +13,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from safestart.avoidance.game import Game
-from safestart.avoidance.inputs import meeting
-from safestart.scenario import Bools, Floats
+from safestart.collision_avoidance.game import Game
+from safestart.collision_avoidance.inputs import meeting
+from safestart.model.scenario import Bools, Floats
 
 INSIDE = 1.0 - 1e-13
 """Inputs are sought in balls this much smaller, so that the rounding of a hundred steps leaves them admissible."""

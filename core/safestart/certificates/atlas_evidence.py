@@ -7,12 +7,12 @@ from fractions import Fraction
 
 import numpy as np
 
-from safestart.certificates.atlas import Atlas
-from safestart.certificates.conic import bound
-from safestart.certificates.extent import Witness
-from safestart.certificates.watch import Watch, watch_of
+from safestart.atlas.atlas import Atlas
+from safestart.atlas.extent import Witness
 from safestart.errors import invalid
-from safestart.scenario import Floats
+from safestart.exact.watch import Watch, watch_of
+from safestart.model.scenario import Floats
+from safestart.optim.conic import bound
 
 _ROUNDING_M = 1e-10
 """What another processor may make of the same sums, in metres: a tenth of what a verdict keeps away from 0."""

@@ -13,8 +13,8 @@ from typing import Any
 from flint import fmpq
 
 from safestart.certificates.disturbed.statement import StatedDisturbed
-from safestart.certificates.families.statement import StatedForAll
-from safestart.certificates.statement import Stated
+from safestart.proofs.family_statement import StatedForAll
+from safestart.proofs.statement import Stated
 
 _ONE_FOR_ALL = "one thrust history keeps the margin for all members of these sets"
 _PER_CORNER = (

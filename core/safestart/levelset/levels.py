@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from safestart.scenario import Floats
+from safestart.model.scenario import Floats
 
 Level = Floats | Callable[[float], Floats]
 """Values that broadcast against the lattice, or a function of time (s) that gives them."""

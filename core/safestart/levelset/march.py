@@ -15,7 +15,7 @@ from safestart.levelset.levels import Level, Levels
 from safestart.levelset.numbers import SLACK
 from safestart.levelset.scheme import FACTS, Flux, Kind, Scheme
 from safestart.levelset.stage import Stage
-from safestart.scenario import Floats
+from safestart.model.scenario import Floats
 
 COURANT = 0.75
 _HALVINGS = 60

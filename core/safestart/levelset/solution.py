@@ -18,8 +18,8 @@ from safestart.levelset.levels import Level
 from safestart.levelset.march import March, Options
 from safestart.levelset.scheme import Kind, Scheme
 from safestart.levelset.walls import beyond_is_outside
-from safestart.progress import Context
-from safestart.scenario import Floats
+from safestart.model.scenario import Floats
+from safestart.runtime.progress import Context
 
 MAX_STEPS = 1_000_000
 # Share of the initial range by which the value may leave it: rounding for the monotone first-order scheme, over-

@@ -6,7 +6,7 @@ import numpy as np
 
 from safestart.levelset.dynamics import Ball, Box, Motion
 from safestart.levelset.lattice import Boundary, Lattice
-from safestart.scenario import Floats
+from safestart.model.scenario import Floats
 
 
 def beyond_is_outside(lattice: Lattice, motion: Motion, values: Floats, times: list[float]) -> Floats:

@@ -16,12 +16,12 @@ from typing import Any
 
 from flint import acb, arb, arb_mat, fmpq
 
-from safestart.certificates.balls import PRECISION, Motion
 from safestart.certificates.disturbed.statement import StatedDisturbed, read
-from safestart.certificates.proof import Verified, Witness
-from safestart.certificates.strict import ProofRejected
 from safestart.certificates.wording import lines_disturbed
-from safestart.precision import precise
+from safestart.proofs.balls import PRECISION, Motion
+from safestart.proofs.single import Verified, Witness
+from safestart.proofs.strict import ProofRejected
+from safestart.runtime.precision import precise
 
 _DIRECTIONS, _PANELS = 96, 8
 _REST = 1e-11

@@ -6,14 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from safestart.certificates.answer import Answer, Verdict
 from safestart.certificates.disturbed.statement import SCHEMA
-from safestart.certificates.prove import proof_of, question_of
-from safestart.certificates.question import Question
-from safestart.certificates.statement import digest_of
-from safestart.certificates.tube import Disturbance, Tube
+from safestart.disturbance.tube import Disturbance, Tube
 from safestart.errors import invalid
-from safestart.scenario import Floats
+from safestart.exact.answer import Answer, Verdict
+from safestart.exact.prove import proof_of, question_of
+from safestart.exact.question import Question
+from safestart.model.scenario import Floats
+from safestart.proofs.statement import digest_of
 
 
 def proof_against(
@@ -21,7 +21,7 @@ def proof_against(
 ) -> dict[str, Any]:
     """JSON-able proof of a GO that withstands ``disturbance``: bounds, feedback, tube and plan.
 
-    ``question`` is the real one, ``tube`` what :func:`~safestart.certificates.tube.tube_of` made of it, ``answer`` that
+    ``question`` is the real one, ``tube`` what :func:`~safestart.disturbance.tube.tube_of` made of it, ``answer`` that
     of the tightened question for the start ``state`` (2 d,). A NO_GO needs no disturbance: its proof is the plain one.
     Raises ``InvalidInput`` for an UNDECIDED answer.
     """

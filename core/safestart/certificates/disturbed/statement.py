@@ -12,9 +12,9 @@ from typing import Any
 
 from flint import fmpq
 
-from safestart.certificates import statement
-from safestart.certificates.statement import Stated
-from safestart.certificates.strict import ProofRejected, fields, number, part, vector
+from safestart.proofs import statement
+from safestart.proofs.statement import Stated
+from safestart.proofs.strict import ProofRejected, fields, number, part, vector
 
 SCHEMA = "safestart-proof-disturbed/1"
 _LONGEST_INTERVAL_S = 60

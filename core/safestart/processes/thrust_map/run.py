@@ -7,15 +7,15 @@ from collections.abc import Callable
 
 import numpy as np
 
-from safestart.certificates.closed_form import certify, certify_grid
-from safestart.certificates.exact import Verdict, decide
-from safestart.certificates.question import Question
-from safestart.dynamics.body_frame import body_to_lvlh
+from safestart.attitude.body_frame import body_to_lvlh
+from safestart.closed_form.paper import certify, certify_grid
+from safestart.exact.decide import Verdict, decide
+from safestart.exact.question import Question
+from safestart.model.scenario import MAX_ACCELERATION, MIN_ACCELERATION, Chaser, Grid, Rest, Scenario, Target
 from safestart.processes.base import ProcessOutput
 from safestart.processes.thrust_map.spec import PROVED_FOR_S, ThrustMapInputs
 from safestart.processes.wire import DT_S
-from safestart.progress import Context
-from safestart.scenario import MAX_ACCELERATION, MIN_ACCELERATION, Chaser, Grid, Rest, Scenario, Target
+from safestart.runtime.progress import Context
 
 _CELLS = 61
 

@@ -1,0 +1,23 @@
+"""Any proof document checked: single starts (``proof.py``), families (``families/``), disturbances (``disturbed/``)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from safestart.certificates.disturbed import proof as disturbed
+from safestart.certificates.disturbed import statement as disturbed_statement
+from safestart.proofs import family as for_all
+from safestart.proofs import family_statement
+from safestart.proofs import single as proof
+from safestart.proofs.single import Verified
+
+
+def check(document: Any) -> Verified:
+    """Check a proof of any schema; raise ``ProofRejected`` when it is malformed or an inequality fails."""
+    schema = document.get("schema") if isinstance(document, Mapping) else None
+    if schema == family_statement.SCHEMA:
+        return for_all.check(document)
+    if schema == disturbed_statement.SCHEMA:
+        return disturbed.check(document)
+    return proof.check(document)
