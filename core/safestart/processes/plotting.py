@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
+from safestart.model.scenario import CorridorShape
 from safestart.processes.base import Artifact
-from safestart.scenario import CorridorShape
 
 mpl.use("Agg")
 
