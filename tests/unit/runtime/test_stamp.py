@@ -6,15 +6,15 @@ from collections.abc import Iterator
 from types import ModuleType
 from typing import Any
 
+import safestart
 from safestart.runtime.stamp import source_stamp
 
-FOLDERS = ("avoidance", "guidance", "levelset", "sets", "verification")
+NOT_IMPORTED = ("migrations", "__main__", "orphan_guard", ".cli")
 
 
 def modules() -> Iterator[ModuleType]:
-    for folder in FOLDERS:
-        package = importlib.import_module(f"safestart.{folder}")
-        for entry in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
+    for entry in pkgutil.walk_packages(safestart.__path__, "safestart."):
+        if not any(part in entry.name for part in NOT_IMPORTED):
             yield importlib.import_module(entry.name)
 
 
