@@ -20,6 +20,7 @@ from safestart.engines.hj.frame import MODEL
 from safestart.engines.hj.settings import ENGINE, Settings
 from safestart.engines.hj.target import TargetValues, target_at
 from safestart.engines.region import restrict
+from safestart.errors import Unavailable
 from safestart.model.scenario import Floats, SetKind
 from safestart.runtime.progress import Context
 
@@ -102,8 +103,15 @@ def _solver(problem: Problem, domain: Domain, settings: Settings, terminal: Floa
         from safestart.engines.hj.fused import FusedSolver
 
         return FusedSolver(problem, domain, settings, terminal, courant)
-    from safestart.engines.hj.peer import PeerSolver
-
+    try:
+        from safestart.engines.hj.peer import PeerSolver
+    except ModuleNotFoundError as error:
+        raise Unavailable(
+            f"solver hj_reachability: required the extra safestart[oracle] on the worker, received no {error.name}",
+            field="hamilton_jacobi.solver",
+            required="the extra safestart[oracle], or solver fused",
+            received="hj_reachability",
+        ) from None
     return PeerSolver(problem, domain, settings, terminal, courant)
 
 
