@@ -1,0 +1,107 @@
+"""Answers for the digests, in a process of its own: ``python -m tests.acceptance.digest_runs NAME ...``.
+
+It stands on what stays: ``execute`` and ``process`` of the core, the command line by its entry point. One line of
+JSON per answer goes to the standard output, with a folder of the answers themselves where one is named.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+import os
+import sys
+import time
+from collections.abc import Iterator
+from importlib.metadata import entry_points
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from tests.acceptance import digest_content as content
+from tests.acceptance.digest_questions import COMMANDS, asked
+
+Answer = dict[str, bytes]
+"""Files by name: ``document.json`` and whatever came with it."""
+NOT_WHAT_WAS_COMPUTED = ("provenance",)
+
+
+def run(name: str) -> Answer:
+    """The files that answer a question."""
+    return command(COMMANDS[name]) if name in COMMANDS else executed(name)
+
+
+def executed(name: str) -> Answer:
+    """The document of a process and its artifacts."""
+    from safestart.processes.execute import execute
+
+    process_id, inputs = asked(name)
+    found = execute(process_id, inputs)
+    kept = {key: value for key, value in found.document.items() if key not in NOT_WHAT_WAS_COMPUTED}
+    return {"document.json": _text(kept)} | {item.name: item.data for item in found.artifacts}
+
+
+def command(lines: tuple[tuple[str, ...], ...]) -> Answer:
+    """What command lines print, and the files that they leave in an empty folder."""
+    (point,) = entry_points(group="console_scripts", name="safestart")
+    main = point.load()
+    printed = {}
+    with TemporaryDirectory() as folder, contextlib.chdir(folder):
+        for place, words in enumerate(lines):
+            printed[f"printed-{place + 1}.json"] = _printed(main, words)
+        left = {path.name: path.read_bytes() for path in sorted(Path().iterdir())}
+    return printed | left
+
+
+def _printed(main: Any, words: tuple[str, ...]) -> bytes:
+    out = io.StringIO()
+    code: Any = 0
+    before, sys.argv = sys.argv, ["safestart", *words]
+    try:
+        with contextlib.redirect_stdout(out):
+            main()
+    except SystemExit as end:
+        code = end.code or 0
+    finally:
+        sys.argv = before
+    return _text({"exit": code, "printed": json.loads(out.getvalue() or "null")})
+
+
+def digests(answer: Answer) -> dict[str, content.Digests]:
+    """Digests of each file of an answer."""
+    return {name: content.file(name, data) for name, data in answer.items()}
+
+
+def keep(folder: Path, answer: Answer) -> None:
+    """Write an answer, documents in lines and without times: made to be compared by ``diff -r``."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, data in answer.items():
+        if name.endswith(".json"):
+            data = json.dumps(content.without_times(json.loads(data)), indent=1).encode()
+        (folder / name).write_bytes(data)
+
+
+def _text(document: Any) -> bytes:
+    return json.dumps(document, allow_nan=False).encode()
+
+
+def lines(names: list[str], kept: str) -> Iterator[dict[str, Any]]:
+    """What came of each question: its digests, or why there are none."""
+    for name in names:
+        start = time.process_time()
+        try:
+            answer = run(name)
+            if kept:
+                keep(Path(kept, name), answer)
+            found: dict[str, Any] = {"files": digests(answer)}
+        except Exception as error:  # whatever breaks one answer is told of that one
+            found = {"error": f"{type(error).__name__}: {error}"}
+        yield {"name": name, "cpu_s": time.process_time() - start, **found}
+
+
+if __name__ == "__main__":
+    stdout = os.fdopen(os.dup(1), "w")
+    os.dup2(2, 1)  # whatever else is printed is no line of ours
+    for line in lines(sys.argv[2:], sys.argv[1]):
+        stdout.write(json.dumps(line) + "\n")
+        stdout.flush()
