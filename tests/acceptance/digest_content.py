@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 
-TIMES = frozenset({"run_s", "compile_s", "speedup_vs_hj", "started", "finished"})
-"""Keys that only tell time, wherever they stand."""
+LEFT_OUT = frozenset({"run_s", "compile_s", "speedup_vs_hj", "provenance", "request_id"})
+"""Keys that tell how long it took, and where, when and with what it was computed; wherever they stand."""
 DEPTH = 4
 """How many keys a place is told by; what lies deeper has one digest together with its neighbours."""
 
@@ -37,7 +37,7 @@ def document(value: Any) -> Digests:
 
     A place is a path of keys; the entries of a list share one, so that a column of a table has one digest.
     """
-    value = without_times(value)
+    value = comparable(value)
     places: dict[str, list[str]] = {}
     _walk(value, "", 0, places)
     sorted_text = json.dumps(value, sort_keys=True, separators=(",", ":"))
@@ -48,11 +48,11 @@ def document(value: Any) -> Digests:
     }
 
 
-def without_times(value: Any) -> Any:
-    """The document without what only tells time."""
+def comparable(value: Any) -> Any:
+    """The document without what is not computed."""
     if isinstance(value, dict):
-        return {key: without_times(inner) for key, inner in value.items() if key not in TIMES}
-    return [without_times(inner) for inner in value] if isinstance(value, list) else value
+        return {key: comparable(inner) for key, inner in value.items() if key not in LEFT_OUT}
+    return [comparable(inner) for inner in value] if isinstance(value, list) else value
 
 
 def _walk(value: Any, place: str, depth: int, places: dict[str, list[str]]) -> None:
@@ -85,7 +85,7 @@ def _json(data: bytes) -> Digests:
 def arrays(data: bytes) -> Digests:
     """One digest per array of an NPZ file, over its type, shape and bytes; not over the ZIP around them."""
     with np.load(io.BytesIO(data), allow_pickle=False) as found:
-        return {name: _array(found[name]) for name in found.files if not _tells_time(name)}
+        return {name: _array(found[name]) for name in found.files if not _left_out(name)}
 
 
 def _array(array: np.ndarray[Any, Any]) -> str:
@@ -111,9 +111,9 @@ def parquet(data: bytes) -> Digests:
 
 
 def _columns(names: list[str], values: Mapping[str, list[str]]) -> Digests:
-    kept = [name for name in names if not _tells_time(name)]
+    kept = [name for name in names if not _left_out(name)]
     return {**{name: digest(values[name]) for name in kept}, "(columns)": digest(kept)}
 
 
-def _tells_time(name: str) -> bool:
-    return name.rpartition(".")[2] in TIMES
+def _left_out(name: str) -> bool:
+    return name.rpartition(".")[2] in LEFT_OUT

@@ -49,7 +49,7 @@ def _level_set(accuracy: str, **more: Any) -> Inputs:
 
 NO_LEVEL_SET = ("analytical", "exact", "backward", "forward", "monte_carlo")
 
-QUICK: dict[str, Inputs] = {
+QUICK: dict[str, Inputs | tuple[Inputs, ...]] = {
     "go-no-go/closed-form": _asked(),
     "go-no-go/closed-form-body": _asked(rest="body"),
     "go-no-go/closed-form-solid": {**POINT, "states": SOLID},
@@ -64,6 +64,7 @@ QUICK: dict[str, Inputs] = {
     "go-no-go/exact-sliver": {**SLIVER, "method": "exact", "proofs": True},
     "go-no-go/auto": _proved(method="auto"),
     "go-no-go/auto-atlas": {**POINT, "states": MANY, "method": "auto"},
+    "go-no-go/auto-atlas-known": ({**POINT, "states": MANY, "method": "auto"}, _proved(method="auto")),
     "go-no-go/disturbed": _proved(disturbance_m_s2=0.002, start_error_m=0.3, start_error_m_s=0.01),
     "go-no-go/synchronize": SYNC,
     "go-no-go/synchronize-held": {
@@ -129,7 +130,7 @@ GAME: Inputs = {
     "horizon_s": 30,
 }
 
-LONG: dict[str, Inputs] = {
+LONG: dict[str, Inputs | tuple[Inputs, ...]] = {
     "go-no-go/family-all": _family(
         omega_t_half_width_deg_s=0.02,
         a_max_half_width_m_s2=0.001,
@@ -244,6 +245,32 @@ LONG_COMMANDS: dict[str, tuple[tuple[str, ...], ...]] = {
 COMMANDS = QUICK_COMMANDS | LONG_COMMANDS
 """Command lines, run one after the other in one empty folder."""
 
+QUERY = {**POINT, "x_m": 5, "y_m": 40}
+AT_ONCE: dict[str, tuple[tuple[str, str, Inputs], ...]] = {
+    "service/at-once/go-no-go": (
+        ("GET", "/go-no-go", QUERY),
+        ("GET", "/go-no-go", {**QUERY, "rest": "body", "z_m": 4, "c_x": 1.2, "r_h_m": 1}),
+        ("GET", "/go-no-go", {**QUERY, "method": "exact", "proofs": True}),
+        ("GET", "/go-no-go", {**QUERY, "omega_t_deg_s": 0}),
+        ("GET", "/go-no-go/proof", {**QUERY, "method": "exact"}),
+        ("POST", "/go-no-go", _asked()),
+        ("POST", "/go-no-go", _family(omega_t_half_width_deg_s=0.02)),
+    ),
+    "service/at-once/certificates": (("POST", "/certificates", {**POINT, "grid": {"nx": 9, "ny": 7}}),),
+    "service/at-once/execution": (
+        ("POST", "/processes/thrust-map/execution", {"inputs": {"omega_t_deg_s": [2]}}),
+        (
+            "POST",
+            "/processes/go-no-go/execution",
+            {"inputs": _asked(), "outputs": {"verdict": {}, "margin_m": {}}},
+        ),
+        ("POST", "/processes/benchmark/execution", {"inputs": {**POINT, "engines": []}}),
+    ),
+}
+"""Calls that the service answers without a queue, and one that it refuses."""
+SERVED = ("go-no-go/exact", "go-no-go/family-common", "go-no-go/synchronize", "sweep/small")
+"""Questions asked as jobs besides the examples."""
+
 QUICK_EXAMPLES = ("go-no-go", "certificate", "safe-region", "thrust-map", "flight", "coverage", "atlas")
 """Processes whose example takes a second or so."""
 
@@ -258,12 +285,21 @@ def names() -> list[str]:
     from safestart.processes.registry import PROCESS_IDS
 
     others = [f"{process_id}/example" for process_id in PROCESS_IDS if process_id not in QUICK_EXAMPLES]
-    return quick_names() + others + list(LONG) + list(LONG_COMMANDS)
+    return quick_names() + others + list(LONG) + list(LONG_COMMANDS) + served_names()
 
 
-def asked(name: str) -> tuple[str, Inputs]:
-    """Process and inputs of a question; ``example`` is what the process itself declares."""
+def served_names() -> list[str]:
+    """The questions that are asked over HTTP."""
+    from safestart.processes.registry import PROCESS_IDS
+
+    jobs = [f"{process_id}/example" for process_id in PROCESS_IDS] + list(SERVED)
+    return list(AT_ONCE) + [f"service/{name}" for name in jobs]
+
+
+def asked(name: str) -> tuple[str, tuple[Inputs, ...]]:
+    """Process and inputs, one after the other, of a question; ``example`` is what the process itself declares."""
     from safestart.processes.registry import process
 
     process_id, _, what = name.partition("/")
-    return process_id, dict(process(process_id).example) if what == "example" else (QUICK | LONG)[name]
+    inputs = dict(process(process_id).example) if what == "example" else (QUICK | LONG)[name]
+    return process_id, inputs if isinstance(inputs, tuple) else (inputs,)

@@ -15,6 +15,7 @@ import sys
 from collections.abc import Iterator, Mapping, Sequence
 from fnmatch import fnmatch
 from pathlib import Path
+from tempfile import TemporaryFile
 from typing import Any
 
 from tests.acceptance import digest_questions as questions
@@ -38,15 +39,32 @@ Files = dict[str, dict[str, str]]
 
 
 def answers(names: Sequence[str], keep: str = "") -> Iterator[dict[str, Any]]:
-    """Ask in a process of its own, whose arithmetic is the same on every machine; one line per answer."""
-    command = [sys.executable, "-m", "tests.acceptance.digest_runs", keep, *names]
+    """Ask in processes of their own, whose arithmetic is the same everywhere: an answer or an error of each."""
+    served = [name for name in names if name.startswith("service/")]
+    yield from _answers("tests.acceptance.digest_runs", [name for name in names if name not in served], keep)
+    yield from _answers("tests.acceptance.digest_service", served, keep)
+
+
+def _answers(module: str, names: Sequence[str], keep: str) -> Iterator[dict[str, Any]]:
+    if not names:
+        return
+    command = [sys.executable, "-m", module, keep, *names]
     environment = os.environ | SAME_ARITHMETIC | {"PYTHONPATH": str(ROOT)}
-    with subprocess.Popen(
-        command, cwd=ROOT, env=environment, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
-    ) as child:
+    with (
+        TemporaryFile("w+") as said,
+        subprocess.Popen(
+            command, cwd=ROOT, env=environment, stdout=subprocess.PIPE, stderr=said, text=True
+        ) as child,
+    ):
         assert child.stdout is not None
-        for line in child.stdout:
-            yield json.loads(line)
+        for name in names:
+            line, seconds = child.stdout.readline(), child.stdout.readline()
+            if line.strip():
+                answer = json.loads(line)
+            else:
+                said.seek(0)
+                answer = {"error": f"the process died: {said.read()[-2000:]}"}
+            yield {"name": name, "seconds": float(seconds or 0.0), **answer}
 
 
 def differences(before: Mapping[str, Mapping[str, str]], now: Mapping[str, Mapping[str, str]]) -> list[str]:
@@ -69,29 +87,28 @@ def stored() -> dict[str, Files]:
 
 def check(names: Sequence[str], keep: str = "") -> dict[str, list[str]]:
     """Differences by question, of those that have any; prints as it goes."""
-    before, found, missing = stored(), {}, list(names)
+    before, found = stored(), {}
     for answer in answers(names, keep):
         name = answer["name"]
-        missing.remove(name)
         if "error" in answer:
             lines = [answer["error"]]
         elif name not in before:
             lines = ["no digests are stored"]
         else:
             lines = differences(before[name], answer["files"])
-        print(f"{'differs' if lines else 'same':8}{answer['cpu_s']:7.1f} s  {name}", flush=True)
+        print(f"{'differs' if lines else 'same':8}{answer['seconds']:7.1f} s  {name}", flush=True)
         for line in lines:
             print(f"    {line}")
         if lines:
             found[name] = lines
-    return found | {name: ["no answer"] for name in missing}
+    return found
 
 
 def store(names: Sequence[str], keep: str = "") -> list[str]:
     """Write the digests of these answers beside the others; returns the questions that have none."""
     found, failed = stored(), []
     for answer in answers(names, keep):
-        print(f"{answer['cpu_s']:7.1f} s  {answer['name']}  {answer.get('error', '')}", flush=True)
+        print(f"{answer['seconds']:7.1f} s  {answer['name']}  {answer.get('error', '')}", flush=True)
         if "error" in answer:
             failed.append(answer["name"])
         else:
