@@ -1,0 +1,1 @@
+"""Campaigns of many cases: drawn, cut into shards, simulated, tallied, merged."""
