@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
-from importlib import import_module
 from typing import Any, Protocol
 
 from safestart.constraints.corridor import corridor_of
-from safestart.engines.registry import engine_spec
 from safestart.errors import invalid
 from safestart.model.scenario import Bools, Floats, Grid, Rest, Scenario, SetKind, number
-from safestart.model.wire_model import WireModel
 from safestart.runtime.progress import Context
 
 MAX_HORIZON = 3600.0
@@ -88,19 +85,3 @@ class Engine(Protocol):
     def solve(self, problem: Problem, context: Context) -> EngineResult:
         """Decide every cell; bad input raises ``InvalidInput``, numerical trouble is a result code."""
         ...
-
-
-def engine(name: str, options: WireModel | None = None) -> Engine:
-    """The engine called ``name``, loaded, with its ``options`` or with their defaults.
-
-    Raises ``InvalidInput`` for an unknown name, and for options that are those of another engine.
-    """
-    spec = engine_spec(name)
-    module, kind = spec.engine.split(":")
-    make: Callable[..., Engine] = getattr(import_module(module), kind)
-    if options is None:
-        return make()
-    if spec.options is None or not isinstance(options, spec.options):
-        wanted = "no options" if spec.options is None else spec.options.__name__
-        raise invalid(f"options of {name}", wanted, type(options).__name__)
-    return make(options)

@@ -11,7 +11,8 @@ from types import MappingProxyType
 import numpy as np
 
 from safestart.collision_avoidance.warm import warm as avoidance
-from safestart.engines.base import Problem, engine
+from safestart.engines.base import Problem
+from safestart.engines.load import engine
 from safestart.engines.registry import ENGINES
 from safestart.levelset.warm import warm as compile_levelset
 from safestart.model.scenario import Grid, Scenario

@@ -6,8 +6,9 @@ import re
 import numpy as np
 import pytest
 
-from safestart.engines.base import Engine, EngineResult, Problem, ResultCode, engine
+from safestart.engines.base import Engine, EngineResult, Problem, ResultCode
 from safestart.engines.hj.options import HamiltonJacobiInput
+from safestart.engines.load import engine
 from safestart.engines.registry import ENGINES
 from safestart.errors import Cancelled, InvalidInput
 from safestart.model.scenario import Chaser, CorridorShape, Grid, Rest, Scenario, SetKind, Target

@@ -6,7 +6,8 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from safestart.engines.base import Problem, engine
+from safestart.engines.base import Problem
+from safestart.engines.load import engine
 from safestart.model.scenario import Bools, Chaser, Floats, Grid, Rest, Scenario, SetKind, Target
 from safestart.runtime.progress import Context
 

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from safestart.engines.base import EngineResult, Problem, engine
+from safestart.engines.base import EngineResult, Problem
 from safestart.engines.exact import containment_horizon
+from safestart.engines.load import engine
 from safestart.engines.registry import engine_spec
 from safestart.model.metrics import ConfusionMatrix, iou, ratio, violation
 from safestart.model.scenario import Bools
