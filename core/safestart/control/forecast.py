@@ -10,9 +10,10 @@ import numpy as np
 from safestart.constraints.corridor import corridor_of
 from safestart.control.gains import Gains
 from safestart.control.regimes import Law, control_law
-from safestart.dynamics.cwh import input_matrix, transition_matrix
+from safestart.dynamics.cwh import Cwh, input_matrix, transition_matrix
 from safestart.errors import invalid
 from safestart.model.scenario import Floats, Scenario
+from safestart.optim.prediction import held_through
 
 SUBSTEPS = 3
 """Truth sub-steps per control interval, at each of which the corridor is checked (paper 000, section 2.1)."""
@@ -87,9 +88,8 @@ def flight_plan(
     components = np.array([0, 1, 3, 4] if planar else [0, 1, 2, 3, 4, 5])
     corridor = corridor_of(scenario.corridor, d)
     count = len(corridor.offsets)
-    taus = dt * np.arange(1, nodes + 1)
-    phi = np.array([transition_matrix(n, tau)[:, components] for tau in taus])
-    gamma = np.array([input_matrix(n, tau)[:, :d] * a_max for tau in taus])
+    transition, held = held_through(Cwh(n), 0.0, dt * np.arange(1.0, nodes + 1.0))
+    phi, gamma = np.ascontiguousarray(transition[:, :, components]), held[:, :, :d] * a_max
 
     # Corridor rows, k-major: the face normals at node j of step k, times Phi_j and B_j.
     angles = scenario.target.tumble_rate * dt * (np.arange(steps)[:, None] + np.arange(1, nodes + 1))

@@ -96,5 +96,5 @@ class SequencePlanner:
         return watch_of(left, step * self._turn)
 
     def _nodes(self, watch: Watch, state: Floats, thrust: Floats) -> Floats:
-        flown = watch.tables.flight(state, thrust)
+        flown = watch.prediction.flight(state, thrust)
         return np.concatenate([flown[:, 0], flown[-1:, -1]])

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from safestart.dynamics.cwh import planar_input, planar_transition
+from safestart.dynamics.cwh import Cwh
 from safestart.engines.base import EngineResult, Problem, ResultCode
 from safestart.engines.region import restrict, start_velocity
 from safestart.errors import invalid
 from safestart.model.scenario import Floats, SetKind
+from safestart.optim.prediction import responses
 
 MAX_STEPS = 4000
 
@@ -36,19 +37,8 @@ def steps(problem: Problem) -> Iterator[Step]:
     n, count, dt = problem.scenario.target.mean_motion, problem.steps, problem.dt
     if count > MAX_STEPS:
         raise invalid("dt", f"at most {MAX_STEPS} control intervals in the horizon", dt)
-    a = planar_transition(n, dt)
-    # Columns 0-1: A^k [I; W], the state of a start; columns 2-3: A^k B. Powers by doubling.
-    powers = np.empty((count + 1, 4, 4))
-    powers[0, :2, :2] = np.eye(2)
-    powers[0, 2:, :2] = start_velocity(problem.scenario, problem.rest)
-    powers[0, :, 2:] = planar_input(n, dt)
-    done = 1
-    while done <= count:
-        more = min(done, count + 1 - done)
-        np.matmul(a, powers[:more], out=powers[done : done + more])
-        a = a @ a
-        done += more
-    drift, response = powers[:, :2, :2], powers[:, :2, 2:]
+    starts = np.concatenate([np.eye(2), start_velocity(problem.scenario, problem.rest)])
+    drift, response = (part[:, :2] for part in responses(Cwh(n), dt, count, starts))
     for k in range(count + 1) if problem.kind is SetKind.TUBE else (count,):
         yield Step(k, problem.scenario.target.tumble_rate * dt * k, drift[k], response[:k])
 

@@ -17,11 +17,12 @@ from functools import lru_cache
 import numpy as np
 
 from safestart.constraints.corridor import corridor_of
+from safestart.dynamics.cwh import Cwh
 from safestart.exact import speed
 from safestart.exact.limits import AT_END, limit_at
-from safestart.exact.motion import NodeTables, held_displacement, motion_tables
 from safestart.exact.question import Question
 from safestart.model.scenario import Floats
+from safestart.optim.prediction import prediction_of
 
 Ints = np.ndarray[tuple[int, ...], np.dtype[np.int64]]
 
@@ -86,8 +87,8 @@ class Watch:
         samples = math.ceil(question.dt / longest)
         self.samples = max(1, min(samples, _MOST_SAMPLES // question.steps))
         self.step = question.dt / self.samples
-        self.tables: NodeTables = motion_tables(
-            self.mean_motion, question.dt, question.steps, question.dimensions, self.samples
+        self.prediction = prediction_of(
+            Cwh(self.mean_motion), question.dt, question.steps, question.dimensions, self.samples
         )
         nodes = question.dt * np.arange(question.steps)[:, None]
         self.times = nodes + self.step * np.arange(self.samples + 1)[None, :]
@@ -103,14 +104,14 @@ class Watch:
         out = copy(self)
         goal = self.question.goal and replace(self.question.goal, earliest=1)
         out.question = replace(self.question, steps=steps, goal=goal)
-        out.tables = self.tables.until(steps)
+        out.prediction = self.prediction.until(steps)
         out.times, out.cosine, out.sine = self.times[:steps], self.cosine[:steps], self.sine[:steps]
         return out
 
     def minima(self, state: Floats, thrust: Floats) -> Minima:
         """Local minima and the all-times bound of the flight from ``state`` (2 d,) under ``thrust`` (N, d) in m/s^2."""
         d, h = self.question.dimensions, self.step
-        flown = self.tables.flight(state, thrust)
+        flown = self.prediction.flight(state, thrust)
         value, slope = self.along_normals(flown)
         value += self.offsets
         limit = self.question.speed_limit
@@ -138,20 +139,13 @@ class Watch:
 
     def cuts(self, times: Floats, faces: Ints) -> Cuts:
         """Rows of f_i(t) = offset + start . x0 + thrust . u for pairs of time (J,) in [0, T] and face (J,)."""
-        d, count, dt = self.question.dimensions, self.question.steps, self.question.dt
-        last = np.minimum((times / dt).astype(np.int64), count - 1)
-        free, held = held_displacement(self.mean_motion, times - last * dt, d)
         angle = self.phase + self.rate * times
         cosine, sine = np.cos(angle), np.sin(angle)
         body = self.normals[faces]
         normal = -body
         normal[:, 0] = -(cosine * body[:, 0] - sine * body[:, 1])
         normal[:, 1] = -(sine * body[:, 0] + cosine * body[:, 1])
-        along = (normal[:, None, :] @ free)[:, 0]
-        start = (along[:, None, :] @ self.tables.free[last])[:, 0]
-        thrust = (along[:, None, :] @ self.tables.driven[last])[:, 0]
-        columns = d * last[:, None] + np.arange(d)
-        thrust[np.arange(len(times))[:, None], columns] += (normal[:, None, :] @ held)[:, 0]
+        start, thrust = self.prediction.position_rows(times, normal)
         return Cuts(times, faces, self.offsets[faces], start, thrust)
 
     def along_normals(self, flown: Floats) -> tuple[Floats, Floats]:
