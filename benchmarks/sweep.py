@@ -31,8 +31,8 @@ from safestart.processes.registry import process
 from safestart.records.comparable import comparable
 from safestart.runtime.progress import Context
 from safestart.simulation.compiled_loop import fly
+from safestart.simulation.noise import CONTINUOUS, Truth
 from safestart.simulation.trajectory import start_states
-from safestart.simulation.truth import CONTINUOUS, Truth
 from tests.waiting import until
 
 FILTER: dict[str, Any] = {"controllers": ["filter"], "certificates": ["closed_form"]}

@@ -7,11 +7,13 @@ n tau -> 0 and n = 0 (the double integrator) is exact.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
+from safestart.dynamics.motion import RelativeMotion
 from safestart.errors import invalid
-from safestart.model.scenario import Floats
+from safestart.model.scenario import MAX_MEAN_MOTION, Floats, number
 
 
 def _phase_functions(phase: float) -> tuple[float, float, float]:
@@ -83,6 +85,24 @@ def input_matrix(mean_motion: float, tau: float) -> Floats:
     bd[4, :2] = [-2.0 * tau * p * f2, tau * (4.0 * f1 - 3.0)]
     bd[5, 2] = tau * f1
     return bd
+
+
+@dataclass(frozen=True)
+class Cwh(RelativeMotion):
+    """The motion near a target on a circular orbit of ``mean_motion`` rad/s; raises ``InvalidInput`` out of range."""
+
+    mean_motion: float
+
+    def __post_init__(self) -> None:
+        number("mean_motion", self.mean_motion, 0.0, MAX_MEAN_MOTION)
+
+    def transition(self, t0: float, t1: float) -> Floats:
+        """Phi(t1 - t0)."""
+        return transition_matrix(self.mean_motion, t1 - t0)
+
+    def held(self, t0: float, t1: float) -> Floats:
+        """B_d(t1 - t0)."""
+        return input_matrix(self.mean_motion, t1 - t0)
 
 
 _PLANE = np.array([0, 1, 3, 4])

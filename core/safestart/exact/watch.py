@@ -96,7 +96,7 @@ class Watch:
         corridor = corridor_of(question.scenario.corridor, question.dimensions)
         self.normals = corridor.normals / corridor.lengths[:, None]
         self.offsets = corridor.offsets / corridor.lengths
-        self.names = corridor.faces
+        self.names = corridor.names
 
     def until(self, steps: int) -> Watch:
         """The watch of the same question with T at ``steps`` intervals, at most its own: views of the same tables."""

@@ -16,16 +16,17 @@ from safestart.control.forecast import Plan
 from safestart.errors import invalid
 from safestart.model.scenario import Floats
 from safestart.runtime.stamp import source_stamp
+from safestart.simulation import noise as _noise
 from safestart.simulation import passage as _passage
-from safestart.simulation.truth import CONTINUOUS, DRAWS, NO_DRAWS, Truth
+from safestart.simulation.noise import CONTINUOUS, DRAWS, NO_DRAWS, Truth
 
 _nominal = _regimes.nominal_command
 _filter = _safety_filter.filter_step
 _distance, _slopes, _advance = _passage.distance, _passage.slopes, _passage.advance
-_delivered = _passage.delivered
+_delivered = _noise.delivered
 _CONTINUOUS = CONTINUOUS
 
-SOURCES: tuple[ModuleType, ...] = (_passage, _plan, _regimes, _safety_filter, *_safety_filter.SOURCES)
+SOURCES: tuple[ModuleType, ...] = (_noise, _passage, _plan, _regimes, _safety_filter, *_safety_filter.SOURCES)
 """Modules whose kernels the loop calls, and of its arguments: their text is part of its cache key."""
 
 

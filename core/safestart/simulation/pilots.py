@@ -19,8 +19,7 @@ from safestart.control.sequence_mpc import Plan, SequencePlanner
 from safestart.exact.answer import Verdict
 from safestart.exact.question import Question
 from safestart.model.scenario import Floats, Scenario
-from safestart.simulation.passage import delivered
-from safestart.simulation.truth import Truth
+from safestart.simulation.noise import Truth, delivered
 from safestart.simulation.worlds import World
 
 

@@ -15,7 +15,7 @@ from safestart.control.regimes import REGIMES
 from safestart.errors import invalid
 from safestart.model.scenario import Bools, Floats, Rest, Scenario
 from safestart.simulation.compiled_loop import SUB_STEPPED, roll_out
-from safestart.simulation.truth import NO_DRAWS
+from safestart.simulation.noise import NO_DRAWS
 
 
 @dataclass(frozen=True, slots=True)

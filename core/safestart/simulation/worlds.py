@@ -9,11 +9,11 @@ import numpy as np
 
 from safestart.constraints.corridor import corridor_of
 from safestart.dynamics.cwh import input_matrix, transition_matrix
-from safestart.dynamics.two_body import Orbit, RelativeMotion
+from safestart.dynamics.two_body import Orbit, TwoBody
 from safestart.exact.watch import dips
 from safestart.model.scenario import Floats, Scenario
+from safestart.simulation.noise import CONTINUOUS
 from safestart.simulation.passage import advance, cubic_root, slopes
-from safestart.simulation.truth import CONTINUOUS
 
 LONGEST_SAMPLE_S, LARGEST_TURN = 0.5, 0.02
 
@@ -88,7 +88,7 @@ class TwoBodyWorld:
         corridor = corridor_of(scenario.corridor)
         self._normals = corridor.normals / corridor.lengths[:, None]
         self._offsets = corridor.offsets / corridor.lengths
-        self._motion = RelativeMotion(orbit or Orbit.of(scenario.target.mean_motion), state)
+        self._motion = TwoBody(orbit or Orbit.of(scenario.target.mean_motion)).start(state)
         self._intervals = 0
         self.state, self.time = np.array(state, dtype=np.float64), 0.0
         value, _ = self._distances(np.zeros(1), self.state[None])

@@ -13,16 +13,16 @@ from safestart.control.forecast import flight_plan
 from safestart.control.gains import PAPER
 from safestart.control.sequence_mpc import SequencePlanner
 from safestart.dynamics.cwh import input_matrix, transition_matrix
-from safestart.dynamics.two_body import J2, MU, RADIUS, Orbit, RelativeMotion, axes, gravity
+from safestart.dynamics.two_body import J2, MU, RADIUS, Orbit, TwoBody, axes, gravity
 from safestart.errors import InvalidInput
 from safestart.exact.answer import Verdict
 from safestart.exact.question import Question
 from safestart.exact.watch import watch_of
 from safestart.model.scenario import Floats, Rest, Scenario
 from safestart.simulation.compiled_loop import fly
+from safestart.simulation.noise import NO_DRAWS, Truth, draws, truth_of
 from safestart.simulation.pilots import SequencePilot, fly_in
 from safestart.simulation.trajectory import start_states
-from safestart.simulation.truth import NO_DRAWS, Truth, draws, truth_of
 from safestart.simulation.worlds import CwhWorld, TwoBodyWorld
 
 N = 1.1e-3
@@ -110,7 +110,7 @@ def test_gravity_is_the_gradient_of_its_potential() -> None:
 def test_relative_motion_is_the_difference_of_two_orbits() -> None:
     orbit = Orbit.of(N)
     start = np.array([100.0, -2000.0, 30.0, 0.5, -0.3, 0.1])
-    seen = RelativeMotion(orbit, start).fly(np.zeros(3), np.array([0.0, 150.0, 300.0]))
+    seen = TwoBody(orbit).start(start).fly(np.zeros(3), np.array([0.0, 150.0, 300.0]))
     target = orbit.state()
     rows, omega = axes(target)
     chaser = target + np.concatenate([rows.T @ start[:3], rows.T @ (start[3:] + np.cross(omega, start[:3]))])

@@ -17,9 +17,9 @@ from safestart.processes.sweep.judge import UNASKED, Verdicts, of
 from safestart.processes.sweep.spec import FINE_DT_S, SweepInputs
 from safestart.processes.wire import DT_S
 from safestart.simulation.compiled_loop import fly
+from safestart.simulation.noise import Truth, draws, truth_of
 from safestart.simulation.pilots import FilterPilot, Flown, Pilot, SequencePilot, fly_in
 from safestart.simulation.trajectory import start_states
-from safestart.simulation.truth import Truth, draws, truth_of
 from safestart.simulation.worlds import CwhWorld, TwoBodyWorld, World
 
 # Flights between two looks at a dismissal, some 10 ms.

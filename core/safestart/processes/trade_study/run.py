@@ -24,8 +24,8 @@ from safestart.processes.trade_study.split import area, summary
 from safestart.processes.wire import DT_S
 from safestart.runtime.progress import Context
 from safestart.simulation.compiled_loop import fly
+from safestart.simulation.noise import CONTINUOUS, Truth
 from safestart.simulation.trajectory import start_states
-from safestart.simulation.truth import CONTINUOUS, Truth
 
 
 def shard(part: dict[str, Any], context: Context) -> Part:
