@@ -31,8 +31,8 @@ class Attitude(Protocol):
 def to_body(attitude: Attitude, times: Floats, states: Floats) -> Floats:
     """LVLH states (T, 6) at ``times`` (T,) as the body sees them: R p and R v - omega x R p, (T, 6)."""
     turn, omega = attitude.rotation(times), attitude.angular_velocity(times)
-    position = np.einsum("tij,tj->ti", turn, states[:, :3])
-    velocity = np.einsum("tij,tj->ti", turn, states[:, 3:]) - np.cross(omega, position)
+    position = _applied(turn, states[:, :3])
+    velocity = _applied(turn, states[:, 3:]) - np.cross(omega, position)
     return np.concatenate([position, velocity], axis=1)
 
 
@@ -40,6 +40,11 @@ def to_lvlh(attitude: Attitude, times: Floats, states: Floats) -> Floats:
     """Inverse of :func:`to_body`."""
     turn, omega = attitude.rotation(times), attitude.angular_velocity(times)
     velocity = states[:, 3:] + np.cross(omega, states[:, :3])
-    return np.concatenate(
-        [np.einsum("tji,tj->ti", turn, states[:, :3]), np.einsum("tji,tj->ti", turn, velocity)], axis=1
-    )
+    back = turn.swapaxes(1, 2)
+    return np.concatenate([_applied(back, states[:, :3]), _applied(back, velocity)], axis=1)
+
+
+def _applied(matrices: Floats, vectors: Floats) -> Floats:
+    """Matrices (T, 3, 3) times vectors (T, 3). Written out, so that a spin about z rounds as the planar formulas do."""
+    out: Floats = matrices[:, :, 0] * vectors[:, 0, None]
+    return out + matrices[:, :, 1] * vectors[:, 1, None] + matrices[:, :, 2] * vectors[:, 2, None]

@@ -42,8 +42,15 @@ class Spin:
         return out
 
     def rotation(self, times: Floats) -> Floats:
-        """(..., 3, 3): a a' + cos (I - a a') - sin [a x], which is exact in every entry for an axis of the frame."""
-        angle = self.angle(times)[..., None, None]
+        """(..., 3, 3): LVLH coordinates to body coordinates."""
+        return self.turned_by(self.angle(times))
+
+    def turned_by(self, angles: Floats) -> Floats:
+        """The rotation after ``angles`` (...), rad: a a' + cos (I - a a') - sin [a x].
+
+        Every entry is 0, 1 or a plain cosine or sine where the axis is one of the frame's.
+        """
+        angle = np.asarray(angles, dtype=np.float64)[..., None, None]
         x, y, z = self.axis
         along = np.outer(self.axis, self.axis)
         cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])

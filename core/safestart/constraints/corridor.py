@@ -46,13 +46,8 @@ class Corridor:
         turn, omega = attitude.rotation(times), attitude.angular_velocity(times)
         if d == 2 and (turn[:, 2, :2].any() or omega[:, :2].any()):
             raise invalid("corridor", "all five faces where the target does not turn about z", "a planar one")
-        unit = self.normals / self.lengths[:, None]
         # Unit normals in LVLH axes, (T, d, F), and how the turn moves them.
-        columns = [
-            sum((turn[:, j, i, None] * unit[:, j] for j in range(1, d)), turn[:, 0, i, None] * unit[:, 0])
-            for i in range(d)
-        ]
-        normals = np.ascontiguousarray(np.stack(columns, axis=1))
+        normals = np.ascontiguousarray(faces_at(self.normals / self.lengths[:, None], turn).swapaxes(1, 2))
         spin = np.einsum("tji,tj->ti", turn, omega)
         if d == 2:
             turning = spin[:, 2, None, None] * np.stack([-normals[:, 1], normals[:, 0]], axis=1)
@@ -61,6 +56,17 @@ class Corridor:
         value = self.offsets / self.lengths - np.einsum("tdf,td->tf", normals, states[:, :d])
         rate = -np.einsum("tdf,td->tf", normals, states[:, 3 : 3 + d])
         return value, rate - np.einsum("tdf,td->tf", turning, states[:, :d])
+
+
+def faces_at(normals: Floats, rotation: Floats) -> Floats:
+    """Body-fixed normals (F, d) in LVLH axes under rotations (..., 3, 3), shape (..., F, d): the rows of A R."""
+    d = normals.shape[1]
+    out = np.empty((*rotation.shape[:-2], *normals.shape))
+    for i in range(d):
+        out[..., i] = normals[:, 0] * rotation[..., 0, i, None]
+        for j in range(1, d):
+            out[..., i] += normals[:, j] * rotation[..., j, i, None]
+    return out
 
 
 def polyhedron(normals: Floats, offsets: Floats, names: tuple[str, ...]) -> Corridor:

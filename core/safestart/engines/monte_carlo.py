@@ -21,8 +21,9 @@ from safestart.engines.base import EngineResult, Problem, ResultCode
 from safestart.errors import invalid
 from safestart.model.scenario import Floats, Scenario, number
 from safestart.runtime.progress import Context
-from safestart.simulation.compiled_loop import Flights, fly
-from safestart.simulation.trajectory import start_states, steps_of
+from safestart.simulation.compiled_loop import fly
+from safestart.simulation.record import Record
+from safestart.simulation.starts import start_states, steps_of
 
 Indices = np.ndarray[tuple[Any, ...], np.dtype[np.signedinteger[Any]]]
 
@@ -171,11 +172,11 @@ class _Tally:
     infeasible: int = 0
     delta_v: float = 0.0
 
-    def add(self, flights: Flights) -> None:
+    def add(self, flights: Record) -> None:
         self.flights += len(flights.margin)
         self.safe += int(flights.safe.sum())
         self.steps += int(flights.steps.sum())
-        self.infeasible += int(flights.infeasible.sum())
+        self.infeasible += int(flights.fallbacks.sum())
         self.delta_v += math.fsum(flights.delta_v)
 
     def report(self) -> dict[str, Any]:

@@ -16,6 +16,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from safestart.attitude.body_frame import into_body, out_of_body
 from safestart.constraints.corridor import corridor_of
 from safestart.exact import speed
 from safestart.exact.limits import AT_END, limit_at
@@ -145,8 +146,8 @@ class Watch:
         cosine, sine = np.cos(angle), np.sin(angle)
         body = self.normals[faces]
         normal = -body
-        normal[:, 0] = -(cosine * body[:, 0] - sine * body[:, 1])
-        normal[:, 1] = -(sine * body[:, 0] + cosine * body[:, 1])
+        x, y = out_of_body(cosine, sine, body[:, 0], body[:, 1])
+        normal[:, 0], normal[:, 1] = -x, -y
         along = (normal[:, None, :] @ free)[:, 0]
         start = (along[:, None, :] @ self.tables.free[last])[:, 0]
         thrust = (along[:, None, :] @ self.tables.driven[last])[:, 0]
@@ -169,8 +170,8 @@ class Watch:
         x, y = position[..., 0], position[..., 1]
         vx, vy = speed[..., 0] + w * y, speed[..., 1] - w * x
         turned, rate = position.copy(), speed.copy()
-        turned[..., 0], turned[..., 1] = c * x + s * y, c * y - s * x
-        rate[..., 0], rate[..., 1] = c * vx + s * vy, c * vy - s * vx
+        turned[..., 0], turned[..., 1] = into_body(c, s, x, y)
+        rate[..., 0], rate[..., 1] = into_body(c, s, vx, vy)
         return turned, rate
 
     def between(self, furthest: float, fastest: float, thrust: Floats) -> float:

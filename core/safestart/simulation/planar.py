@@ -9,7 +9,7 @@ import numpy as np
 
 from safestart.attitude.spin import Spin
 from safestart.constraints.constraint import Constraint
-from safestart.constraints.corridor import Corridor
+from safestart.constraints.corridor import Corridor, faces_at
 from safestart.dynamics.cwh import Cwh
 from safestart.model.scenario import Floats
 from safestart.simulation.noise import CONTINUOUS
@@ -63,9 +63,7 @@ class PlanarFlight:
 
     def _turned(self, times: Floats) -> Floats:
         """Unit normals (T, 2, F) in LVLH axes."""
-        turn, normals = self._spin.rotation(times), self._normals
-        columns = [turn[:, 0, i, None] * normals[:, 0] + turn[:, 1, i, None] * normals[:, 1] for i in (0, 1)]
-        return np.ascontiguousarray(np.stack(columns, axis=1))
+        return np.ascontiguousarray(faces_at(self._normals, self._spin.rotation(times)).swapaxes(1, 2))
 
 
 def watched(plant: Plant, constraints: Sequence[Constraint], start: Floats, dt: float) -> Watched:

@@ -38,10 +38,8 @@ def run(inputs: FlightInputs, context: Context) -> ProcessOutput:
     tables = motion_tables(scenario.target.mean_motion, DT_S, len(thrust), d, _PARTS)
     flown = tables.flight(state, thrust)
     states = np.concatenate([flown[:, :-1].reshape(-1, 2 * d), flown[-1, -1:]])
-    times = DT_S / _PARTS * np.arange(len(states))
-    body = np.array(
-        [lvlh_to_body(s[:d], s[d:], rate, t)[0] for s, t in zip(states, times.tolist(), strict=True)]
-    )
+    times: Floats = DT_S / _PARTS * np.arange(len(states), dtype=np.float64)
+    body, _ = lvlh_to_body(states[:, :d], states[:, d:], rate, times)
     corridor = corridor_of(scenario.corridor, d)
     distance: Floats = corridor.slack(body) / corridor.lengths
     when, face = np.unravel_index(int(np.argmin(distance)), distance.shape)
