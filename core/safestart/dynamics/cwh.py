@@ -118,11 +118,3 @@ def planar_input(mean_motion: float, tau: float) -> Floats:
     """B_d(tau) of the planar state, shape (4, 2)."""
     planar: Floats = input_matrix(mean_motion, tau)[_PLANE, :2]
     return planar
-
-
-def feedforward(mean_motion: float, position: Floats, velocity: Floats) -> Floats:
-    """Acceleration that cancels the CWH terms, shape (..., 3) (eq. 6): the negative of A's lower rows."""
-    n = mean_motion
-    x, z = position[..., 0], position[..., 2]
-    vx, vy = velocity[..., 0], velocity[..., 1]
-    return np.stack([-(3.0 * n * n * x + 2.0 * n * vy), 2.0 * n * vx, n * n * z], axis=-1)

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
+from importlib import import_module
 from typing import Any, Protocol
 
 from safestart.constraints.corridor import corridor_of
+from safestart.engines.registry import engine_spec
 from safestart.errors import invalid
 from safestart.model.scenario import Bools, Floats, Grid, Rest, Scenario, SetKind, number
+from safestart.model.wire_model import WireModel
 from safestart.runtime.progress import Context
 
 MAX_HORIZON = 3600.0
@@ -28,7 +31,7 @@ class Problem:
     """What an engine is asked: which starts of the grid, at rest, belong to its set.
 
     ``horizon`` and ``dt`` in seconds (``dt`` is the control interval of the sampled engines; the horizon is a
-    whole number of them), ``options`` holds per-engine settings by engine name.
+    whole number of them).
     """
 
     scenario: Scenario
@@ -37,8 +40,6 @@ class Problem:
     dt: float = 2.0
     rest: Rest = Rest.LVLH
     kind: SetKind = SetKind.FIXED
-    seed: int = 0
-    options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         number("horizon", self.horizon, 0.0, MAX_HORIZON, open_low=True)
@@ -60,17 +61,6 @@ class Problem:
         """Grid points inside the corridor at t = 0, (ny, nx): every engine's region is restricted to them."""
         return corridor_of(self.scenario.corridor).contains(self.points())
 
-    def option(self, engine: str, name: str, default: Any) -> Any:
-        """Setting ``name`` of an engine, or its default."""
-        return self.options.get(engine, {}).get(name, default)
-
-    def check_options(self, engine: str, allowed: Collection[str] = ()) -> None:
-        """Raise ``InvalidInput`` when the settings of an engine hold a name it does not know."""
-        for name in self.options.get(engine, {}):
-            if name not in allowed:
-                known = ", ".join(sorted(allowed)) or "no options"
-                raise invalid(f"options.{engine}", f"only known options ({known})", name)
-
 
 @dataclass(frozen=True, slots=True)
 class EngineResult:
@@ -82,7 +72,6 @@ class EngineResult:
     bounds); ``arrays`` further arrays worth keeping (value slices).
     """
 
-    engine: str
     code: ResultCode
     mask: Bools | None
     margin: Floats | None
@@ -94,11 +83,24 @@ class EngineResult:
 
 
 class Engine(Protocol):
-    """A reachability engine: ``name``, what it computes, and ``solve``."""
-
-    name: str
-    summary: str
+    """A reachability engine, made with its options or with their defaults; what it is called says its spec."""
 
     def solve(self, problem: Problem, context: Context) -> EngineResult:
         """Decide every cell; bad input raises ``InvalidInput``, numerical trouble is a result code."""
         ...
+
+
+def engine(name: str, options: WireModel | None = None) -> Engine:
+    """The engine called ``name``, loaded, with its ``options`` or with their defaults.
+
+    Raises ``InvalidInput`` for an unknown name, and for options that are those of another engine.
+    """
+    spec = engine_spec(name)
+    module, kind = spec.engine.split(":")
+    make: Callable[..., Engine] = getattr(import_module(module), kind)
+    if options is None:
+        return make()
+    if spec.options is None or not isinstance(options, spec.options):
+        wanted = "no options" if spec.options is None else spec.options.__name__
+        raise invalid(f"options of {name}", wanted, type(options).__name__)
+    return make(options)

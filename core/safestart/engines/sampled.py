@@ -60,15 +60,15 @@ def to_body(vectors: Floats, theta: float) -> Floats:
 
 
 def finish(
-    name: str, problem: Problem, margin: Floats, start: float, compile_s: float, detail: Mapping[str, object]
+    problem: Problem, margin: Floats, start: float, compile_s: float, detail: Mapping[str, object]
 ) -> EngineResult:
     """Result of a sampled engine from its unrestricted margins (P,) and the clock at its start (s)."""
     field = margin.reshape(problem.grid.ny, problem.grid.nx)
     if not np.isfinite(field).all():
         run = time.perf_counter() - start
         code, message = ResultCode.NUMERICAL_FAILURE, "the margin is not finite"
-        return EngineResult(name, code, None, None, run, compile_s, message, detail)
+        return EngineResult(code, None, None, run, compile_s, message, detail)
     mask, restricted = restrict(problem, field)
     run = time.perf_counter() - start
     arrays = {"margin_unrestricted": field}
-    return EngineResult(name, ResultCode.OK, mask, restricted, run, compile_s, detail=detail, arrays=arrays)
+    return EngineResult(ResultCode.OK, mask, restricted, run, compile_s, detail=detail, arrays=arrays)

@@ -6,27 +6,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import ValidationError
 
 from safestart.model.validation import validation_error
+from safestart.model.wire_model import WireModel as WireModel
+from safestart.processes.output import ProcessOutput as ProcessOutput
 from safestart.processes.sharding import Sharding, load
 from safestart.records.artifact import Artifact as Artifact
 from safestart.runtime.progress import Context
-
-
-class WireModel(BaseModel):
-    """Base of every model that crosses the wire: unknown fields are refused, NaN and infinity too."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, strict=False)
-
-
-@dataclass(frozen=True, slots=True)
-class ProcessOutput:
-    """What a process returns: a JSON-able document and its artifacts."""
-
-    document: dict[str, Any]
-    artifacts: tuple[Artifact, ...] = ()
-
 
 Runner = Callable[[Any, Context], ProcessOutput]
 
@@ -55,6 +42,7 @@ class ProcessSpec:
     max(1, |value|); on the same ones it is the same bit for bit.
     ``instant`` names a function (inputs) -> document that the service answers with at submission.
     ``tables`` are those of the outputs that are no lists of objects; these are tables by themselves.
+    ``extensions`` are further members of its description, each called ``safestart:...``.
     """
 
     id: str
@@ -70,6 +58,7 @@ class ProcessSpec:
     replay_tolerance: float = 1e-9
     keywords: tuple[str, ...] = ()
     tables: tuple[Table, ...] = ()
+    extensions: dict[str, Any] = field(default_factory=dict)
     example: dict[str, Any] = field(default_factory=dict)
 
     def parse(self, inputs: Any) -> WireModel:

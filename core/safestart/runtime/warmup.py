@@ -12,8 +12,8 @@ import numpy as np
 
 from safestart.collision_avoidance.warm import warm as avoidance
 from safestart.constraints.corridor import corridor_of
-from safestart.engines.base import Problem
-from safestart.engines.registry import ENGINE_NAMES, engine
+from safestart.engines.base import Problem, engine
+from safestart.engines.registry import ENGINES
 from safestart.levelset.warm import warm as compile_levelset
 from safestart.model.scenario import Grid, Scenario
 from safestart.passive_safety.warm import warm as passive_safety
@@ -38,7 +38,7 @@ def _level_sets() -> None:
 
 
 def _sets() -> None:
-    for name in ENGINE_NAMES:
+    for name in ENGINES:
         if name not in ("monte_carlo", "hamilton_jacobi"):
             engine(name).solve(_PROBLEM, Context())
 

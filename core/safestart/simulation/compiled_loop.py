@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import math
-from types import ModuleType
 
 import numpy as np
-from numba import njit
 
-from safestart.control import forecast as _plan
 from safestart.control import regimes as _regimes
 from safestart.control import safety_filter as _safety_filter
 from safestart.control.controller import Command
@@ -16,7 +13,7 @@ from safestart.control.forecast import Plan
 from safestart.control.regimes import REGIMES
 from safestart.errors import invalid
 from safestart.model.scenario import Floats
-from safestart.runtime.stamp import source_stamp
+from safestart.runtime.kernels import compiled
 from safestart.simulation import noise as _noise
 from safestart.simulation import passage as _passage
 from safestart.simulation.noise import CONTINUOUS, DRAWS, NO_DRAWS, Truth
@@ -28,82 +25,73 @@ _distance, _slopes, _advance = _passage.distance, _passage.slopes, _passage.adva
 _delivered = _noise.delivered
 _CONTINUOUS = CONTINUOUS
 
-SOURCES: tuple[ModuleType, ...] = (_noise, _passage, _plan, _regimes, _safety_filter, *_safety_filter.SOURCES)
-"""Modules whose kernels the loop calls, and of its arguments: their text is part of its cache key."""
 
+@compiled(error_model="numpy")
+def roll_out(plan, truth, draws, starts, counts, sums, log_state, log_command, log_code):  # type: ignore[no-untyped-def]
+    """The compiled loop; :func:`fly` explains its arguments."""
+    law = plan.law
+    horizon, d, m = plan.normals.shape
+    count = len(plan.offsets)
+    step = plan.dt / plan.faces.shape[1]
+    logging = len(log_state) > 0
+    drawing = len(draws) > 0
+    bounds, work, index = np.empty(m), np.empty((10, 4)), np.empty(4, np.int64)
+    nominal, command, previous = np.zeros(3), np.zeros(3), np.zeros(3)
+    before, after = np.empty((2, count)), np.empty((2, count))
+    x, seen = np.empty(6), np.empty(6)
+    for flight in range(len(starts)):
+        x[:] = starts[flight]
+        previous[:] = 0.0
+        r0 = math.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2])
+        v_max = plan.closing_factor * math.sqrt(law.max_acceleration * r0)
+        # At the start the body frame coincides with LVLH.
+        margin = _distance(plan.start_faces, plan.offsets, x, d, count)
+        if truth.check == _CONTINUOUS:
+            _slopes(plan.start_faces, plan.offsets, x, d, count, law.tumble_rate, step, before)
+        steps, infeasible = 0, 0
+        delta_v, peak = 0.0, 0.0
+        violated_at = math.inf if margin >= 0.0 else 0.0
+        finite = math.isfinite(x[0] + x[1] + x[2] + x[3] + x[4] + x[5])
+        while steps < horizon and margin >= 0.0 and finite:
+            k = steps
+            steps += 1
+            seen[:] = x
+            if drawing:
+                seen[0] += truth.position_sigma * draws[flight, k, 0]
+                seen[1] += truth.position_sigma * draws[flight, k, 1]
+                seen[3] += truth.velocity_sigma * draws[flight, k, 2]
+                seen[4] += truth.velocity_sigma * draws[flight, k, 3]
+            nominal[0], nominal[1], nominal[2], regime = _nominal(
+                seen[0], seen[1], seen[2], seen[3], seen[4], seen[5],
+                k * plan.dt, plan.rotation[k, 0], plan.rotation[k, 1], r0, v_max, law,
+            )  # fmt: skip
+            feasible = _filter(plan, k, seen, nominal, previous, command, bounds, work, index)
+            if not feasible:
+                infeasible += 1
+            ux, uy, uz = command[0], command[1], command[2]
+            previous[0], previous[1], previous[2] = ux, uy, uz
+            if drawing:
+                ux, uy = _delivered(truth, ux, uy, draws[flight, k, 4], draws[flight, k, 5])
+            size = math.sqrt(ux * ux + uy * uy + uz * uz)
+            if size * plan.dt < truth.minimum_impulse:
+                ux, uy, uz, size = 0.0, 0.0, 0.0, 0.0
+            delta_v += size * plan.dt
+            peak = max(peak, size)
+            if logging:
+                log_command[k, 0], log_command[k, 1], log_command[k, 2] = ux, uy, uz
+                log_code[k, 0], log_code[k, 1] = regime, feasible
+            least, late = _advance(
+                k, x, ux, uy, uz, plan.transition, plan.input, plan.faces, plan.offsets,
+                law.tumble_rate, step, truth.check, before, after, log_state,
+            )  # fmt: skip
+            finite = math.isfinite(least)
+            margin = min(margin, least)
+            if late < math.inf:
+                violated_at = k * plan.dt + late
+        counts[flight, 0], counts[flight, 1], counts[flight, 2] = steps, infeasible, finite
+        sums[flight, 0], sums[flight, 1], sums[flight, 2] = margin, delta_v, peak
+        sums[flight, 3] = violated_at
 
-def _build(stamp: int):  # type: ignore[no-untyped-def]
-    @njit(cache=True, nogil=True, error_model="numpy")
-    def roll_out(plan, truth, draws, starts, counts, sums, log_state, log_command, log_code):  # type: ignore[no-untyped-def]
-        stamp  # noqa: B018  (the cell is part of numba's cache key)
-        law = plan.law
-        horizon, d, m = plan.normals.shape
-        count = len(plan.offsets)
-        step = plan.dt / plan.faces.shape[1]
-        logging = len(log_state) > 0
-        drawing = len(draws) > 0
-        bounds, work, index = np.empty(m), np.empty((10, 4)), np.empty(4, np.int64)
-        nominal, command, previous = np.zeros(3), np.zeros(3), np.zeros(3)
-        before, after = np.empty((2, count)), np.empty((2, count))
-        x, seen = np.empty(6), np.empty(6)
-        for flight in range(len(starts)):
-            x[:] = starts[flight]
-            previous[:] = 0.0
-            r0 = math.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2])
-            v_max = plan.closing_factor * math.sqrt(law.max_acceleration * r0)
-            # At the start the body frame coincides with LVLH.
-            margin = _distance(plan.start_faces, plan.offsets, x, d, count)
-            if truth.check == _CONTINUOUS:
-                _slopes(plan.start_faces, plan.offsets, x, d, count, law.tumble_rate, step, before)
-            steps, infeasible = 0, 0
-            delta_v, peak = 0.0, 0.0
-            violated_at = math.inf if margin >= 0.0 else 0.0
-            finite = math.isfinite(x[0] + x[1] + x[2] + x[3] + x[4] + x[5])
-            while steps < horizon and margin >= 0.0 and finite:
-                k = steps
-                steps += 1
-                seen[:] = x
-                if drawing:
-                    seen[0] += truth.position_sigma * draws[flight, k, 0]
-                    seen[1] += truth.position_sigma * draws[flight, k, 1]
-                    seen[3] += truth.velocity_sigma * draws[flight, k, 2]
-                    seen[4] += truth.velocity_sigma * draws[flight, k, 3]
-                nominal[0], nominal[1], nominal[2], regime = _nominal(
-                    seen[0], seen[1], seen[2], seen[3], seen[4], seen[5],
-                    k * plan.dt, plan.rotation[k, 0], plan.rotation[k, 1], r0, v_max, law,
-                )  # fmt: skip
-                feasible = _filter(plan, k, seen, nominal, previous, command, bounds, work, index)
-                if not feasible:
-                    infeasible += 1
-                ux, uy, uz = command[0], command[1], command[2]
-                previous[0], previous[1], previous[2] = ux, uy, uz
-                if drawing:
-                    ux, uy = _delivered(truth, ux, uy, draws[flight, k, 4], draws[flight, k, 5])
-                size = math.sqrt(ux * ux + uy * uy + uz * uz)
-                if size * plan.dt < truth.minimum_impulse:
-                    ux, uy, uz, size = 0.0, 0.0, 0.0, 0.0
-                delta_v += size * plan.dt
-                peak = max(peak, size)
-                if logging:
-                    log_command[k, 0], log_command[k, 1], log_command[k, 2] = ux, uy, uz
-                    log_code[k, 0], log_code[k, 1] = regime, feasible
-                least, late = _advance(
-                    k, x, ux, uy, uz, plan.transition, plan.input, plan.faces, plan.offsets,
-                    law.tumble_rate, step, truth.check, before, after, log_state,
-                )  # fmt: skip
-                finite = math.isfinite(least)
-                margin = min(margin, least)
-                if late < math.inf:
-                    violated_at = k * plan.dt + late
-            counts[flight, 0], counts[flight, 1], counts[flight, 2] = steps, infeasible, finite
-            sums[flight, 0], sums[flight, 1], sums[flight, 2] = margin, delta_v, peak
-            sums[flight, 3] = violated_at
-
-    return roll_out
-
-
-roll_out = _build(source_stamp(*SOURCES))
-"""The compiled loop; see :func:`fly` for its arguments."""
 
 _NO_LOG = (np.empty((0, 6)), np.empty((0, 3)), np.empty((0, 2), np.int64))
 SUB_STEPPED = Truth()

@@ -6,9 +6,9 @@ import math
 from typing import NamedTuple, Protocol
 
 import numpy as np
-from numba import njit
 
 from safestart.model.scenario import Floats, number
+from safestart.runtime.kernels import compiled
 
 AT_NODES, AT_SUBSTEPS, CONTINUOUS = 0, 1, 2
 CHECKS = {"nodes": AT_NODES, "substeps": AT_SUBSTEPS, "continuous": CONTINUOUS}
@@ -148,7 +148,7 @@ class Drawn(Exact):
         return thrust
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def delivered(truth, ux, uy, magnitude, direction):  # type: ignore[no-untyped-def]
     """In-plane thrust as the thrusters deliver it: scaled and turned."""
     scale = 1.0 + truth.magnitude_sigma * magnitude

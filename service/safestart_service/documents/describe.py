@@ -47,7 +47,7 @@ def summary(spec: ProcessSpec, base: str) -> dict[str, Any]:
 
 def description(spec: ProcessSpec, base: str) -> dict[str, Any]:
     """Full description of a process."""
-    return {**summary(spec, base), **_interface(spec)}
+    return {**summary(spec, base), **_interface(spec), **spec.extensions}
 
 
 def output_ids(spec: ProcessSpec) -> tuple[str, ...]:

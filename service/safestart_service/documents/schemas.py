@@ -74,16 +74,31 @@ class OutputDescription(BaseModel):
     json_schema: dict[str, Any] = Field(alias="schema")
 
 
+# A field that may be absent and is never null: the default that stands for its absence is no part of the schema.
+_ABSENT: dict[str, Any] = {"json_schema_extra": lambda schema: schema.pop("default", None)}
+
+
+class EngineDescription(BaseModel):
+    """An engine of the benchmark, as pages show it."""
+
+    name: str = Field(description="What inputs, rows and arrays call it.")
+    title: str
+    colour: str = Field(description="#RRGGBB, legible on light and on dark.")
+    summary: str
+
+
 class ProcessDescription(ProcessSummary):
     """A process with JSON schemas of its inputs and outputs."""
 
     inputs: dict[str, InputDescription]
     outputs: dict[str, OutputDescription]
     example: dict[str, Any] = Field(description="Inputs to start from.")
-
-
-# A field that may be absent and is never null: the default that stands for its absence is no part of the schema.
-_ABSENT: dict[str, Any] = {"json_schema_extra": lambda schema: schema.pop("default", None)}
+    engines: list[EngineDescription] | SkipJsonSchema[None] = Field(
+        None,
+        alias="safestart:engines",
+        description="The engines that it compares, in the order of their runs; absent for other processes.",
+        **_ABSENT,
+    )
 
 
 class StatusInfo(BaseModel):

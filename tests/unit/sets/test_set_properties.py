@@ -6,8 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from safestart.engines.base import Problem
-from safestart.engines.registry import engine
+from safestart.engines.base import Problem, engine
 from safestart.model.scenario import Bools, Chaser, Floats, Grid, Rest, Scenario, SetKind, Target
 from safestart.runtime.progress import Context
 

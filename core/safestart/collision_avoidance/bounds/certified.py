@@ -132,11 +132,6 @@ def unavoidable(game: Game, states: Floats, horizon_s: float) -> Bools:
     return np.asarray(upper(game, states, horizon_s) <= 0.0)
 
 
-def avoidable(game: Game, states: Floats, horizon_s: float, *, effort: int = EFFORT) -> Bools:
-    """Whether a control exists that is proved to keep the distance against every d, (...)."""
-    return np.asarray(lower(game, states, horizon_s, goal_m=1e-6, effort=effort) > 0.0)
-
-
 def _search(
     game: Game, states: Floats, horizon: float, goal: Floats | float, effort: int, *, keep: bool
 ) -> Witness:

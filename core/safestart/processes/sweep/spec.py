@@ -230,7 +230,7 @@ SPEC = ProcessSpec(
         split=f"{HERE}.split:split",
         shard=f"{HERE}.shard:shard",
         merge=f"{HERE}.merge:merge",
-        summary=f"{HERE}.aggregate:summary",
+        summary=f"{HERE}.study:summary",
     ),
     keywords=("closed loop", "Monte Carlo", "MPC", "confusion matrix"),
     example={"controllers": ["filter"], "cases_per_cell": 3, "omega_t_deg_s": [1, 3], "a_max_m_s2": [0.1]},

@@ -77,10 +77,10 @@ SPEC = ProcessSpec(
     inputs=TradeStudyInputs,
     outputs=TradeStudyOutputs,
     sharding=Sharding(
-        split=f"{_HERE}.split:split",
+        split=f"{_HERE}.study:split",
         shard=f"{_HERE}.run:shard",
         merge=f"{_HERE}.run:merge",
-        summary=f"{_HERE}.split:summary",
+        summary=f"{_HERE}.study:summary",
     ),
     keywords=("trade study", "closed loop", "coverage"),
     example={"omega_t_deg_s": [1, 3, 5], "a_max_m_s2": [0.05, 0.1], "grid": {"nx": 21, "ny": 21}},
