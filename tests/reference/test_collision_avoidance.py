@@ -5,11 +5,11 @@ import pytest
 
 from safestart.cli.reproduce import collision_avoidance as avoidance
 from safestart.collision_avoidance.bounds.certified import lower, upper
-from safestart.collision_avoidance.encounters.feedback import EVASIVE, RECOVERY, Slot
+from safestart.collision_avoidance.encounters.slot import EVASIVE, RECOVERY, Slot
 from safestart.collision_avoidance.game import Game, Players
-from safestart.collision_avoidance.inputs import InputSet
 from safestart.collision_avoidance.tube import solve_tube
 from safestart.collision_avoidance.tube_settings import TubeSettings
+from safestart.constraints.thrust import InputSet
 
 # Section IV-A: mean motion (rad/s), bounds of both players by axis (m/s^2).
 MOTION, THRUST, DISTURBANCE = 0.0011, 0.1, 0.05

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from safestart.constraints.corridor import corridor_of
+from safestart.attitude.spin import spin_of
+from safestart.constraints.corridor import corridor_of, faces_at
 from safestart.control.gains import Gains
 from safestart.control.regimes import Law, control_law
 from safestart.dynamics.cwh import Cwh, input_matrix, transition_matrix
@@ -21,8 +22,6 @@ SUBSTEPS = 3
 MAX_NODES = 50
 MAX_FORECASTS = 200_000
 """Bound on steps times nodes: tables of some 100 MB."""
-
-AnyFloats = np.ndarray[tuple[Any, ...], np.dtype[np.floating[Any]]]
 
 
 class Plan(NamedTuple):
@@ -92,8 +91,9 @@ def flight_plan(
     phi, gamma = np.ascontiguousarray(transition[:, :, components]), held[:, :, :d] * a_max
 
     # Corridor rows, k-major: the face normals at node j of step k, times Phi_j and B_j.
-    angles = scenario.target.tumble_rate * dt * (np.arange(steps)[:, None] + np.arange(1, nodes + 1))
-    turned = _turn(corridor.normals, angles)
+    spin = spin_of(scenario.target)
+    angles: Floats = spin.rate * dt * (np.arange(steps)[:, None] + np.arange(1.0, nodes + 1.0))
+    turned = faces_at(corridor.normals, spin.turned_by(angles))
     state = np.einsum("kjic,jcx->kxij", turned, phi[:, :d]).reshape(steps, len(components), count * nodes)
     normals = np.einsum("kjic,jcu->kuij", turned, gamma[:, :d]).reshape(steps, d, count * nodes)
     tightened = corridor.offsets - gains.corridor_margin
@@ -116,8 +116,8 @@ def flight_plan(
     blocks.append(_constant(steps, box, np.zeros((len(components), 2 * d)), np.ones(2 * d)))
 
     instants = np.arange(steps)[:, None] + np.arange(1, substeps + 1) / substeps
-    faces = _turn(corridor.normals / corridor.lengths[:, None], scenario.target.tumble_rate * dt * instants)
-    theta = scenario.target.tumble_rate * dt * np.arange(steps)
+    faces = faces_at(corridor.normals / corridor.lengths[:, None], spin.turned_by(spin.rate * dt * instants))
+    theta = spin.rate * dt * np.arange(steps)
     normals, state, bounds, weights = (
         np.ascontiguousarray(np.concatenate(parts, axis=-1)) for parts in zip(*blocks, strict=True)
     )
@@ -144,16 +144,6 @@ def flight_plan(
         transition_matrix(n, dt / substeps),
         input_matrix(n, dt / substeps),
     )
-
-
-def _turn(normals: Floats, angles: AnyFloats) -> Floats:
-    """A R_z(-theta) for body-frame rows (F, d) and angles (...), shape (..., F, d)."""
-    cos, sin = np.cos(angles)[..., None], np.sin(angles)[..., None]
-    out = np.empty((*angles.shape, *normals.shape))
-    out[...] = normals
-    out[..., 0] = normals[:, 0] * cos - normals[:, 1] * sin
-    out[..., 1] = normals[:, 0] * sin + normals[:, 1] * cos
-    return out
 
 
 def _constant(

@@ -20,8 +20,9 @@ from safestart.control.gains import preset
 from safestart.engines.base import EngineResult, Problem, ResultCode
 from safestart.model.scenario import Scenario
 from safestart.runtime.progress import Context
-from safestart.simulation.compiled_loop import Flights, fly
-from safestart.simulation.trajectory import start_states, steps_of
+from safestart.simulation.compiled_loop import fly
+from safestart.simulation.record import Record
+from safestart.simulation.starts import start_states, steps_of
 
 T_SIM_S = 60.0
 """Flight time, whatever the problem's horizon."""
@@ -95,11 +96,11 @@ class _Tally:
     infeasible: int = 0
     delta_v: float = 0.0
 
-    def add(self, flights: Flights) -> None:
+    def add(self, flights: Record) -> None:
         self.flights += len(flights.margin)
         self.safe += int(flights.safe.sum())
         self.steps += int(flights.steps.sum())
-        self.infeasible += int(flights.infeasible.sum())
+        self.infeasible += int(flights.fallbacks.sum())
         self.delta_v += math.fsum(flights.delta_v)
 
     def report(self) -> dict[str, Any]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from safestart.attitude.spin import Spin
 from safestart.dynamics.cwh import Cwh
 from safestart.engines.base import EngineResult, Problem, ResultCode
 from safestart.engines.region import restrict, start_velocity
@@ -45,8 +46,7 @@ def steps(problem: Problem) -> Iterator[Step]:
 
 def to_body(vectors: Floats, theta: float) -> Floats:
     """R_z(-theta) applied to the rows of ``vectors`` (..., 2)."""
-    c, s = np.cos(theta), np.sin(theta)
-    return np.asarray(vectors @ np.array([[c, -s], [s, c]]))
+    return np.asarray(vectors @ np.ascontiguousarray(Spin(0.0).turned_by(np.asarray(theta))[:2, :2].T))
 
 
 def finish(

@@ -16,6 +16,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from safestart.attitude.body_frame import into_body, out_of_body
 from safestart.constraints.corridor import corridor_of
 from safestart.dynamics.cwh import Cwh
 from safestart.exact import speed
@@ -97,7 +98,7 @@ class Watch:
         corridor = corridor_of(question.scenario.corridor, question.dimensions)
         self.normals = corridor.normals / corridor.lengths[:, None]
         self.offsets = corridor.offsets / corridor.lengths
-        self.names = corridor.faces
+        self.names = corridor.names
 
     def until(self, steps: int) -> Watch:
         """The watch of the same question with T at ``steps`` intervals, at most its own: views of the same tables."""
@@ -143,8 +144,8 @@ class Watch:
         cosine, sine = np.cos(angle), np.sin(angle)
         body = self.normals[faces]
         normal = -body
-        normal[:, 0] = -(cosine * body[:, 0] - sine * body[:, 1])
-        normal[:, 1] = -(sine * body[:, 0] + cosine * body[:, 1])
+        x, y = out_of_body(cosine, sine, body[:, 0], body[:, 1])
+        normal[:, 0], normal[:, 1] = -x, -y
         start, thrust = self.prediction.position_rows(times, normal)
         return Cuts(times, faces, self.offsets[faces], start, thrust)
 
@@ -163,8 +164,8 @@ class Watch:
         x, y = position[..., 0], position[..., 1]
         vx, vy = speed[..., 0] + w * y, speed[..., 1] - w * x
         turned, rate = position.copy(), speed.copy()
-        turned[..., 0], turned[..., 1] = c * x + s * y, c * y - s * x
-        rate[..., 0], rate[..., 1] = c * vx + s * vy, c * vy - s * vx
+        turned[..., 0], turned[..., 1] = into_body(c, s, x, y)
+        rate[..., 0], rate[..., 1] = into_body(c, s, vx, vy)
         return turned, rate
 
     def between(self, furthest: float, fastest: float, thrust: Floats) -> float:

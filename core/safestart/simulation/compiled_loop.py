@@ -3,54 +3,32 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from safestart.control import regimes as _regimes
 from safestart.control import safety_filter as _safety_filter
+from safestart.control.controller import Command
 from safestart.control.forecast import Plan
+from safestart.control.regimes import REGIMES
 from safestart.errors import invalid
 from safestart.model.scenario import Floats
 from safestart.runtime.kernels import compiled
+from safestart.simulation import noise as _noise
 from safestart.simulation import passage as _passage
-from safestart.simulation.truth import CONTINUOUS, DRAWS, NO_DRAWS, Truth
+from safestart.simulation.noise import CONTINUOUS, DRAWS, NO_DRAWS, Truth
+from safestart.simulation.record import Counts, Path, Record
 
 _nominal = _regimes.nominal_command
 _filter = _safety_filter.filter_step
 _distance, _slopes, _advance = _passage.distance, _passage.slopes, _passage.advance
-_delivered = _passage.delivered
+_delivered = _noise.delivered
 _CONTINUOUS = CONTINUOUS
-
-
-@dataclass(frozen=True, slots=True)
-class Flights:
-    """Outcome of M flights.
-
-    ``margin`` (M,): least distance to a face over what was checked (sub-steps, or all times), metres; a flight ends at
-    its first violation, so a negative margin is the distance by which it was first seen outside. ``violated_at``
-    (M,): seconds, infinite without a violation. ``steps`` (M,): control steps begun.
-    ``infeasible`` (M,): steps at which (7) was infeasible. ``delta_v`` (M,): m/s spent. ``peak`` (M,): largest thrust
-    acceleration, m/s^2. ``finite`` (M,): False where the state left the floating-point numbers.
-    """
-
-    margin: Floats
-    steps: np.ndarray[tuple[int], np.dtype[np.int64]]
-    infeasible: np.ndarray[tuple[int], np.dtype[np.int64]]
-    delta_v: Floats
-    peak: Floats
-    finite: np.ndarray[tuple[int], np.dtype[np.bool_]]
-    violated_at: Floats
-
-    @property
-    def safe(self) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-        """True where no sub-step lay outside the corridor, (M,)."""
-        return self.finite & (self.margin >= 0.0)
 
 
 @compiled(error_model="numpy")
 def roll_out(plan, truth, draws, starts, counts, sums, log_state, log_command, log_code):  # type: ignore[no-untyped-def]
-    """The compiled loop; :func:`fly` and :func:`safestart.simulation.trajectory.fly_start` explain its arguments."""
+    """The compiled loop; :func:`fly` explains its arguments."""
     law = plan.law
     horizon, d, m = plan.normals.shape
     count = len(plan.offsets)
@@ -119,12 +97,51 @@ _NO_LOG = (np.empty((0, 6)), np.empty((0, 3)), np.empty((0, 2), np.int64))
 SUB_STEPPED = Truth()
 
 
-def fly(plan: Plan, starts: Floats, truth: Truth = SUB_STEPPED, draws: Floats = NO_DRAWS) -> Flights:
+def fly(
+    plan: Plan,
+    starts: Floats,
+    truth: Truth = SUB_STEPPED,
+    draws: Floats = NO_DRAWS,
+    *,
+    keep_paths: bool = False,
+) -> Record:
     """Fly each of ``starts`` (M, 6), LVLH states (m, m/s) at t = 0, to the plan's end or its first violation.
 
-    In a planar plan z and vz must be 0. ``draws`` (M, K, 6) are the standard normals of :mod:`guidance.truth`, needed
-    where ``truth`` is noisy. Raises ``InvalidInput`` for other shapes, a start out of the plane, noise in space.
+    In a planar plan z and vz must be 0. ``draws`` (M, K, 6) are the standard normals of :func:`noise.draws`, needed
+    where ``truth`` is noisy. ``keep_paths`` writes down every checked instant. Raises ``InvalidInput`` for other
+    shapes, a start out of the plane, noise in space.
     """
+    _check(plan, starts, truth, draws)
+    starts = np.ascontiguousarray(starts, dtype=np.float64)
+    counts, sums = np.empty((len(starts), 3), np.int64), np.empty((len(starts), 4))
+    paths: list[Path] = []
+    if keep_paths:
+        for row in range(len(starts)):
+            one = slice(row, row + 1)
+            paths.append(_logged(plan, truth, draws[one], starts[one], counts[one], sums[one]))
+    else:
+        roll_out(plan, truth, draws, starts, counts, sums, *_NO_LOG)
+    margin = np.where(counts[:, 2] != 0, sums[:, 0], np.nan)
+    return Record(margin, sums[:, 3], sums[:, 1], sums[:, 2], counts[:, 0], counts[:, 1], tuple(paths))
+
+
+def _logged(plan: Plan, truth: Truth, draws: Floats, start: Floats, counts: Counts, sums: Floats) -> Path:
+    """Fly one ``start`` (1, 6) into ``counts`` (1, 3) and ``sums`` (1, 4)."""
+    steps, substeps = plan.faces.shape[:2]
+    states = np.full((steps * substeps, 6), np.nan)
+    thrust, codes = np.empty((steps, 3)), np.empty((steps, 2), np.int64)
+    roll_out(plan, truth, draws, start, counts, sums, states, thrust, codes)
+    flown = int(counts[0, 0])
+    states = np.concatenate([start, states[~np.isnan(states[:, 0])]])
+    times: Floats = np.arange(len(states), dtype=np.float64) * (plan.dt / substeps)
+    commands = tuple(
+        Command(held, bool(feasible), REGIMES[regime])
+        for held, (regime, feasible) in zip(thrust[:flown], codes[:flown].tolist(), strict=True)
+    )
+    return Path(times, states, thrust[:flown], commands)
+
+
+def _check(plan: Plan, starts: Floats, truth: Truth, draws: Floats) -> None:
     if starts.ndim != 2 or starts.shape[1] != 6:
         raise invalid("starts", "an array of shape (M, 6)", starts.shape)
     planar = plan.normals.shape[1] == 2
@@ -133,15 +150,3 @@ def fly(plan: Plan, starts: Floats, truth: Truth = SUB_STEPPED, draws: Floats = 
     wanted = (len(starts), len(plan.normals), DRAWS) if truth.noisy else NO_DRAWS.shape
     if draws.shape != wanted or (truth.noisy and not planar):
         raise invalid("draws", f"shape {wanted} in a planar plan", draws.shape)
-    counts = np.empty((len(starts), 3), np.int64)
-    sums = np.empty((len(starts), 4))
-    roll_out(plan, truth, draws, np.ascontiguousarray(starts, dtype=np.float64), counts, sums, *_NO_LOG)
-    return Flights(
-        sums[:, 0],
-        counts[:, 0],
-        counts[:, 1],
-        sums[:, 1],
-        sums[:, 2],
-        counts[:, 2].astype(np.bool_),
-        sums[:, 3],
-    )

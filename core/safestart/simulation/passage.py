@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from safestart.runtime.kernels import compiled
-from safestart.simulation.truth import AT_NODES, CONTINUOUS
+from safestart.simulation.noise import AT_NODES, CONTINUOUS
 
 _AT_NODES, _CONTINUOUS = AT_NODES, CONTINUOUS
 _BISECTIONS = 50
@@ -41,14 +41,6 @@ def slopes(normals, offsets, x, d, count, omega, step, out):  # type: ignore[no-
             rate -= normals[c, i] * x[3 + c]
         out[0, i] = value
         out[1, i] = rate * step
-
-
-@compiled(error_model="numpy")
-def delivered(truth, ux, uy, magnitude, direction):  # type: ignore[no-untyped-def]
-    """In-plane thrust as the thrusters deliver it: scaled and turned."""
-    scale = 1.0 + truth.magnitude_sigma * magnitude
-    cos, sin = math.cos(truth.direction_sigma * direction), math.sin(truth.direction_sigma * direction)
-    return scale * (cos * ux - sin * uy), scale * (sin * ux + cos * uy)
 
 
 @compiled(error_model="numpy")

@@ -7,7 +7,8 @@ from scipy.integrate import solve_ivp
 from safestart.collision_avoidance.bounds.certified import lower, unavoidable, upper, witness
 from safestart.collision_avoidance.bounds.directions import covering
 from safestart.collision_avoidance.game import Game
-from safestart.collision_avoidance.inputs import InputSet, held_down, left_over
+from safestart.collision_avoidance.inputs import held_down, left_over
+from safestart.constraints.thrust import InputSet
 from safestart.errors import InvalidInput
 
 W = 0.0011

@@ -7,10 +7,10 @@ import pytest
 
 from safestart.collision_avoidance.bounds.certified import lower, upper
 from safestart.collision_avoidance.game import Game
-from safestart.collision_avoidance.inputs import InputSet
 from safestart.collision_avoidance.space import SpaceTube
 from safestart.collision_avoidance.tube import Answer, solve_tube
 from safestart.collision_avoidance.tube_settings import TubeSettings
+from safestart.constraints.thrust import InputSet
 from safestart.errors import InvalidInput
 
 GAME = Game(0.0011, InputSet("ball", (0.1,)), InputSet("ball", (0.05,)), 100.0)

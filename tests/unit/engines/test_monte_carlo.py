@@ -8,7 +8,7 @@ import pytest
 from safestart.closed_form.paper import certify
 from safestart.constraints.corridor import corridor_of
 from safestart.control.forecast import flight_plan
-from safestart.control.gains import Gains, preset
+from safestart.control.gains import TUNED, Gains, preset
 from safestart.engines import monte_carlo
 from safestart.engines.base import EngineResult, Problem, ResultCode
 from safestart.engines.monte_carlo import MonteCarlo
@@ -16,7 +16,7 @@ from safestart.errors import Cancelled
 from safestart.model.scenario import Grid, Rest, Scenario
 from safestart.runtime.progress import Context
 from safestart.simulation.compiled_loop import fly
-from safestart.simulation.trajectory import fly_start, start_states
+from safestart.simulation.starts import start_states
 
 GRID = Grid(15, 13, 60.0)
 
@@ -84,9 +84,10 @@ def test_cells_are_single_flights(rest: Rest) -> None:
     assert (result.margin[~inside] < 0.0).all()
     np.testing.assert_array_equal(result.mask, result.margin >= 0.0)
     for iy, ix in np.argwhere(inside)[::5]:
-        flight = fly_start(scenario, points[iy, ix], rest=rest)
-        assert result.mask[iy, ix] == flight.safe
-        assert result.margin[iy, ix] == pytest.approx(flight.margin, abs=1e-9)
+        start = start_states(scenario, points[iy, ix][None], rest)
+        flight = fly(flight_plan(scenario, TUNED, 2.0, 30), start)
+        assert result.mask[iy, ix] == flight.safe[0]
+        assert result.margin[iy, ix] == pytest.approx(flight.margin[0], abs=1e-9)
     assert 0 < result.mask.sum() < inside.sum()
 
 

@@ -19,7 +19,7 @@ from safestart.collision_avoidance.bounds.closing_kernel import closest_certain
 from safestart.collision_avoidance.bounds.directions import covering, guesses
 from safestart.collision_avoidance.bounds.witness_kernel import farthest
 from safestart.collision_avoidance.game import Game
-from safestart.collision_avoidance.inputs import InputSet
+from safestart.constraints.thrust import InputSet
 from safestart.errors import invalid
 from safestart.model.scenario import Bools, Floats, number
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from safestart.attitude.body_frame import into_body
 from safestart.engines.base import Problem
 from safestart.engines.hj.domain import Domain
 from safestart.engines.hj.frame import Frame, system_matrix
@@ -48,7 +49,7 @@ class FusedSolver:
         def turned(time: float) -> Floats:
             """l at a time on the nodes: l(R(-omega_t t) p), (nx, ny, 1, 1), or the velocity-aware one."""
             c, s = np.cos(rate * time), np.sin(rate * time)
-            along, across = c * x + s * y, c * y - s * x
+            along, across = into_body(c, s, x, y)
             levels = [a * along + b * across + d for a, b, d in rows]
             highest: Floats = np.maximum.reduce(levels)
             distance = highest[:, :, None, None]

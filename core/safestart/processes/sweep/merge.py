@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from safestart.attitude.spin import spin_of
 from safestart.campaign.part import Part
 from safestart.campaign.records import MEDIA_TYPE
 from safestart.exact.decide import decide
@@ -50,12 +51,8 @@ def merge(inputs: SweepInputs, parts: Sequence[Part], context: Context) -> Proce
 def _path(inputs: SweepInputs, controller: str, case: dict[str, Any]) -> Path:
     """Fly a case once more, as in its shard."""
     cases = _single(inputs, case)
-    flown = fly_one(inputs, controller, cases, 0)
-    times, states = np.array(flown.times), np.array(flown.states)
-    angle = cases.scenario.target.tumble_rate * times
-    x, y = states[:, 0], states[:, 1]
-    body = np.stack([np.cos(angle) * x + np.sin(angle) * y, np.cos(angle) * y - np.sin(angle) * x], axis=1)
-    return case, times, body
+    path = fly_one(inputs, controller, cases, 0).paths[0]
+    return case, path.times, path.seen_from(spin_of(cases.scenario.target))[:, :2]
 
 
 def _single(inputs: SweepInputs, case: dict[str, Any]) -> Cases:

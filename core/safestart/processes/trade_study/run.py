@@ -26,8 +26,8 @@ from safestart.processes.trade_study.study import area, study_of, summary
 from safestart.processes.wire import DT_S
 from safestart.runtime.progress import Context
 from safestart.simulation.compiled_loop import fly
-from safestart.simulation.trajectory import start_states
-from safestart.simulation.truth import CONTINUOUS, Truth
+from safestart.simulation.noise import CONTINUOUS, Truth
+from safestart.simulation.starts import start_states
 
 
 def shard(part: dict[str, Any], context: Context) -> Part:
