@@ -1,7 +1,7 @@
 """The service with a job in every state, and schemathesis asking it.
 
 As a command, every operation by itself with many examples, which takes an hour or two; what passed is not run again:
-``python -m tests.contract.api.fuzzing FOLDER --examples 2000``
+``python -m tests.contract.fuzz.fuzzing FOLDER --examples 2000``
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The whole API against its own description: schemathesis asks every operation, rightly and wrongly, with all checks.
 
-With all phases and thousands of requests for each, by hand: :mod:`tests.contract.api.fuzzing`.
+With all phases and thousands of requests for each, by hand: :mod:`tests.contract.fuzz.fuzzing`.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.contract.api.fuzzing import ask, served, stock
+from tests.contract.fuzz.fuzzing import ask, served, stock
 
 
 @pytest.mark.timeout(1800)
