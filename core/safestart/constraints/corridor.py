@@ -8,6 +8,7 @@ from functools import lru_cache
 import numpy as np
 
 from safestart.attitude.attitude import Attitude
+from safestart.attitude.body_frame import out_of_body
 from safestart.errors import invalid
 from safestart.model.scenario import Bools, CorridorShape, Floats
 
@@ -66,6 +67,15 @@ def faces_at(normals: Floats, rotation: Floats) -> Floats:
         out[..., i] = normals[:, 0] * rotation[..., 0, i, None]
         for j in range(1, d):
             out[..., i] += normals[:, j] * rotation[..., j, i, None]
+    return out
+
+
+def faces_about_z(normals: Floats, angles: Floats) -> Floats:
+    """The same after a turn by ``angles`` (...), rad, about z alone: quicker, and equal in every bit."""
+    out = np.empty((*angles.shape, *normals.shape))
+    out[...] = normals
+    cos, sin = np.cos(angles)[..., None], np.sin(angles)[..., None]
+    out[..., 0], out[..., 1] = out_of_body(cos, sin, normals[:, 0], normals[:, 1])
     return out
 
 

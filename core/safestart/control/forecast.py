@@ -7,8 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from safestart.attitude.spin import spin_of
-from safestart.constraints.corridor import corridor_of, faces_at
+from safestart.constraints.corridor import corridor_of, faces_about_z
 from safestart.control.gains import Gains
 from safestart.control.regimes import Law, control_law
 from safestart.dynamics.cwh import Cwh, input_matrix, transition_matrix
@@ -91,9 +90,9 @@ def flight_plan(
     phi, gamma = np.ascontiguousarray(transition[:, :, components]), held[:, :, :d] * a_max
 
     # Corridor rows, k-major: the face normals at node j of step k, times Phi_j and B_j.
-    spin = spin_of(scenario.target)
-    angles: Floats = spin.rate * dt * (np.arange(steps)[:, None] + np.arange(1.0, nodes + 1.0))
-    turned = faces_at(corridor.normals, spin.turned_by(angles))
+    rate = scenario.target.tumble_rate
+    angles: Floats = rate * dt * (np.arange(steps)[:, None] + np.arange(1.0, nodes + 1.0))
+    turned = faces_about_z(corridor.normals, angles)
     state = np.einsum("kjic,jcx->kxij", turned, phi[:, :d]).reshape(steps, len(components), count * nodes)
     normals = np.einsum("kjic,jcu->kuij", turned, gamma[:, :d]).reshape(steps, d, count * nodes)
     tightened = corridor.offsets - gains.corridor_margin
@@ -116,8 +115,8 @@ def flight_plan(
     blocks.append(_constant(steps, box, np.zeros((len(components), 2 * d)), np.ones(2 * d)))
 
     instants = np.arange(steps)[:, None] + np.arange(1, substeps + 1) / substeps
-    faces = faces_at(corridor.normals / corridor.lengths[:, None], spin.turned_by(spin.rate * dt * instants))
-    theta = spin.rate * dt * np.arange(steps)
+    faces = faces_about_z(corridor.normals / corridor.lengths[:, None], rate * dt * instants)
+    theta = rate * dt * np.arange(steps)
     normals, state, bounds, weights = (
         np.ascontiguousarray(np.concatenate(parts, axis=-1)) for parts in zip(*blocks, strict=True)
     )

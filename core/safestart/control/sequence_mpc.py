@@ -104,10 +104,9 @@ class SequencePlanner:
 
 @dataclass(frozen=True, slots=True)
 class PlannedCommand(Command):
-    """A command of a plan: the exact answer for the state the plan begins at, and whether it was made just now."""
+    """A command of a plan, labelled ``planned`` or ``kept``; ``verdict`` is the exact answer where the plan begins."""
 
     verdict: Verdict = Verdict.UNDECIDED
-    fresh: bool = False
 
 
 class SequenceMpc:
@@ -126,20 +125,15 @@ class SequenceMpc:
         """See :class:`safestart.control.controller.Controller`; feasible where the plan keeps the corridor."""
         planar = state[[0, 1, 3, 4]]
         plan = self._plan and self._planner.kept(self._plan, self._first, k, planar)
-        fresh = plan is None
+        label = "kept" if plan else "planned"
         if plan is None:
             plan, self._first = self._planner.plan(k, planar), k
             self._plan = plan
         thrust = np.append(plan.thrust[k - self._first], 0.0)
-        return PlannedCommand(thrust, plan.verdict is Verdict.GO, verdict=plan.verdict, fresh=fresh)
+        return PlannedCommand(thrust, plan.verdict is Verdict.GO, label, verdict=plan.verdict)
 
 
 def start_verdict(commands: Sequence[Command]) -> Verdict | None:
     """The exact answer for the first state that a flight's commands were made from; None of another controller."""
     first = commands[0] if commands else None
     return first.verdict if isinstance(first, PlannedCommand) else None
-
-
-def replans(commands: Sequence[Command]) -> int:
-    """Plans that a flight made after its first."""
-    return sum(isinstance(command, PlannedCommand) and command.fresh for command in commands[1:])

@@ -13,7 +13,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from safestart.exact.watch import Cuts, Ints, Minima, Watch, dips, watch_of
+from safestart.constraints.cubic import dips
+from safestart.exact.watch import Cuts, Ints, Minima, Watch, watch_of
 from safestart.families.between import chord_gap, half_angle, nodes, reach, turned
 from safestart.families.members import Family, signs
 from safestart.model.scenario import Floats

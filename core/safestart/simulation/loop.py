@@ -42,12 +42,13 @@ def fly_watched(flight: Watched, controller: Controller, steps: int, dt: float, 
     commands: list[Command] = []
     held: list[Floats] = []
     delta_v = peak = 0.0
-    controller.begin(flight.state)
+    controller.begin(states[0])
     for k in range(steps):
         # Written so that a NaN ends the flight.
         if not flight.margin >= 0.0:
             break
-        command = controller.command(k, errors.seen(k, flight.state))
+        # The copy: a flight may move its own state in place, and a controller may keep what it was given.
+        command = controller.command(k, errors.seen(k, states[-1]))
         thrust = errors.delivered(k, command.thrust, dt)
         size = math.sqrt(float(thrust @ thrust))
         delta_v += size * dt
@@ -56,7 +57,7 @@ def fly_watched(flight: Watched, controller: Controller, steps: int, dt: float, 
         if impulse is not None:
             impulse = errors.delivered(k, impulse, 1.0)
             delta_v += math.sqrt(float(impulse @ impulse))
-        push = errors.push(k, flight.state, thrust)
+        push = errors.push(k, states[-1], thrust)
         flight.fly(thrust if push is None else thrust + push, impulse)
         commands.append(command)
         held.append(thrust)

@@ -9,7 +9,7 @@ import numpy as np
 
 from safestart.attitude.spin import Spin
 from safestart.constraints.constraint import Constraint
-from safestart.constraints.corridor import Corridor, faces_at
+from safestart.constraints.corridor import Corridor, faces_about_z
 from safestart.dynamics.cwh import Cwh
 from safestart.model.scenario import Floats
 from safestart.simulation.noise import CONTINUOUS
@@ -63,7 +63,8 @@ class PlanarFlight:
 
     def _turned(self, times: Floats) -> Floats:
         """Unit normals (T, 2, F) in LVLH axes."""
-        return np.ascontiguousarray(faces_at(self._normals, self._spin.rotation(times)).swapaxes(1, 2))
+        turned = faces_about_z(self._normals, self._spin.axis[2] * self._spin.angle(times))
+        return np.ascontiguousarray(turned.swapaxes(1, 2))
 
 
 def watched(plant: Plant, constraints: Sequence[Constraint], start: Floats, dt: float) -> Watched:

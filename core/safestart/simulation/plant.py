@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from safestart.attitude.attitude import Attitude
@@ -10,10 +11,16 @@ from safestart.dynamics.cwh import Cwh
 from safestart.dynamics.motion import Motion
 from safestart.dynamics.two_body import Orbit, TwoBody
 from safestart.errors import invalid
-from safestart.model.scenario import Scenario
+from safestart.model.scenario import Scenario, Target
 
-MODELS = ("cwh", "two_body_j2")
-"""Names of the motions that :func:`plant_of` can put under a scenario."""
+MOTIONS: dict[str, Callable[[Target], Motion]] = {
+    "cwh": lambda target: Cwh(target.mean_motion),
+    "two_body_j2": lambda target: TwoBody(Orbit.of(target.mean_motion)),
+}
+"""The motions that a scenario can be flown in, by name."""
+
+ATTITUDES: dict[str, Callable[[Target], Attitude]] = {"spin": spin_of}
+"""The ways in which a scenario's target can turn, by name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,11 +31,10 @@ class Plant:
     attitude: Attitude
 
 
-def plant_of(scenario: Scenario, model: str = "cwh") -> Plant:
-    """The plant of a scenario; raises ``InvalidInput`` for another model than one of ``MODELS``."""
-    target = scenario.target
-    if model == "cwh":
-        return Plant(Cwh(target.mean_motion), spin_of(target))
-    if model == "two_body_j2":
-        return Plant(TwoBody(Orbit.of(target.mean_motion)), spin_of(target))
-    raise invalid("model", f"one of {', '.join(MODELS)}", model)
+def plant_of(scenario: Scenario, motion: str = "cwh", attitude: str = "spin") -> Plant:
+    """The plant of a scenario; raises ``InvalidInput`` for a motion or an attitude of another name."""
+    if motion not in MOTIONS:
+        raise invalid("motion", f"one of {', '.join(MOTIONS)}", motion)
+    if attitude not in ATTITUDES:
+        raise invalid("attitude", f"one of {', '.join(ATTITUDES)}", attitude)
+    return Plant(MOTIONS[motion](scenario.target), ATTITUDES[attitude](scenario.target))

@@ -15,7 +15,7 @@ import numpy as np
 
 from safestart.attitude.attitude import Attitude
 from safestart.constraints.constraint import Constraint
-from safestart.exact.watch import dips
+from safestart.constraints.cubic import dips
 from safestart.model.scenario import Floats
 from safestart.simulation.passage import cubic_root
 from safestart.simulation.plant import Plant

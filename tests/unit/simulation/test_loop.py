@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 
 from safestart.attitude.attitude import to_body
 from safestart.attitude.spin import Spin
-from safestart.constraints.corridor import corridor_of, polyhedron
+from safestart.constraints.corridor import corridor_of, faces_about_z, faces_at, polyhedron
 from safestart.control.controller import Command
 from safestart.dynamics.cwh import Cwh, system_matrix
 from safestart.errors import InvalidInput
@@ -17,6 +17,7 @@ from safestart.simulation.loop import fly, fly_watched
 from safestart.simulation.noise import EXACT, Drawn, Exact, draws, truth_of
 from safestart.simulation.planar import PlanarFlight, watched
 from safestart.simulation.plant import Plant
+from safestart.simulation.record import Record
 from safestart.simulation.watch import WatchedFlight
 from tests.unit.simulation.parts import Damper, DoubleIntegrator, KeepOut, Nodding
 
@@ -60,6 +61,23 @@ def test_new_parts_fly_in_the_loop() -> None:
         corridor_of(SHAPE, 3).slack(body[:, :3]) / corridor_of(SHAPE, 3).lengths,
         atol=1e-12,
     )
+
+
+def test_new_parts_fly_with_errors_in_space() -> None:
+    """Each flight meets its own draws, and the same ones again."""
+    plant = Plant(DoubleIntegrator(), Nodding(0.3, 0.05))
+    truth = truth_of(position_sigma=0.1, velocity_sigma=0.01, magnitude_sigma=0.02, direction_sigma=0.01)
+    drawn = draws(truth, 1, np.arange(2), 20, planar=False)
+    flown = [
+        fly(plant, [corridor_of(SHAPE, 3)], Damper(0.08), START, 20, 2.0, Drawn(truth, drawn[case]))
+        for case in (0, 1, 0)
+    ]
+    ends = [record.paths[0].states[-1] for record in flown]
+    assert (ends[0] == ends[2]).all()
+    assert np.abs(ends[0] - ends[1]).min() > 1e-4
+    both = Record.joined(flown[:2])
+    assert len(both) == len(both.paths) == 2
+    assert both.delta_v.tolist() == [flown[0].delta_v[0], flown[1].delta_v[0]]
 
 
 @pytest.mark.parametrize(
@@ -115,6 +133,15 @@ def test_rates_of_the_corridor_are_derivatives() -> None:
     np.testing.assert_allclose(rate, rise / (2.0 * h), atol=1e-7)
     body = to_body(attitude, times, states)
     np.testing.assert_allclose(value, corridor.slack(body[:, :3]) / corridor.lengths, atol=1e-12)
+
+
+def test_faces_turned_about_z_are_the_general_ones_in_every_bit() -> None:
+    angles = np.random.default_rng(3).uniform(-7.0, 7.0, (5, 4))
+    for d in (2, 3):
+        normals = corridor_of(SHAPE, d).normals
+        np.testing.assert_array_equal(
+            faces_about_z(normals, angles), faces_at(normals, Spin(0.0).turned_by(angles))
+        )
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ from safestart.control.gains import Gains, preset
 from safestart.control.sequence_mpc import SequenceMpc, start_verdict
 from safestart.control.three_regimes import ThreeRegimes
 from safestart.exact.question import Question
-from safestart.model.scenario import Rest
+from safestart.model.scenario import Rest, Scenario
 from safestart.processes.sweep.cases import Cases
 from safestart.processes.sweep.judge import UNASKED, Verdicts, of
 from safestart.processes.sweep.spec import FINE_DT_S, SweepInputs
@@ -124,11 +124,24 @@ def fly_one(
 
 
 def controller_of(inputs: SweepInputs, controller: str, cases: Cases) -> Controller:
-    """The controller of a scenario."""
-    dt, steps, nodes = timing(inputs, controller)
-    if controller == "sequence":
-        return SequenceMpc(Question(cases.scenario, dt, steps))
-    return ThreeRegimes(flight_plan(cases.scenario, gains_of(inputs), dt, steps, nodes=nodes))
+    """The controller of that name for a scenario."""
+    return CONTROLLERS[controller](inputs, cases.scenario, *timing(inputs, controller))
+
+
+def _filter(inputs: SweepInputs, scenario: Scenario, dt: float, steps: int, nodes: int) -> Controller:
+    return ThreeRegimes(flight_plan(scenario, gains_of(inputs), dt, steps, nodes=nodes))
+
+
+def _sequence(_: SweepInputs, scenario: Scenario, dt: float, steps: int, __: int) -> Controller:
+    return SequenceMpc(Question(scenario, dt, steps))
+
+
+CONTROLLERS: dict[str, Callable[[SweepInputs, Scenario, float, int, int], Controller]] = {
+    "filter": _filter,
+    "filter_fine": _filter,
+    "sequence": _sequence,
+}
+"""The controllers that a sweep can fly, by name."""
 
 
 def _one_by_one(inputs: SweepInputs, controller: str, cases: Cases, poll: Callable[[int], None]) -> Outcome:
