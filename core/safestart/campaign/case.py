@@ -21,10 +21,10 @@ class Case:
     def generator(self, stream: int = 0) -> np.random.Generator:
         """Random numbers of this case alone; another ``stream`` gives others that are independent of them.
 
-        Philox is counter-based: key ``seed``, counter (0, 0, index, stream). Stream 0 is also what the flights of
-        :mod:`safestart.simulation` draw noise from.
+        Philox is counter-based: key ``seed``, counter (0, 0, index, 1 + stream). Counters that end with 0 belong to
+        the noise of the flights of :mod:`safestart.simulation`: a study may use both with one seed.
         """
-        return np.random.Generator(np.random.Philox(key=self.seed, counter=[0, 0, self.index, stream]))
+        return np.random.Generator(np.random.Philox(key=self.seed, counter=[0, 0, self.index, 1 + stream]))
 
 
 def generator(seed: int, *key: int) -> np.random.Generator:

@@ -14,9 +14,10 @@ from safestart.campaign.design import Design, Drawn, Factorial, Repeated
 
 def test_a_case_draws_what_seed_index_and_stream_say() -> None:
     drawn = Case(3, 7).generator().standard_normal(1000)
-    literal = np.random.Generator(np.random.Philox(key=7, counter=[0, 0, 3, 0]))
+    literal = np.random.Generator(np.random.Philox(key=7, counter=[0, 0, 3, 1]))
     np.testing.assert_array_equal(drawn, literal.standard_normal(1000))
-    for other in (Case(4, 7).generator(), Case(3, 8).generator(), Case(3, 7).generator(1)):
+    flights = np.random.Generator(np.random.Philox(key=7, counter=[0, 0, 3, 0]))
+    for other in (Case(4, 7).generator(), Case(3, 8).generator(), Case(3, 7).generator(1), flights):
         assert not np.isin(other.standard_normal(1000), drawn).any()
 
 
