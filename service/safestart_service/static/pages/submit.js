@@ -1,8 +1,8 @@
 // Submit: any process by a form made from its schema; light ones answer here, the others become jobs.
 
-import { call, get, root } from "./api.js";
-import { field, mark } from "./form.js";
-import { $, el, fail, loading } from "./page.js";
+import { call, get, root } from "../parts/api.js";
+import { field, mark } from "../parts/form.js";
+import { $, el, fail, loading } from "../parts/page.js";
 
 const asked = new URLSearchParams(location.search);
 let entry = null, spec = null;

@@ -1,8 +1,9 @@
 // One job: live while it waits or runs, then its results. What is shown survives a reload: it is all on the server.
 
-import { Problem, call, follow, get, post, remove, root } from "./api.js";
-import { $, definition, duration, el, fail, loading, moment, status } from "./page.js";
-import { results, sweep } from "./results.js";
+import { Problem, call, follow, get, post, remove, root } from "../parts/api.js";
+import { duration, moment } from "../logic/words.js";
+import { $, definition, el, fail, loading, status } from "../parts/page.js";
+import { results, sweep } from "../parts/results.js";
 
 const id = $("job").dataset.job;
 const log = el("div", { class: "log", role: "log", "aria-label": "Log", tabindex: "0" });

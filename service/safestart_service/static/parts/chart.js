@@ -1,4 +1,4 @@
-// Plotly in our colours, light and dark, and the geometry the pictures share.
+// Plotly in our colours, light and dark.
 
 /* global Plotly */
 
@@ -35,7 +35,7 @@ export function draw(place, traces, layout = {}, config = {}) {
 }
 
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
-  for (const [place, args] of drawn) draw(place, ...args);
+  for (const [place, args] of drawn) if (place.isConnected) draw(place, ...args);
 });
 
 export function saveButtons(place, name, el) {
@@ -43,36 +43,4 @@ export function saveButtons(place, name, el) {
     type: "button", onclick: () => Plotly.downloadImage(place, { format, filename: name, width: 1200, height: 900 }),
   }, format.toUpperCase());
   return el("span", { class: "saves" }, "Save picture: ", button("png"), button("svg"));
-}
-
-/** Corners of the corridor cut at yMax, closed. */
-export function corridor({ c_x, x0_m, r_h_m }, yMax) {
-  const half = x0_m + c_x * (yMax - r_h_m);
-  return { x: [-half, -x0_m, x0_m, half, -half], y: [yMax, r_h_m, r_h_m, yMax, yMax], half };
-}
-
-/** The part of a circle about the target that lies in the corridor. */
-export function arc(radius, shape, yMax) {
-  const x = [], y = [];
-  for (let k = 0; k <= 180; k++) {
-    const angle = (Math.PI * k) / 180;
-    const [px, py] = [radius * Math.cos(angle), radius * Math.sin(angle)];
-    const inside = py >= shape.r_h_m && py <= yMax && Math.abs(px) <= shape.x0_m + shape.c_x * (py - shape.r_h_m);
-    x.push(inside ? px : null);
-    y.push(inside ? py : null);
-  }
-  return { x, y };
-}
-
-export function turned(xs, ys, angle) {
-  const [c, s] = [Math.cos(angle), Math.sin(angle)];
-  return { x: xs.map((x, k) => c * x - s * ys[k]), y: xs.map((x, k) => s * x + c * ys[k]) };
-}
-
-/** Wilson interval of a share, 95 %. */
-export function wilson(hits, of) {
-  if (!of) return null;
-  const z = 1.959964, p = hits / of, d = 1 + (z * z) / of;
-  const middle = (p + (z * z) / (2 * of)) / d, half = (z / d) * Math.sqrt((p * (1 - p)) / of + (z * z) / (4 * of * of));
-  return [Math.max(0, middle - half), Math.min(1, middle + half)];
 }

@@ -1,8 +1,9 @@
 // Trade study: certified share over (tumble rate, thrust), and the thrust that a stand-off asks for.
 
-import { execute, root } from "./api.js";
-import { COLOURS, draw, saveButtons } from "./chart.js";
-import { $, csv, el, fail, figure, loading, save, table } from "./page.js";
+import { execute, root } from "../parts/api.js";
+import { COLOURS, draw, saveButtons } from "../parts/chart.js";
+import { csv, figure } from "../logic/words.js";
+import { $, el, fail, loading, save, table } from "../parts/page.js";
 
 const THRUSTS = Array.from({ length: 25 }, (_, k) => Number((10 ** (-2.3 + k / 12)).toPrecision(3)));
 const asked = new URLSearchParams(location.search);

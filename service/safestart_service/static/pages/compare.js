@@ -1,9 +1,10 @@
 // Compare: successful benchmarks side by side, engine by engine.
 
-import { get } from "./api.js";
-import { COLOURS, LABELS, draw, saveButtons } from "./chart.js";
-import { $, csv, el, fail, figure, loading, save, table } from "./page.js";
-import { root } from "./api.js";
+import { get } from "../parts/api.js";
+import { COLOURS, LABELS, draw, saveButtons } from "../parts/chart.js";
+import { csv } from "../logic/words.js";
+import { $, el, fail, loading, save, table } from "../parts/page.js";
+import { root } from "../parts/api.js";
 
 const ids = (new URLSearchParams(location.search).get("jobs") ?? "").split(",").filter(Boolean).slice(0, 12);
 

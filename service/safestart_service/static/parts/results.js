@@ -1,8 +1,11 @@
 // Results of a job: scalars, tables, pictures, files; for a benchmark also confusion matrices and overlaid masks.
 
 import { get, root } from "./api.js";
-import { COLOURS, LABELS, corridor, draw, saveButtons, theme, wilson } from "./chart.js";
-import { csv, definition, el, fail, figure, save, table } from "./page.js";
+import { corridor } from "../logic/geometry.js";
+import { agreement, wilson } from "../logic/statistics.js";
+import { csv, figure } from "../logic/words.js";
+import { COLOURS, LABELS, draw, saveButtons, theme } from "./chart.js";
+import { definition, el, fail, save, table } from "./page.js";
 
 export async function results(place, job, call) {
   const response = await call(`/jobs/${job.jobID}/results`);
@@ -164,7 +167,7 @@ async function masks(place, job, result) {
     const arrays = await get(`/jobs/${job.jobID}/artifacts/maps.npz/arrays`);
     const show = () => {
       const [one, two] = ["first", "second"].map((name) => place.querySelector(`#${name}`).value);
-      const { z, counts } = agreement(arrays, one, two);
+      const { z, counts } = agreement(arrays.inside, arrays[`${one}_mask`], arrays[`${two}_mask`]);
       const { line } = theme();
       const steps = [line, "#999999", COLOURS.analytical, COLOURS.hamilton_jacobi, COLOURS.monte_carlo];
       const scale = steps.flatMap((colour, k) => [[k / 5, colour], [(k + 1) / 5, colour]]);
@@ -181,14 +184,4 @@ async function masks(place, job, result) {
   } catch (error) {
     fail(at, error);
   }
-}
-
-export function agreement(arrays, one, two) {
-  const a = arrays[`${one}_mask`], b = arrays[`${two}_mask`], counts = [0, 0, 0, 0, 0];
-  const z = arrays.inside.map((row, iy) => row.map((inside, ix) => {
-    const kind = !inside ? 0 : a[iy][ix] && b[iy][ix] ? 2 : a[iy][ix] ? 3 : b[iy][ix] ? 4 : 1;
-    counts[kind] += 1;
-    return kind;
-  }));
-  return { z, counts };
 }

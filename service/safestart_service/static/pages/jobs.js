@@ -1,7 +1,8 @@
 // Jobs: newest first, kept up to date while something waits or runs.
 
-import { get, remove, root } from "./api.js";
-import { $, duration, el, fail, loading, moment, status } from "./page.js";
+import { get, remove, root } from "../parts/api.js";
+import { duration, moment } from "../logic/words.js";
+import { $, el, fail, loading, status } from "../parts/page.js";
 
 const asked = new URLSearchParams(location.search), chosen = new Set();
 let pages = 1, timer = 0;
