@@ -5,14 +5,18 @@ The truth is asked of the service by way of the fields alone, without a word fro
 
 from __future__ import annotations
 
+import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
 import httpx
 from playwright.sync_api import Page
 
-from tests.waiting import PATIENCE_S, until
+from tests.acceptance.running import answers
+from tests.waiting import PATIENCE_S, free_port, until
 
 FAULTS = Path(__file__).with_name("faults.js")
 NUMBER = re.compile(r"-?(\d+(\.\d+)?|\.\d+)(e[+-]?\d+)?", re.IGNORECASE)
@@ -59,6 +63,26 @@ _EDIT = """(edits) => {
 }""".replace("SEEN", _SEEN)
 
 Seen = dict[str, Any]
+
+
+class Served:
+    """``safestart serve`` at one address, to be killed and started again."""
+
+    def __init__(self, folder: Path) -> None:
+        self.url = f"http://127.0.0.1:{free_port()}"
+        self._environment = os.environ | {"SAFESTART_DATABASE_URL": f"sqlite:///{folder / 'served.sqlite3'}"}
+        self.start()
+
+    def start(self) -> None:
+        """Start, and wait for an answer."""
+        command = [sys.executable, "-m", "safestart", "serve", "--port", self.url.rpartition(":")[2]]
+        self._process = subprocess.Popen(command, env=self._environment)
+        until(lambda: answers(self.url, self._process), "a service that answers")
+
+    def kill(self) -> None:
+        """End it in the middle of whatever it does."""
+        self._process.kill()
+        self._process.wait(PATIENCE_S)
 
 
 def seen(page: Page) -> Seen:

@@ -10,9 +10,8 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from tests.acceptance.running import Running
 from tests.browser.conftest import Visit
-from tests.browser.explored import FAULTS, Truth, edit, faults_in, seen, settled
+from tests.browser.explored import FAULTS, Served, Truth, edit, faults_in, seen, settled
 from tests.waiting import until
 
 GO = "omega_t_deg_s=3&x_m=-60&y_m=80"
@@ -20,12 +19,19 @@ GO = "omega_t_deg_s=3&x_m=-60&y_m=80"
 SHOWN = "#verdict .answer:not(.old) .word"
 
 
+@pytest.fixture(scope="module")
+def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    found = Served(tmp_path_factory.mktemp("served"))
+    yield found
+    found.kill()
+
+
 @pytest.fixture
-def disturbed(browser: Browser, up: Running) -> Iterator[Visit]:
+def disturbed(browser: Browser, served: Served) -> Iterator[Visit]:
     """A visit whose requests a test can make late, failing, or deaf to being given up."""
     context = browser.new_context(viewport={"width": 1280, "height": 900})
     context.add_init_script(path=FAULTS)
-    found = Visit(context, up.url)
+    found = Visit(context, served.url)
     found.allowed += ["422", "503", "ERR_", "Failed to load"]
     yield found
     context.close()
@@ -33,8 +39,8 @@ def disturbed(browser: Browser, up: Running) -> Iterator[Visit]:
 
 
 @pytest.fixture
-def truth(up: Running) -> Truth:
-    return Truth(up.url)
+def truth(served: Served) -> Truth:
+    return Truth(served.url)
 
 
 def start(visit: Visit, query: str = GO) -> Page:
@@ -60,15 +66,14 @@ def test_a_changed_input_greys_the_verdict_at_once(disturbed: Visit, truth: Trut
     assert faults_in(settled(page), truth) == []
 
 
-def test_no_verdict_outlives_the_service(disturbed: Visit, up: Running, truth: Truth) -> None:
+def test_no_verdict_outlives_the_service(disturbed: Visit, served: Served, truth: Truth) -> None:
     page = start(disturbed)
-    for process in up.processes("serve"):
-        process.kill()
+    served.kill()
     edit(page, omega_t_deg_s="4")
     expect(page.locator("#verdict .problem")).to_contain_text("does not answer")
     assert seen(page)["word"] is None
     assert seen(page)["region"] is None
-    up.until(lambda: up.get("/readyz") is not None, "ready")
+    served.start()
     page.locator("#verdict >> text=Try again").click()
     expect(page.locator(SHOWN)).to_have_text("NO GO")
     assert faults_in(settled(page), truth) == []
@@ -125,7 +130,9 @@ def test_what_is_invalid_or_cleared_has_no_verdict(disturbed: Visit, field: str,
     assert found["problem"], "the page says why"
 
 
-@pytest.mark.parametrize("query", ["omega_t_deg_s=abc", "omega_t_deg_s=0x3", "question=fly", "horizon_s="])
+@pytest.mark.parametrize(
+    "query", ["omega_t_deg_s=abc", "omega_t_deg_s=0x3", "question=fly", "mean_motion_rad_s="]
+)
 def test_an_address_that_cannot_be_read_has_no_verdict(disturbed: Visit, query: str) -> None:
     page = disturbed.go(f"/dashboard?x_m=-60&y_m=80&{query}")
     expect(page.locator("#verdict .problem")).to_contain_text("required")
@@ -229,26 +236,3 @@ def test_nothing_is_flown_from_outside_the_corridor(disturbed: Visit) -> None:
     )
     expect(page.locator("#verdict .why")).to_contain_text("at least 46.18 m")
     expect(page.locator("#play")).to_be_hidden()
-
-
-def test_stored_sets_are_shown_for_their_own_operating_point_alone(disturbed: Visit, up: Running) -> None:
-    job = up.submit(
-        {
-            "omega_t_deg_s": 2,
-            "a_max_m_s2": 0.1,
-            "grid": {"nx": 21, "ny": 21},
-            "engines": ["analytical", "exact"],
-        }
-    )
-    up.outcome(job)
-    page = start(disturbed)
-    page.locator("summary", has_text="Stored").click()
-    page.select_option("#stored", job)
-    sets = page.locator("#map .legendtext", has_text="stored")
-    expect(sets).to_have_count(1)
-    assert page.input_value("#omega_t_deg_s") == "2"
-    edit(page, omega_t_deg_s="4")
-    expect(sets).to_have_count(0)
-    expect(page.locator("#stored-note")).to_contain_text("Not shown: these sets are about 2 deg/s")
-    edit(page, omega_t_deg_s="2")
-    expect(sets).to_have_count(1)
