@@ -5,7 +5,7 @@ import { test } from "node:test";
 
 import { arc, closed, corridor, turned } from "../../service/safestart_service/static/logic/geometry.js";
 import { agreement, wilson } from "../../service/safestart_service/static/logic/statistics.js";
-import { csv, duration, figure, moment, sentence } from "../../service/safestart_service/static/logic/words.js";
+import { csv, duration, figure, lines, moment, sentence } from "../../service/safestart_service/static/logic/words.js";
 
 const SHAPE = { c_x: 1.5, x0_m: 2.5, r_h_m: 0.5 };
 const near = (one, two) => assert.ok(Math.abs(one - two) < 1e-9, `${one} is not ${two}`);
@@ -16,6 +16,12 @@ test("figures for people", () => {
   assert.equal(moment("2026-01-02T03:04:05.678+00:00"), "2026-01-02 03:04:05 UTC");
   assert.equal(moment(null), "–");
   assert.deepEqual(["", "it stays", "It is so."].map(sentence), ["", "It stays.", "It is so."]);
+});
+
+test("a long title is broken at its dots", () => {
+  assert.equal(lines("Map: stay · 3 deg/s · 0.1 m/s²", 100), "Map: stay · 3 deg/s · 0.1 m/s²");
+  assert.equal(lines("Map: stay · 3 deg/s · 0.1 m/s²", 20), "Map: stay · 3 deg/s<br>0.1 m/s²");
+  assert.equal(lines("much longer than that", 5), "much longer than that");
 });
 
 test("CSV keeps commas, quotes and line ends in their cells", () => {

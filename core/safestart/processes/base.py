@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from safestart.artifact import Artifact as Artifact
 from safestart.processes.sharding import Sharding, load
+from safestart.processes.views import Engine, View
 from safestart.progress import Context
 from safestart.validation import validation_error
 
@@ -55,6 +56,7 @@ class ProcessSpec:
     max(1, |value|); on the same ones it is the same bit for bit.
     ``instant`` names a function (inputs) -> document that the service answers with at submission.
     ``tables`` are those of the outputs that are no lists of objects; these are tables by themselves.
+    ``views`` say how a page shows the outputs, the most important first; ``engines`` name what stands in them by name.
     """
 
     id: str
@@ -70,6 +72,8 @@ class ProcessSpec:
     replay_tolerance: float = 1e-9
     keywords: tuple[str, ...] = ()
     tables: tuple[Table, ...] = ()
+    views: tuple[View, ...] = ()
+    engines: tuple[Engine, ...] = ()
     example: dict[str, Any] = field(default_factory=dict)
 
     def parse(self, inputs: Any) -> WireModel:

@@ -14,29 +14,13 @@ from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
 from safestart.processes.base import Artifact
+from safestart.processes.benchmark.spec import ENGINES
 from safestart.scenario import CorridorShape
 
 mpl.use("Agg")
 
-PALETTE = {
-    "analytical": "#009E73",
-    "exact": "#000000",
-    "backward": "#0072B2",
-    "forward": "#56B4E9",
-    "hamilton_jacobi": "#D55E00",
-    "monte_carlo": "#CC79A7",
-}
-"""Okabe-Ito colours, one per engine, the same in every picture."""
-
-LABELS = {
-    "analytical": "certificate (closed form)",
-    "exact": "exact",
-    "backward": "backward (box input)",
-    "forward": "forward (outer)",
-    "hamilton_jacobi": "Hamilton-Jacobi",
-    "monte_carlo": "Monte Carlo (flown)",
-}
-
+PALETTE = {engine.name: engine.colour for engine in ENGINES}
+LABELS = {engine.name: engine.title for engine in ENGINES}
 
 NPZ = "application/x-npz"
 

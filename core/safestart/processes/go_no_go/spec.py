@@ -9,6 +9,7 @@ from pydantic import Field
 from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.go_no_go.asked import Asked, Kind, Method
 from safestart.processes.go_no_go.widths import Member
+from safestart.processes.views import Column, Findings
 from safestart.processes.wire import ScenarioInput
 from safestart.scenario import MAX_RANGE, Rest
 
@@ -89,6 +90,20 @@ SPEC = ProcessSpec(
             (
                 *("verdict", "margin_m", "face_margins_m", "range_margin_m", "binding", "violated_faces"),
                 *("reason", "end_s"),
+            ),
+        ),
+    ),
+    views=(
+        Findings(
+            "Verdicts",
+            "states",
+            word="verdict",
+            columns=(
+                Column("margin [m]", "margin_m"),
+                Column("why", "reason"),
+                Column("binding", "binding"),
+                Column("faces violated at the start", "violated_faces"),
+                Column("at rest after [s]", "end_s"),
             ),
         ),
     ),

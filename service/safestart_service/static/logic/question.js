@@ -129,15 +129,15 @@ export function flownWords(verdict, values) {
  * The flight in words, and whether there is one to look at: from a start outside the corridor nothing is flown, as all
  * that could be said of such a flight is where it began.
  */
-export function flightWords(flight, values) {
-  const [first] = flight.distance_m, outside = first.reduce((least, distance, k) => (distance < first[least] ? k : least), 0);
+export function flightWords(flown, values) {
+  const [first] = flown.distance_m, outside = first.reduce((least, distance, k) => (distance < first[least] ? k : least), 0);
   if (first[outside] < 0) {
-    return { flies: false, text: `Nothing is flown: the start lies outside the corridor, ${figure(-first[outside])} m beyond ${flight.faces[outside]}.` };
+    return { flies: false, text: `Nothing is flown: the start lies outside the corridor, ${figure(-first[outside])} m beyond ${flown.faces[outside]}.` };
   }
-  const nearest = flight.closest_m < 0 ? `${figure(-flight.closest_m)} m beyond ${flight.closest_face}` : `${figure(flight.closest_m)} m from ${flight.closest_face}`;
+  const nearest = flown.closest_m < 0 ? `${figure(-flown.closest_m)} m beyond ${flown.closest_face}` : `${figure(flown.closest_m)} m from ${flown.closest_face}`;
   return {
     flies: true,
-    text: `${flownWords(flight.verdict, values)}. At worst ${nearest}, at ${figure(flight.closest_s)} s; delta-v ${figure(flight.delta_v_m_s, 3)} m/s.`,
+    text: `${flownWords(flown.verdict, values)}. At worst ${nearest}, at ${figure(flown.closest_s)} s; delta-v ${figure(flown.delta_v_m_s, 3)} m/s.`,
   };
 }
 

@@ -39,6 +39,14 @@ class Panel {
     return true;
   }
 
+  /** Ask the same again, and show the answer until the next one is there: for what changes with time. */
+  refresh() {
+    if (this.state !== "there") return;
+    this.#turn?.abort();
+    this.#turn = new AbortController();
+    this.#fetch(this.#turn);
+  }
+
   /** Ask the same again, where it failed. */
   retry() {
     if (this.state !== "failed") return;
@@ -125,4 +133,15 @@ export class Store {
       panel.hasten();
     }
   }
+}
+
+/** `work` with arguments, and `use` of its answer, unless a newer one has been used already. */
+export function newest(work, use) {
+  let asked = 0, used = 0;
+  return async (...given) => {
+    const mine = ++asked, answer = await work(...given);
+    if (mine < used) return;
+    used = mine;
+    use(answer);
+  };
 }

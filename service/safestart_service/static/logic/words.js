@@ -22,6 +22,17 @@ export const moment = (text) => (text ? `${new Date(text).toISOString().slice(0,
 /** A text as a sentence: a capital first, one full stop last. */
 export const sentence = (text) => (text ? `${text[0].toUpperCase()}${text.slice(1)}${/[.!?]$/.test(text) ? "" : "."}` : "");
 
+/** A text whose parts are set apart by dots, in lines (<br>) of at most so many letters where its parts allow that. */
+export function lines(text, letters) {
+  const found = [];
+  for (const part of text.split(" · ")) {
+    const last = found.at(-1);
+    if (last !== undefined && last.length + part.length + 3 <= letters) found[found.length - 1] = `${last} · ${part}`;
+    else found.push(part);
+  }
+  return found.join("<br>");
+}
+
 /** Rows of cells as CSV (RFC 4180 with plain line ends). */
 export const csv = (rows) => `${rows.map((row) => row.map((cell) => {
   const text = cell === null || cell === undefined ? "" : String(cell);

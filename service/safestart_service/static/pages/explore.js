@@ -122,12 +122,13 @@ function showMapState() {
 function showVerdict(panel) {
   const place = $("verdict");
   place.dataset.digest = panel.state === "there" ? panel.digest : "";
+  showFlight(flown);
   if (panel.state === "failed") return fail(place, panel.error, () => store.hasten());
   const shown = panel.answer ?? panel.old;
   if (shown) return place.replaceChildren(...verdictCards(shown, panel.answer === null));
-  const { wrong, started: typed } = read(store.inputs), told = Object.entries(wrong);
+  const { wrong, started: begins } = read(store.inputs), told = Object.entries(wrong);
   if (panel.state === "asking") return place.replaceChildren(el("p", { class: "empty", role: "status" }, "Checking …"));
-  if (told.length && typed) {
+  if (told.length && begins) {
     return place.replaceChildren(el("div", { class: "problem", role: "alert" }, el("h2", {}, "Not checked"),
       ...told.map(([name, text]) => el("p", {}, `${FIELDS[name].title}: ${text}.`))));
   }
@@ -137,13 +138,15 @@ function showVerdict(panel) {
 function showFlight(panel) {
   $("flight").dataset.digest = panel.state === "there" ? panel.digest : "";
   $("flight-state").replaceChildren();
-  if (panel.state === "there") {
+  if (verdict.state === "failed") flight.clear("No flight is shown where there is no verdict.");
+  else if (panel.state === "there") {
+    if (flight.data === panel.answer) return;
     const { flies, text } = flightWords(panel.answer, given(store.inputs));
     if (flies) flight.load(panel.answer, text);
     else flight.clear(text);
   } else {
     flight.clear(panel.state === "asking" ? "Computing the flight …" : "");
-    if (panel.state === "failed" && verdict.state !== "failed") fail($("flight-state"), panel.error, () => store.hasten());
+    if (panel.state === "failed") fail($("flight-state"), panel.error, () => store.hasten());
   }
   redraw();
 }
@@ -162,14 +165,14 @@ function showPointed({ state, answer: found, question }) {
 // ---- the fields
 
 
-/** Change inputs; `typed` is the field whose text the user is writing, which is left as it is. */
-function change(inputs, typed = null) {
+/** Change inputs; `writing` is the field whose text the user is writing, which is left as it is. */
+function change(inputs, writing = null) {
   begun = performance.now();
   store.set(inputs);
   const { values, wrong } = read(store.inputs);
   for (const name of Object.keys(FIELDS)) {
     const field = $(name), text = wrong[name] && field.type === "number" ? "" : store.inputs[name];
-    if (name !== typed && field.value !== text) field.value = text;
+    if (name !== writing && field.value !== text) field.value = text;
     if (wrong[name]) field.setAttribute("aria-invalid", "true");
     else field.removeAttribute("aria-invalid");
     const range = document.querySelector(`input[data-for="${name}"]`);

@@ -1,15 +1,21 @@
 // One job: live while it waits or runs, then its results. What is shown survives a reload: it is all on the server.
 
-import { Problem, call, follow, get, post, remove, root } from "../parts/api.js";
+import { newest } from "../logic/store.js";
 import { duration, moment } from "../logic/words.js";
+import { Problem, call, follow, get, post, remove, root } from "../parts/api.js";
 import { $, definition, el, fail, loading, status } from "../parts/page.js";
-import { results, sweep } from "../parts/results.js";
+import { description } from "../parts/process.js";
+import { known, results, verdictBadge } from "../parts/results.js";
+import { shown } from "../parts/views.js";
 
 const id = $("job").dataset.job;
 const log = el("div", { class: "log", role: "log", "aria-label": "Log", tabindex: "0" });
 const bar = el("progress", { max: 100, value: 0, "aria-label": "progress" });
 const percent = el("span", { class: "percent" }), left = el("span", {}), message = el("p", { class: "note" });
 const connection = el("p", { class: "note", role: "status" });
+let job = null, verdict = null;
+
+const isActive = () => ["accepted", "running"].includes(job.status);
 
 function tell(at, text) {
   const low = log.scrollTop + log.clientHeight >= log.scrollHeight - 4;
@@ -17,11 +23,15 @@ function tell(at, text) {
   if (low) log.scrollTop = log.scrollHeight;
 }
 
-function frame(job) {
-  $("title").replaceChildren(`${job.processID} `, status(job));
+function title() {
+  $("title").replaceChildren(...[`${job.processID} `, verdict, status(job)].filter(Boolean));
   document.title = `${job.processID} ${job.status} · safestart`;
+}
+
+function frame() {
+  title();
   $("inputs").textContent = JSON.stringify(job.inputs, null, 1);
-  const active = ["accepted", "running"].includes(job.status);
+  const active = isActive();
   $("tools").replaceChildren(...[
     active && !job.dismissal_requested ? el("button", { type: "button", class: "danger", onclick: cancel }, "Cancel") : null,
     active ? null : el("button", { type: "button", onclick: again }, job.status === "successful" ? "Run again" : "Try again"),
@@ -30,68 +40,72 @@ function frame(job) {
   const facts = [["Submitted", moment(job.created)], ["Started", moment(job.started)], ["Finished", moment(job.finished)], ["Attempts", String(job.attempts)]];
   if (job.position) facts.push(["Place in the queue", String(job.position)]);
   if (job.starts_in_s) facts.push(["Starts in about", duration(job.starts_in_s)]);
-  const parts = [el("dl", {}, ...facts.map(([name, value]) => definition(name, value)))];
-  if (job.reason) parts.unshift(el("p", { class: "note" }, `Waits: ${job.reason}.`));
-  if (job.problem) parts.unshift(el("section", { class: "problem", role: "alert" }, el("h2", {}, job.problem.title ?? "Failed"), el("p", {}, job.problem.detail ?? "")));
-  if (active) parts.unshift(el("div", { class: "line big" }, bar, percent, left), message, connection);
-  if (log.childElementCount) parts.push(el("section", { class: "on-screen" }, el("h2", {}, "Log"), log));
+  const parts = [];
+  if (job.problem) parts.push(el("section", { class: "problem", role: "alert" }, el("h2", {}, job.problem.title ?? "Failed"), el("p", {}, job.problem.detail ?? "")));
+  if (active) parts.push(el("div", { class: "line big" }, bar, percent, left), message, connection);
+  if (job.reason) parts.push(el("p", { class: "note" }, `Waits: ${job.reason}.`));
   $("state").replaceChildren(...parts);
-  at(job.progress, job.message, job.eta_s);
+  $("course").replaceChildren(el("h2", {}, "Course of the job"), el("dl", {}, ...facts.map(([name, value]) => definition(name, value))), ...(log.childElementCount ? [log] : []));
+  progress(job.progress, job.message, job.eta_s);
 }
 
-function at(progress, text, eta) {
-  bar.value = progress;
-  percent.textContent = `${Math.floor(progress)} %`;
+function progress(part, text, eta) {
+  bar.value = part;
+  percent.textContent = `${Math.floor(part)} %`;
   left.textContent = eta === null || eta === undefined ? "" : `about ${duration(eta)} left`;
   message.textContent = text ?? "";
 }
 
-async function show() {
-  const job = await get(`/jobs/${id}`);
-  frame(job);
-  return job;
-}
+/** The job as it is now; an answer that was overtaken by a newer one is dropped. */
+const show = newest(() => get(`/jobs/${id}`), (found) => { job = found; frame(); });
 
 async function live() {
   loading($("state"));
+  const over = new AbortController();
   try {
-    let job = await show();
-    const waiting = setInterval(async () => {
-      try {
-        if (job.status === "accepted") job = await show();
-      } catch {
-        // The stream below tells of a service that is away.
-      }
+    await show();
+    const waiting = setInterval(() => {
+      // The stream below tells of a service that is away.
+      if (job.status === "accepted") show().catch(() => null);
     }, 2000);
-    const cut = job.links.some((link) => link.rel === "partial");
-    const part = cut ? setInterval(partial, 3000) : 0;
-    await follow(id, async (kind, data) => {
-      if (kind === "progress") {
-        at(data.progress, data.message, data.eta_s);
-        tell(data.at, `${Math.floor(data.progress)} %  ${data.message}`);
-      } else if (kind === "log") tell(data.at, data.message);
-      else if (kind === "status") {
-        tell(data.at, [data.status, data.message].filter(Boolean).join(": "));
-        job = await show();
-      }
-    }, (error) => { connection.textContent = error ? "The connection broke; trying again." : ""; }, new AbortController().signal);
-    clearInterval(waiting);
-    clearInterval(part);
-    job = await show();
-    if (job.status === "successful") await results($("results"), job, call);
+    const part = job.links.some((link) => link.rel === "partial") ? setInterval(() => partial(over.signal), 3000) : 0;
+    await follow(id, heard, (error) => { connection.textContent = error ? "The connection broke; trying again." : ""; }, over.signal).finally(() => {
+      clearInterval(waiting);
+      clearInterval(part);
+      over.abort();
+    });
+    await show();
+    if (job.status === "successful") await finished();
   } catch (error) {
     fail($("state"), error, error instanceof Problem && error.status === 404 ? null : live);
   }
 }
 
-/** What the finished shards say already, for a process that is cut into shards. */
-async function partial() {
+async function heard(kind, data) {
+  if (kind === "progress") {
+    progress(data.progress, data.message, data.eta_s);
+    tell(data.at, `${Math.floor(data.progress)} %  ${data.message}`);
+  } else if (kind === "log") tell(data.at, data.message);
+  else if (kind === "status") {
+    tell(data.at, [data.status, data.message].filter(Boolean).join(": "));
+    await show();
+  }
+}
+
+async function finished() {
+  verdict = verdictBadge(await results($("results"), job, await description(job.processID), call));
+  title();
+}
+
+/** What the finished parts say already, for a process that is cut into parts; nothing once the job is over. */
+async function partial(signal) {
   try {
-    const { shards, outputs, processID, status: now } = await get(`/jobs/${id}/partial`);
-    if (now !== "running" || !outputs) return;
-    $("results").replaceChildren(el("h2", {}, `So far: ${shards.done} of ${shards.total} shards`), ...(processID === "sweep" ? sweep(outputs) : []));
+    const { shards, outputs } = await get(`/jobs/${id}/partial`, { signal });
+    const spec = await description(job.processID);
+    if (signal.aborted || !outputs) return;
+    $("results").replaceChildren(el("h2", {}, `So far: ${shards.done} of ${shards.total} parts`), ...shown(known(spec, outputs, job.inputs)).parts);
   } catch {
-    // Not cut into shards, or nothing yet.
+    // Nothing yet, or the service is away, of which the stream tells.
   }
 }
 
@@ -104,11 +118,11 @@ async function cancel() {
   }
 }
 
-async function again() {
+async function again({ target }) {
+  target.disabled = true;
   try {
-    const { processID, inputs } = await get(`/jobs/${id}`);
-    const job = await post(`/processes/${processID}/execution`, { inputs }, { headers: { Prefer: "respond-async" } });
-    location.assign(`${root}/dashboard/jobs/${job.jobID}`);
+    const next = await post(`/processes/${job.processID}/execution`, { inputs: job.inputs }, { headers: { Prefer: "respond-async" } });
+    location.assign(`${root}/dashboard/jobs/${next.jobID}`);
   } catch (error) {
     fail($("tools"), error, () => location.reload());
   }

@@ -1,41 +1,59 @@
 // Jobs: newest first, kept up to date while something waits or runs.
 
-import { get, remove, root } from "../parts/api.js";
+import { Store } from "../logic/store.js";
 import { duration, moment } from "../logic/words.js";
+import { get, remove, root } from "../parts/api.js";
 import { $, el, fail, loading, status } from "../parts/page.js";
 
 const asked = new URLSearchParams(location.search), chosen = new Set();
-let pages = 1, timer = 0;
+const comparable = new Set();
+let timer = 0;
 
 async function filters() {
   const { processes } = await get("/processes");
   $("process").append(...processes.map((one) => el("option", { value: one.id }, one.title)));
+  for (const one of processes) if (one["safestart:view_kinds"].includes("comparison")) comparable.add(one.id);
   $("process").value = asked.get("process") ?? "";
   $("status").value = asked.get("status") ?? "";
 }
 
-async function show() {
-  clearTimeout(timer);
-  try {
+const store = new Store({ process: "", status: "", pages: 1 });
+const list = store.panel({
+  poses: (inputs) => inputs,
+  asks: async ({ process, status: state, pages }, signal) => {
     const found = new URLSearchParams({ limit: 25 });
-    if ($("process").value) found.append("processID", $("process").value);
-    if ($("status").value) found.append("status", $("status").value);
+    if (process) found.append("processID", process);
+    if (state) found.append("status", state);
     const jobs = [];
     let next = `/jobs?${found}`;
     for (let k = 0; k < pages && next; k++) {
-      const page = await get(next);
+      const page = await get(next, { signal });
       jobs.push(...page.jobs);
       next = page.links.find((link) => link.rel === "next")?.href ?? null;
     }
-    $("older").hidden = !next;
-    $("list").replaceChildren(jobs.length ? el("ul", { class: "jobs" }, ...jobs.map(row)) : el("p", { class: "empty" },
-      "No jobs here yet. ", el("a", { href: `${root}/dashboard/submit` }, "Submit one"), "."));
-    const busy = jobs.some((job) => ["accepted", "running"].includes(job.status));
-    timer = setTimeout(show, busy ? 1500 : 8000);
-  } catch (error) {
-    fail($("list"), error, show);
-    if (error.status === 0) timer = setTimeout(show, 3000);
+    return { jobs, more: next !== null };
+  },
+  shows: show,
+});
+
+function show({ state, answer, old, error }) {
+  clearTimeout(timer);
+  if (state === "failed") {
+    fail($("list"), error, () => store.hasten());
+    if (error.status === 0) timer = setTimeout(() => store.hasten(), 3000);
+    return;
   }
+  $("list").classList.toggle("old", old !== null);
+  if (state !== "there") {
+    if (old === null) loading($("list"));
+    return;
+  }
+  const { jobs, more } = answer;
+  $("older").hidden = !more;
+  $("list").replaceChildren(jobs.length ? el("ul", { class: "jobs" }, ...jobs.map(row)) : el("p", { class: "empty" },
+    "No jobs here yet. ", el("a", { href: `${root}/dashboard/submit` }, "Submit one"), "."));
+  const busy = jobs.some((job) => ["accepted", "running"].includes(job.status));
+  timer = setTimeout(() => list.refresh(), busy ? 1500 : 8000);
 }
 
 function row(job) {
@@ -46,8 +64,8 @@ function row(job) {
     chosen[box.checked ? "add" : "delete"](job.jobID);
     $("compare").disabled = chosen.size < 2;
   });
-  const comparable = job.processID === "benchmark" && job.status === "successful";
-  const line = el("div", { class: "line" }, comparable ? box : null, name, el("code", {}, job.jobID.slice(0, 8)), status(job), el("time", {}, moment(job.created)));
+  const line = el("div", { class: "line" }, comparable.has(job.processID) && job.status === "successful" ? box : el("span", { class: "no-box" }),
+    name, el("code", {}, job.jobID.slice(0, 8)), status(job), el("time", {}, moment(job.created)));
   const below = [];
   if (job.status === "running") {
     below.push(el("div", { class: "line" }, el("progress", { max: 100, value: job.progress, "aria-label": "progress" }),
@@ -64,26 +82,25 @@ function row(job) {
 async function cancel(job) {
   try {
     await remove(`/jobs/${job}`);
+    list.refresh();
   } catch (error) {
-    fail($("list"), error, show);
-    return;
+    fail($("list"), error, () => list.refresh());
   }
-  show();
 }
 
-for (const id of ["process", "status"]) {
-  $(id).addEventListener("change", () => {
-    pages = 1;
-    history.replaceState(null, "", `?${new URLSearchParams({ process: $("process").value, status: $("status").value })}`);
-    show();
-  });
+function filter() {
+  const now = { process: $("process").value, status: $("status").value };
+  history.replaceState(null, "", `?${new URLSearchParams(now)}`);
+  store.set({ ...now, pages: 1 });
 }
-$("older").addEventListener("click", () => { pages += 1; show(); });
+
+for (const id of ["process", "status"]) $(id).addEventListener("change", filter);
+$("older").addEventListener("click", () => store.set({ pages: store.inputs.pages + 1 }));
 $("compare").addEventListener("click", () => location.assign(`${root}/dashboard/compare?jobs=${[...chosen].join(",")}`));
 loading($("list"));
 try {
   await filters();
-  await show();
+  store.set({ process: $("process").value, status: $("status").value });
 } catch (error) {
   fail($("list"), error, () => location.reload());
 }

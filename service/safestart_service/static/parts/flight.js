@@ -1,7 +1,7 @@
 // One flight: its curves, its clock, and what the map shows of it at the clock's time.
 
 import { figure } from "../logic/words.js";
-import { COLOURS, draw, theme } from "./chart.js";
+import { draw, theme } from "./chart.js";
 import { $ } from "./page.js";
 
 const FACES = ["#0072B2", "#D55E00", "#CC79A7", "#E69F00", "#56B4E9"];
@@ -45,17 +45,17 @@ export class Flight {
   }
 
   traces(frame, start) {
-    const { ink } = theme();
+    const { ink, certified, lost } = theme();
     if (!this.data) {
       return start ? [{ name: "start", x: [start[0]], y: [start[1]], mode: "markers", marker: { size: 11, color: ink, symbol: "x" }, hoverinfo: "name", showlegend: false }] : [];
     }
     const all = frame === "lvlh" ? this.data.lvlh_m : this.data.body_m;
     const path = all.slice(0, this.step + 1), now = path[path.length - 1];
-    const lost = this.data.distance_m[this.step].some((distance) => distance < 0);
+    const left = this.data.distance_m[this.step].some((distance) => distance < 0);
     return [
       { name: "flight", x: path.map((p) => p[0]), y: path.map((p) => p[1]), mode: "lines", line: { color: ink, width: 2.5 }, hoverinfo: "skip" },
       { name: "start", x: [all[0][0]], y: [all[0][1]], mode: "markers", marker: { size: 11, color: ink, symbol: "x" }, hoverinfo: "name", showlegend: false },
-      { name: "chaser", x: [now[0]], y: [now[1]], mode: "markers", marker: { size: 13, color: lost ? COLOURS.hamilton_jacobi : COLOURS.analytical, line: { color: ink, width: 2 } }, hoverinfo: "name", showlegend: false },
+      { name: "chaser", x: [now[0]], y: [now[1]], mode: "markers", marker: { size: 13, color: left ? lost : certified, line: { color: ink, width: 2 } }, hoverinfo: "name", showlegend: false },
     ];
   }
 

@@ -1,29 +1,29 @@
 // Explore's map: the corridor with the certified and the exact region, stored sets, and the flight in either frame.
 
 import { arc, closed, corridor, turned } from "../logic/geometry.js";
-import { COLOURS, draw, theme } from "./chart.js";
+import { draw, theme } from "./chart.js";
 
 const FILL = "rgba(128,128,128,0.09)";
 
 /** The corridor at rest with everything known of the starts in it. `sets` are stored ones: { title, colour, x, y, mask }. */
 function body({ values, certified, region, sets }) {
-  const { ink, soft } = theme();
+  const { ink, soft, certified: green, exact: blue, limit } = theme();
   const shape = values, traces = [];
   const line = (name, points, colour, more = {}) => traces.push({
     name, ...points, mode: "lines", line: { color: colour, width: 2, dash: more.dash }, hoverinfo: "skip", ...more,
   });
   line("corridor", corridor(shape, values.y_max_m), soft, { fill: "toself", fillcolor: FILL });
   if (region?.inner_polygon_m.length) {
-    line("exact: proved GO", closed(region.inner_polygon_m), COLOURS.exact, { fill: "toself", fillcolor: "rgba(59,111,212,0.16)" });
+    line("exact: proved GO", closed(region.inner_polygon_m), blue, { fill: "toself", fillcolor: "rgba(59,111,212,0.16)" });
   }
-  if (region?.outer_polygon_m.length) line("outside: proved NO_GO", closed(region.outer_polygon_m), COLOURS.exact, { dash: "dot" });
+  if (region?.outer_polygon_m.length) line("outside: proved NO_GO", closed(region.outer_polygon_m), blue, { dash: "dot" });
   if (certified) {
     traces.push({
       name: "closed form: certified", type: "contour", x: certified.x_m, y: certified.y_m, z: certified.margin_m,
       contours: { type: "constraint", operation: "<", value: 0 }, fillcolor: "rgba(0,158,115,0.30)",
-      line: { color: COLOURS.analytical, width: 2 }, showscale: false, hoverinfo: "skip", showlegend: true,
+      line: { color: green, width: 2 }, showscale: false, hoverinfo: "skip", showlegend: true,
     });
-    if (certified.r_sync_m) line("synchronization radius", arc(certified.r_sync_m, shape, values.y_max_m), COLOURS.warn, { dash: "dash" });
+    if (certified.r_sync_m) line("synchronization radius", arc(certified.r_sync_m, shape, values.y_max_m), limit, { dash: "dash" });
   }
   for (const { title, colour, x, y, mask } of sets) {
     traces.push({
@@ -38,11 +38,11 @@ function body({ values, certified, region, sets }) {
 
 /** The corridor turned with the target, at the clock's time. */
 function orbit({ values, region }, turn) {
-  const { ink, soft } = theme();
+  const { ink, soft, exact: blue } = theme();
   const outline = corridor(values, values.y_max_m);
   const traces = [{ name: "corridor", ...turned(outline.x, outline.y, turn), mode: "lines", fill: "toself", fillcolor: FILL, line: { color: soft }, hoverinfo: "skip" }];
   if (region?.inner_polygon_m.length) {
-    traces.push({ name: "exact region at t = 0", ...closed(region.inner_polygon_m), mode: "lines", line: { color: COLOURS.exact, dash: "dot" }, hoverinfo: "skip" });
+    traces.push({ name: "exact region at t = 0", ...closed(region.inner_polygon_m), mode: "lines", line: { color: blue, dash: "dot" }, hoverinfo: "skip" });
   }
   traces.push(target(ink));
   return traces;
@@ -58,11 +58,11 @@ export function drawMap(place, { values, certified, region, sets, turn, overlay,
   const known = { values, certified, region, sets };
   const traces = [...(inOrbit ? orbit(known, turn) : body(known)), ...overlay(inOrbit ? "lvlh" : "body")];
   const high = inOrbit ? 2 * far : 1.09 * values.y_max_m, wide = 2 * (inOrbit ? far : reach);
-  // As tall as equal axes need, so that no room is left empty.
-  place.style.height = `${Math.min(0.8 * innerHeight, ((place.clientWidth - 70) * high) / wide + 190)}px`;
+  // As tall as equal axes need, beside title, ticks and legend.
+  const beside = 100 + 20 * Math.ceil(7 / Math.max(1, Math.floor((place.clientWidth - 64) / 190)));
+  place.style.height = `${Math.min(0.85 * innerHeight, ((place.clientWidth - 70) * high) / wide + beside)}px`;
   return draw(place, traces, {
-    uirevision: `${inOrbit}/${values.y_max_m}/${values.c_x}`, showlegend: true, margin: { l: 52, r: 12, t: 34, b: 44 },
-    title: { text: says, font: { size: 12 }, x: 0, xref: "paper", xanchor: "left", y: 1, yref: "container", yanchor: "top", pad: { t: 8 } },
+    uirevision: `${inOrbit}/${values.y_max_m}/${values.c_x}`, showlegend: true, title: { text: says },
     xaxis: { title: { text: inOrbit ? "x LVLH, radial [m]" : "x body [m]" }, range: inOrbit ? [-far, far] : [-reach, reach], constrain: "domain" },
     yaxis: { title: { text: inOrbit ? "y LVLH, along-track [m]" : "y body [m]" }, range: inOrbit ? [-far, far] : [-0.06 * values.y_max_m, 1.03 * values.y_max_m], scaleanchor: "x", constrain: "domain" },
   });

@@ -27,7 +27,7 @@ export function fail(place, error, again) {
   const box = el("div", { class: "problem", role: "alert" });
   box.append(el("h2", {}, known ? error.document.title ?? "Refused" : "This page has a fault"));
   box.append(el("p", {}, error.message));
-  if (known && error.document.required) {
+  if (known && error.document.required && !error.message.includes(error.document.required)) {
     box.append(el("p", { class: "note" }, `Required: ${error.document.required}. Received: ${error.document.received}.`));
   }
   if (known && error.status === 401) box.append(asks ? el("p", { class: "note" }, "The key is asked for elsewhere on this page.") : keyForm());
@@ -53,10 +53,26 @@ function keyForm() {
   return form;
 }
 
-export const status = (job) => {
-  const stopping = job.dismissal_requested && job.status === "running";
-  return el("span", { class: `status ${job.status}` }, stopping ? "stopping" : job.status);
-};
+/** A word in a frame, and what it is about: that a job ended says nothing of the verdict it came to. */
+export const badge = (about, word, kind) => el("span", { class: `badge ${about}` }, el("span", { class: "about" }, about), " ", el("b", { class: about === "job" ? `status ${kind}` : `outcome ${kind}` }, word));
+
+export const status = (job) => badge("job", job.dismissal_requested && job.status === "running" ? "stopping" : job.status, job.status);
+
+/** A link to a file of the API, fetched with the key. */
+export function download(call, href, name, text) {
+  const anchor = el("a", { href, download: name }, text);
+  anchor.addEventListener("click", async (event) => {
+    event.preventDefault();
+    try {
+      save(name, await (await call(href)).blob());
+    } catch (error) {
+      const place = el("div");
+      anchor.after(place);
+      fail(place, error);
+    }
+  });
+  return anchor;
+}
 
 export const definition = (name, value) => el("div", {}, el("dt", {}, name), el("dd", {}, value));
 
@@ -66,14 +82,16 @@ export function table(rows, columns, label) {
   const body = rows.map((row) => el("tr", {}, ...columns.map(([, of]) => {
     const value = of(row);
     if (value instanceof Node) return el("td", {}, value);
-    return el("td", { class: typeof value === "number" ? "number" : null }, figure(value));
+    const text = figure(value);
+    return el("td", { class: typeof value === "number" ? "number" : text.length > 40 ? "text" : null }, text);
   })));
   return el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": label },
     el("table", {}, el("thead", {}, head), el("tbody", {}, ...body)));
 }
 
-export function save(name, text, type = "text/csv") {
-  const url = URL.createObjectURL(new Blob([text], { type }));
+/** Give a text (CSV) or a blob to the user as a file. */
+export function save(name, content) {
+  const url = URL.createObjectURL(content instanceof Blob ? content : new Blob([content], { type: "text/csv" }));
   el("a", { href: url, download: name }).click();
   setTimeout(() => URL.revokeObjectURL(url), 1000);
 }

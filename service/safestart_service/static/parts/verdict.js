@@ -2,8 +2,8 @@
 
 import { proved, verdictWords } from "../logic/question.js";
 import { figure, sentence } from "../logic/words.js";
-import { root } from "./api.js";
-import { el } from "./page.js";
+import { call } from "./api.js";
+import { download, el } from "./page.js";
 
 const margin = (name, value) => el("li", { class: value > 0 ? "in" : "out" }, `${name} `, el("b", {}, `${figure(value, 3)} m`));
 
@@ -11,7 +11,7 @@ const margin = (name, value) => el("li", { class: value > 0 ? "in" : "out" }, `$
 export function verdict({ values, start, exact, quick }, old) {
   const word = exact.verdict.replace("_", " ");
   const proof = exact.proof_url && !old
-    ? el("p", {}, el("a", { href: root + exact.proof_url, download: "proof.json" }, "Download the proof"), " (checked by ", el("code", {}, "safestart verify"), ")") : null;
+    ? el("p", {}, download(call, exact.proof_url, "proof.json", "Download the proof"), " (checked by ", el("code", {}, "safestart verify"), ")") : null;
   return [
     el("div", { class: `answer ${old ? "old" : exact.verdict}` },
       el("h2", {}, el("span", { class: "word" }, word), el("span", { class: "how" }, old ? "old: the inputs have changed" : proved(exact.verdict, values))),
