@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from benchmarks.timing import median_seconds
-from safestart.certificates.question import Question
-from safestart.certificates.survey import build
-from safestart.scenario import Scenario
+from safestart.atlas.survey import build
+from safestart.exact.question import Question
+from safestart.model.scenario import Scenario
 
 RATE_DEG_S, THRUST = 3.0, 0.1
 STARTS, SINGLE = 100_000, 200

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from benchmarks.timing import median_seconds
-from safestart.certificates.closed_form import certify_grid
-from safestart.scenario import Grid, Scenario
+from safestart.closed_form.paper import certify_grid
+from safestart.model.scenario import Grid, Scenario
 
 
 def measure() -> dict[str, dict[str, float]]:

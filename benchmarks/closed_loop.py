@@ -13,14 +13,14 @@ import numpy as np
 
 from benchmarks.peers.osqp_loop import OsqpLoop
 from benchmarks.timing import side_by_side
+from safestart.control.forecast import flight_plan
+from safestart.control.gains import TUNED
 from safestart.engines.base import Problem
 from safestart.engines.monte_carlo import MonteCarlo
-from safestart.guidance.flight import fly
-from safestart.guidance.gains import TUNED
-from safestart.guidance.plan import flight_plan
-from safestart.guidance.trajectory import start_states
-from safestart.progress import Context
-from safestart.scenario import Rest, Scenario
+from safestart.model.scenario import Rest, Scenario
+from safestart.runtime.progress import Context
+from safestart.simulation.compiled_loop import fly
+from safestart.simulation.trajectory import start_states
 
 RATES_DEG_S = (1.0, 3.0)
 CELLS = 12

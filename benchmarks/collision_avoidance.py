@@ -15,13 +15,13 @@ from typing import Any
 import numpy as np
 
 from benchmarks.peers.hj_avoid_game import peer_tube
-from safestart.avoidance.certified import lower, unavoidable, upper
-from safestart.avoidance.game import Game, Players
-from safestart.avoidance.inputs import InputSet
-from safestart.avoidance.tube import solve_tube
-from safestart.avoidance.tube_settings import TubeSettings
+from safestart.collision_avoidance.bounds.certified import lower, unavoidable, upper
+from safestart.collision_avoidance.game import Game, Players
+from safestart.collision_avoidance.inputs import InputSet
+from safestart.collision_avoidance.tube import solve_tube
+from safestart.collision_avoidance.tube_settings import TubeSettings
 from safestart.levelset import optimal_inputs
-from safestart.scenario import Floats
+from safestart.model.scenario import Floats
 
 W = 0.0011
 BOX = (InputSet("box", (0.1, 0.1)), InputSet("box", (0.05, 0.05)))

@@ -12,19 +12,19 @@ import time
 
 import numpy as np
 
-from safestart.avoidance.adversary import ADVERSARIES, adversary
-from safestart.avoidance.encounter import Clock, fly
-from safestart.avoidance.feedback import Slot
-from safestart.avoidance.game import Game
-from safestart.avoidance.inputs import InputSet
-from safestart.avoidance.pilots import PILOTS, pilot
-from safestart.avoidance.sight import Sight
-from safestart.avoidance.starts import certified_unsafe, near_boundary
-from safestart.avoidance.supervisor import Guards, Supervisor
-from safestart.avoidance.tube import solve_tube
-from safestart.avoidance.tube_settings import TubeSettings
-from safestart.metrics import wilson
-from safestart.progress import Context
+from safestart.collision_avoidance.encounters.adversary import ADVERSARIES, adversary
+from safestart.collision_avoidance.encounters.encounter import Clock, fly
+from safestart.collision_avoidance.encounters.feedback import Slot
+from safestart.collision_avoidance.encounters.observation import Sight
+from safestart.collision_avoidance.encounters.pilots import PILOTS, pilot
+from safestart.collision_avoidance.encounters.starts import certified_unsafe, near_boundary
+from safestart.collision_avoidance.encounters.supervisor import Guards, Supervisor
+from safestart.collision_avoidance.game import Game
+from safestart.collision_avoidance.inputs import InputSet
+from safestart.collision_avoidance.tube import solve_tube
+from safestart.collision_avoidance.tube_settings import TubeSettings
+from safestart.model.metrics import wilson
+from safestart.runtime.progress import Context
 
 HORIZON_S, BAND_M, SEED = 60.0, 20.0, 0
 GAME = Game(0.0011, InputSet("box", (0.1, 0.1)), InputSet("box", (0.05, 0.05)), 100.0)

@@ -19,12 +19,12 @@ import numpy as np
 
 from benchmarks.peers.dense_lp import DenseLP
 from benchmarks.timing import once
-from safestart.certificates.closed_form import certify
-from safestart.certificates.exact import Answer, Verdict, decide
-from safestart.certificates.proof import check
-from safestart.certificates.prove import proof_of
-from safestart.certificates.question import Question
-from safestart.scenario import Floats, Scenario
+from safestart.closed_form.paper import certify
+from safestart.exact.decide import Answer, Verdict, decide
+from safestart.exact.prove import proof_of
+from safestart.exact.question import Question
+from safestart.model.scenario import Floats, Scenario
+from safestart.proofs.single import check
 
 THRUSTS, RATES, RANGES = (0.02, 0.05, 0.10), (1.0, 2.0, 3.0, 4.0, 5.0), (30.0, 50.0, 100.0, 150.0)
 NEAR_M = 0.05

@@ -17,16 +17,16 @@ from typing import Any
 import numpy as np
 
 from benchmarks.exact_answers import draw
-from safestart.certificates.answer import Verdict
-from safestart.certificates.checker import check
-from safestart.certificates.exact import decide
-from safestart.certificates.families.answer import ForAll, Witness
-from safestart.certificates.families.decide import decide_for_all
-from safestart.certificates.families.members import Family
-from safestart.certificates.families.prove import proof_for_all
-from safestart.certificates.question import Question
-from safestart.certificates.watch import Watch
-from safestart.scenario import Floats
+from safestart.exact.answer import Verdict
+from safestart.exact.decide import decide
+from safestart.exact.question import Question
+from safestart.exact.watch import Watch
+from safestart.families.answer import ForAll, Witness
+from safestart.families.decide import decide_for_all
+from safestart.families.members import Family
+from safestart.families.prove import proof_for_all
+from safestart.model.scenario import Floats
+from safestart.proofs.checker import check
 
 MEMBERS = 20
 

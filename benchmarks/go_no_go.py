@@ -69,9 +69,9 @@ def measure(seconds: float = 2.0, repeats: int = 5) -> dict[str, Any]:
 
 def _key(url: str) -> str:
     """Make a key that may read, in a database of its own."""
-    from safestart.access import Caller, Role
+    from safestart.runtime.access import Caller, Role
+    from safestart.store.access.keys import KeyRepository
     from safestart.store.database import Database
-    from safestart.store.keys import KeyRepository
 
     database = Database(url)
     database.migrate()

@@ -17,12 +17,12 @@ from hylaa.hybrid_automaton import HybridAutomaton
 from hylaa.settings import HylaaSettings
 from hylaa.stateset import StateSet
 
-from safestart.scenario import Floats
-from safestart.verification.guard import GAP_GUARD
-from safestart.verification.model import Mode, Motion, matrix
-from safestart.verification.question import Question
-from safestart.verification.reach import reach
-from safestart.verification.tube import Tube
+from safestart.model.scenario import Floats
+from safestart.passive_safety.model import Mode, Motion, matrix
+from safestart.passive_safety.question import Question
+from safestart.passive_safety.reach.reach_set import reach
+from safestart.passive_safety.reach.tube import Tube
+from safestart.passive_safety.switching_guard import GAP_GUARD
 
 ROWS = np.vstack([np.eye(4), -np.eye(4)])
 STEP, PERIOD = 1.0 / 80.0, 0.2

@@ -78,7 +78,7 @@ def _run() -> dict[str, dict[str, float]]:
     from safestart.engines.hj.peer import PeerSolver
     from safestart.engines.hj.settings import Settings
     from safestart.engines.hj.target import TargetValues
-    from safestart.scenario import Scenario, SetKind
+    from safestart.model.scenario import Scenario, SetKind
 
     bandwidth, peak = _limits()
     ratios: dict[str, float] = {}

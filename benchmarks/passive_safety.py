@@ -11,17 +11,17 @@ from concurrent.futures import ThreadPoolExecutor
 from statistics import median
 
 from benchmarks.timing import median_seconds, once
-from safestart.verification.audit import drift_excess, powered_excess
-from safestart.verification.cases import CASES, HORIZON
-from safestart.verification.critical import critical_abort
-from safestart.verification.gains import PUBLISHED_DESIGN
-from safestart.verification.guard import Guard
-from safestart.verification.model import PUBLISHED, Dynamics, System
-from safestart.verification.question import Question
-from safestart.verification.reach import Reach, reach
-from safestart.verification.rows import PAPER_JOB, competition_rows
-from safestart.verification.verify import verify
-from safestart.verification.warm import warm
+from safestart.passive_safety.cases import CASES, HORIZON
+from safestart.passive_safety.competition import PAPER_JOB, competition_rows
+from safestart.passive_safety.critical import critical_abort
+from safestart.passive_safety.flights.audit import drift_excess, powered_excess
+from safestart.passive_safety.gains import PUBLISHED_DESIGN
+from safestart.passive_safety.model import PUBLISHED, Dynamics, System
+from safestart.passive_safety.question import Question
+from safestart.passive_safety.reach.reach_set import Reach, reach
+from safestart.passive_safety.switching_guard import Guard
+from safestart.passive_safety.verify import verify
+from safestart.passive_safety.warm import warm
 
 RUNS = 15
 SYSTEMS = {

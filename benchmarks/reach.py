@@ -13,8 +13,8 @@ from safestart.engines.base import Engine, Problem
 from safestart.engines.exact import Exact
 from safestart.engines.forward import Forward
 from safestart.engines.hamilton_jacobi import HamiltonJacobi
-from safestart.progress import Context
-from safestart.scenario import Scenario, SetKind
+from safestart.model.scenario import Scenario, SetKind
+from safestart.runtime.progress import Context
 
 RATE_DEG_S, THRUST = 3.0, 0.1
 FAST_RUNS, PEER_RUNS = 21, 3

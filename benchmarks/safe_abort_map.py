@@ -13,7 +13,7 @@ from dask.distributed import Client, LocalCluster
 
 from safestart.processes.registry import process
 from safestart.processes.sharding import Part, Sharding
-from safestart.progress import Context
+from safestart.runtime.progress import Context
 
 WORKERS = 2
 

@@ -23,16 +23,16 @@ import numpy as np
 
 from benchmarks.peers.osqp_loop import OsqpLoop
 from benchmarks.timing import side_by_side
-from safestart.comparable import comparable
-from safestart.guidance.flight import fly
-from safestart.guidance.gains import TUNED
-from safestart.guidance.plan import flight_plan
-from safestart.guidance.trajectory import start_states
-from safestart.guidance.truth import CONTINUOUS, Truth
+from safestart.control.forecast import flight_plan
+from safestart.control.gains import TUNED
+from safestart.model.scenario import Rest, Scenario
 from safestart.processes.execute import execute
 from safestart.processes.registry import process
-from safestart.progress import Context
-from safestart.scenario import Rest, Scenario
+from safestart.records.comparable import comparable
+from safestart.runtime.progress import Context
+from safestart.simulation.compiled_loop import fly
+from safestart.simulation.trajectory import start_states
+from safestart.simulation.truth import CONTINUOUS, Truth
 from tests.waiting import until
 
 FILTER: dict[str, Any] = {"controllers": ["filter"], "certificates": ["closed_form"]}

@@ -19,13 +19,13 @@ import numpy as np
 
 from benchmarks.exact_answers import draw
 from benchmarks.peers.flown import fly
-from safestart.certificates.answer import Answer, Verdict
-from safestart.certificates.closed_form import certify
-from safestart.certificates.exact import decide
-from safestart.certificates.proof import check
-from safestart.certificates.prove import proof_of
-from safestart.certificates.question import Goal, Question
-from safestart.scenario import Floats
+from safestart.closed_form.paper import certify
+from safestart.exact.answer import Answer, Verdict
+from safestart.exact.decide import decide
+from safestart.exact.prove import proof_of
+from safestart.exact.question import Goal, Question
+from safestart.model.scenario import Floats
+from safestart.proofs.single import check
 
 STEPS, FLOWN = 100, 40
 GOALS = {"(0, r_h)": Goal(), "(0, 2 m)": Goal(hold=(0.0, 2.0))}

@@ -12,7 +12,7 @@ FILE = Path(__file__).resolve().parents[1] / "openapi" / "openapi.json"
 
 def render() -> str:
     """The description as stable text: sorted keys, one line per value."""
-    from safestart.settings import Settings
+    from safestart.runtime.settings import Settings
     from safestart_service.app import create_app
 
     with tempfile.TemporaryDirectory() as folder:

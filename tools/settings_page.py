@@ -6,7 +6,7 @@ import os
 import sys
 from pathlib import Path
 
-from safestart.settings import Settings
+from safestart.runtime.settings import Settings
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "settings.md"
 

@@ -12,10 +12,10 @@ import math
 import highspy
 import numpy as np
 
-from safestart.corridor import corridor_of
-from safestart.dynamics.body_frame import rotation
+from safestart.attitude.body_frame import rotation
+from safestart.constraints.corridor import corridor_of
 from safestart.dynamics.cwh import planar_input, planar_transition
-from safestart.scenario import Floats, Scenario
+from safestart.model.scenario import Floats, Scenario
 
 SIDES, CHECKS = 16, 4
 

@@ -7,9 +7,9 @@ import math
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from safestart.certificates.question import Question
-from safestart.dynamics.body_frame import rotation
-from safestart.scenario import Floats
+from safestart.attitude.body_frame import rotation
+from safestart.exact.question import Question
+from safestart.model.scenario import Floats
 
 
 def fly(question: Question, state: Floats, thrust: Floats) -> float:

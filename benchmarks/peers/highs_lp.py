@@ -12,11 +12,11 @@ from __future__ import annotations
 import highspy
 import numpy as np
 
-from safestart.corridor import corridor_of
-from safestart.dynamics.body_frame import rotation
+from safestart.attitude.body_frame import rotation
+from safestart.constraints.corridor import corridor_of
 from safestart.dynamics.cwh import planar_input, planar_transition
 from safestart.engines.base import Problem
-from safestart.scenario import Floats, Rest
+from safestart.model.scenario import Floats, Rest
 
 
 class BackwardLP:

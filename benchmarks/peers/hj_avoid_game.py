@@ -8,8 +8,8 @@ import hj_reachability as hj
 import jax.numpy as jnp
 import numpy as np
 
-from safestart.avoidance.game import Game
-from safestart.scenario import Floats
+from safestart.collision_avoidance.game import Game
+from safestart.model.scenario import Floats
 
 
 class AvoidGame(hj.ControlAndDisturbanceAffineDynamics):

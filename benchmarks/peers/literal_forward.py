@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from safestart.dynamics.body_frame import rotation
+from safestart.attitude.body_frame import rotation
 from safestart.dynamics.cwh import planar_input, planar_transition
 from safestart.engines.base import Problem
-from safestart.scenario import Bools, Floats, Rest
+from safestart.model.scenario import Bools, Floats, Rest
 
 DIRECTIONS = 48
 

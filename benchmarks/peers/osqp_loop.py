@@ -19,11 +19,11 @@ from numpy.typing import NDArray
 from scipy.optimize import linprog
 from scipy.sparse import csc_matrix
 
-from safestart.corridor import corridor_of
+from safestart.constraints.corridor import corridor_of
+from safestart.control.gains import Gains
+from safestart.control.regimes import control_law, nominal_command
 from safestart.dynamics.cwh import input_matrix, transition_matrix
-from safestart.guidance.gains import Gains
-from safestart.guidance.regimes import control_law, nominal_command
-from safestart.scenario import Scenario
+from safestart.model.scenario import Scenario
 
 Array = NDArray[np.float64]
 SUBSTEPS = 3

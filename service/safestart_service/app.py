@@ -13,10 +13,10 @@ from fastapi import FastAPI
 from fastapi.routing import APIRoute
 
 from safestart.errors import Unavailable
-from safestart.settings import Settings
-from safestart.settings import settings as process_settings
-from safestart_service import deprecation, openapi, problems
-from safestart_service.limits import Limits
+from safestart.runtime.settings import Settings
+from safestart.runtime.settings import settings as process_settings
+from safestart_service.documents import deprecation, openapi, problems
+from safestart_service.http.limits import Limits
 from safestart_service.metrics import MetricsMiddleware
 from safestart_service.routes import (
     admin,

@@ -13,10 +13,10 @@ from typing import Annotated, Any, cast
 import typer
 
 from safestart.errors import Away, InvalidInput, SafestartError, Unavailable
-from safestart.logs import configure
-from safestart.settings import Settings, settings
-from safestart_service.open_files import make_room
-from safestart_service.places import Places
+from safestart.runtime.logs import configure
+from safestart.runtime.settings import Settings, settings
+from safestart_service.http.open_files import make_room
+from safestart_service.http.places import Places
 
 REMEDY = (
     "whoever reaches it could use it, as no API keys are in force: make one with `safestart keys create --name NAME "
@@ -65,7 +65,7 @@ def _serve(overrides: dict[str, object]) -> None:
 
         from safestart.store.database import Database
         from safestart_service.app import create_app
-        from safestart_service.wire import Protocol
+        from safestart_service.http.wire import Protocol
 
         database = Database(chosen.url())
         configure(chosen.log_format)
@@ -116,8 +116,8 @@ def is_loopback(address: Any) -> bool:
 
 def require_keys(chosen: Settings) -> None:
     """Raise ``InvalidInput`` unless an API key is in force, ``Unavailable`` when the database does not say."""
+    from safestart.store.access.keys import KeyRepository
     from safestart.store.database import Database
-    from safestart.store.keys import KeyRepository
 
     database, host = Database(chosen.url()), chosen.host
     try:

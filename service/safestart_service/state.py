@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 from fastapi import FastAPI, Request
 
-from safestart.progress import Context
-from safestart.settings import Settings
-from safestart_service.access import Access
-from safestart_service.callers import Callers
-from safestart_service.following import Following
-from safestart_service.keyring import Keyring
+from safestart.runtime.progress import Context
+from safestart.runtime.settings import Settings
+from safestart_service.access.callers import Callers
+from safestart_service.access.gate import Access
+from safestart_service.access.keyring import Keyring
+from safestart_service.http.following import Following
 from safestart_service.metrics import Metrics
 
 if TYPE_CHECKING:
@@ -28,12 +28,12 @@ class Services:
     """
 
     def __init__(self, settings: Settings, database: Database | None = None) -> None:
-        from safestart.store.audit import AuditLog
+        from safestart.store.access.audit import AuditLog
+        from safestart.store.access.keys import KeyRepository
         from safestart.store.cache import Cache
         from safestart.store.database import Database
-        from safestart.store.jobs import JobRepository
-        from safestart.store.keys import KeyRepository
-        from safestart.store.results import ResultRepository
+        from safestart.store.jobs.repository import JobRepository
+        from safestart.store.jobs.results import ResultRepository
 
         self.settings = settings
         self.database = database or Database(settings.url())

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from owslib.ogcapi.processes import Processes
 
-from safestart.comparable import comparable
+from safestart.records.comparable import comparable
 from tests.acceptance.running import Running
 
 INPUTS = {

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from safestart.store.database import Database
-from safestart.store.jobs import JobRepository
+from safestart.store.jobs.repository import JobRepository
 from safestart.store.records import JobStatus
 from tests.acceptance.certificates import Authority
 from tests.acceptance.test_worker import CERTIFICATE, STEADY

@@ -13,7 +13,7 @@ import pytest
 from distributed import Scheduler
 
 from safestart.errors import InvalidInput, Unavailable
-from safestart_worker.opening import open_cluster
+from safestart_worker.cluster.opening import open_cluster
 from tests.acceptance.certificates import Authority
 
 TLS = "tls://127.0.0.1:{}"

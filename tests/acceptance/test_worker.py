@@ -14,13 +14,13 @@ import psutil
 import pytest
 from distributed.comm import CommClosedError, connect
 
-from safestart.comparable import comparable
 from safestart.errors import JobFailed
 from safestart.processes.execute import execute
 from safestart.processes.registry import process
+from safestart.records.comparable import comparable
+from safestart.runtime.warmup import PARTS
 from safestart.store.records import JobStatus
-from safestart.warmup import PARTS
-from safestart_worker.credentials import throwaway
+from safestart_worker.cluster.credentials import throwaway
 from tests.acceptance.worker_process import DASK_GIVES_UP_S, Farm, over
 from tests.waiting import PATIENCE_S, until
 

@@ -13,10 +13,10 @@ from typing import Any
 import psutil
 
 from safestart.store.database import Database
-from safestart.store.jobs import JobRepository
+from safestart.store.jobs.repository import JobRepository
+from safestart.store.jobs.results import ResultRepository
 from safestart.store.records import Job, JobStatus
-from safestart.store.results import ResultRepository
-from tests.contract.store_backends import pass_time
+from tests.contract.store.store_backends import pass_time
 from tests.waiting import PATIENCE_S, until
 
 # Longer than a worker on a loaded machine may go without renewing; where a lease has to end, Farm.lapse ends it.

@@ -10,11 +10,11 @@ import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Browser, Page, expect
 
-from safestart.access import LOCAL, Role
-from safestart.certificates.proof import check
+from safestart.proofs.single import check
+from safestart.runtime.access import LOCAL, Role
+from safestart.store.access.keys import KeyRepository
 from safestart.store.database import Database
-from safestart.store.jobs import JobRepository
-from safestart.store.keys import KeyRepository
+from safestart.store.jobs.repository import JobRepository
 from tests.acceptance.running import Running, serving
 from tests.browser.conftest import SHOTS, Visit
 from tests.waiting import until

@@ -10,7 +10,7 @@ from typing import Any
 from safestart.errors import LeaseLost, Unavailable
 from safestart.processes.execute import execute
 from safestart.store.database import Database
-from safestart.store.jobs import JobRepository
+from safestart.store.jobs.repository import JobRepository
 from safestart.store.records import Claim
 
 AWAY_S = 0.1

@@ -14,15 +14,15 @@ from typing import Any
 
 from sqlalchemy import func, select
 
-from safestart.comparable import comparable
 from safestart.errors import Unavailable
 from safestart.processes.execute import execute
+from safestart.records.comparable import comparable
 from safestart.store.database import Database
-from safestart.store.filters import JobFilter
-from safestart.store.jobs import JobRepository
+from safestart.store.jobs.filters import JobFilter
+from safestart.store.jobs.repository import JobRepository
+from safestart.store.jobs.results import ResultRepository
 from safestart.store.models import ResultRow
 from safestart.store.records import JobStatus
-from safestart.store.results import ResultRepository
 from tests.chaos import claimer
 from tests.waiting import PATIENCE_S, until
 

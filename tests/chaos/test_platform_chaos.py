@@ -18,9 +18,9 @@ import httpx
 import psutil
 import pytest
 
-from safestart.comparable import comparable
 from safestart.processes.execute import execute
-from tests.contract.store_backends import BACKENDS, POSTGRESQL, fresh_url
+from safestart.records.comparable import comparable
+from tests.contract.store.store_backends import BACKENDS, POSTGRESQL, fresh_url
 from tests.waiting import PATIENCE_S, free_port, until
 
 JOBS = 30

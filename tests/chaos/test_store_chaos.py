@@ -14,11 +14,11 @@ from pathlib import Path
 import pytest
 
 from safestart.errors import Unavailable
-from safestart.store.filters import JobFilter
+from safestart.store.jobs.filters import JobFilter
 from safestart.store.records import JobStatus
 from tests.chaos.herd import Herd
 from tests.chaos.server import Server
-from tests.contract.store_backends import BACKENDS, fresh_url
+from tests.contract.store.store_backends import BACKENDS, fresh_url
 from tests.waiting import PATIENCE_S, until
 
 JOBS, KILLS = 30, 10

@@ -8,15 +8,15 @@ from typing import Any
 
 import pytest
 
-from safestart.access import Role
+from safestart.runtime.access import Role
+from safestart.store.access.keys import KeyRepository
 from safestart.store.database import Database
-from safestart.store.jobs import JobRepository
-from safestart.store.keys import KeyRepository
-from safestart.store.results import ResultRepository
-from tests.contract.key_holders import BY
-from tests.contract.raw_http import Address, small_server
-from tests.contract.service_client import SMALL, jobs_of, service
-from tests.contract.store_backends import BACKENDS, fresh_url
+from safestart.store.jobs.repository import JobRepository
+from safestart.store.jobs.results import ResultRepository
+from tests.contract.access.key_holders import BY
+from tests.contract.api.service_client import SMALL, jobs_of, service
+from tests.contract.server.raw_http import Address, small_server
+from tests.contract.store.store_backends import BACKENDS, fresh_url
 
 
 @pytest.fixture(params=BACKENDS)

@@ -16,10 +16,10 @@ import pytest
 from fastapi import Request
 from starlette.requests import ClientDisconnect
 
-from safestart.progress import Context
-from safestart_service.computing import computed
+from safestart.runtime.progress import Context
+from safestart_service.http.computing import computed
 from tests.acceptance.running import serving
-from tests.contract.service_client import service
+from tests.contract.api.service_client import service
 from tests.waiting import PATIENCE_S, until
 
 REGION = {"omega_t_deg_s": 3, "a_max_m_s2": 0.1}

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from safestart.certificates.closed_form import certify
-from safestart.corridor import corridor_of
-from safestart.dynamics.body_frame import rotation
+from safestart.attitude.body_frame import rotation
+from safestart.closed_form.paper import certify
+from safestart.constraints.corridor import corridor_of
 from safestart.dynamics.cwh import planar_input, planar_transition
-from safestart.scenario import Floats, Scenario
+from safestart.model.scenario import Floats, Scenario
 
 SCENARIO = Scenario.of(2.0, 0.05)
 START = np.array([9.364, 81.044])

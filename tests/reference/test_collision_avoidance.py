@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from safestart.avoidance.certified import avoidable, upper
-from safestart.avoidance.feedback import EVASIVE, RECOVERY, Slot
-from safestart.avoidance.game import Game, Players
-from safestart.avoidance.inputs import InputSet
-from safestart.avoidance.tube import solve_tube
-from safestart.avoidance.tube_settings import TubeSettings
-from safestart.cli import avoidance
+from safestart.cli.reproduce import collision_avoidance as avoidance
+from safestart.collision_avoidance.bounds.certified import avoidable, upper
+from safestart.collision_avoidance.encounters.feedback import EVASIVE, RECOVERY, Slot
+from safestart.collision_avoidance.game import Game, Players
+from safestart.collision_avoidance.inputs import InputSet
+from safestart.collision_avoidance.tube import solve_tube
+from safestart.collision_avoidance.tube_settings import TubeSettings
 
 # Section IV-A: mean motion (rad/s), bounds of both players by axis (m/s^2).
 MOTION, THRUST, DISTURBANCE = 0.0011, 0.1, 0.05

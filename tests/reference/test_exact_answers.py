@@ -9,12 +9,12 @@ import pytest
 
 from benchmarks.exact_answers import certified, disagreements, one_sided, run
 from benchmarks.peers.dense_lp import DenseLP
-from safestart.certificates.closed_form import certify
-from safestart.certificates.exact import Verdict, decide
-from safestart.certificates.proof import check
-from safestart.certificates.prove import proof_of
-from safestart.certificates.question import Goal, Question
-from safestart.scenario import Scenario
+from safestart.closed_form.paper import certify
+from safestart.exact.decide import Verdict, decide
+from safestart.exact.prove import proof_of
+from safestart.exact.question import Goal, Question
+from safestart.model.scenario import Scenario
+from safestart.proofs.single import check
 
 COUNTEREXAMPLE = np.array([9.364, 81.044, 0.0, 0.0])
 

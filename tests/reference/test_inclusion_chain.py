@@ -2,8 +2,8 @@
 
 import pytest
 
-from safestart.certificates.proof import check
 from safestart.processes.execute import execute
+from safestart.proofs.single import check
 
 SETS = ["tube", "analytical_tube", "analytical", "synchronize", "stay", "exact_position"]
 

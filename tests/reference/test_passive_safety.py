@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from safestart.verification.cases import CASES, HALF_WIDTHS, HORIZON
-from safestart.verification.critical import critical_abort
-from safestart.verification.model import PUBLISHED, Dynamics, System
-from safestart.verification.question import Question, Verdict
-from safestart.verification.replay import replay
-from safestart.verification.verify import verify
+from safestart.passive_safety.cases import CASES, HALF_WIDTHS, HORIZON
+from safestart.passive_safety.critical import critical_abort
+from safestart.passive_safety.flights.independent_flight import replay
+from safestart.passive_safety.model import PUBLISHED, Dynamics, System
+from safestart.passive_safety.question import Question, Verdict
+from safestart.passive_safety.verify import verify
 
 
 @pytest.mark.parametrize("dynamics", list(Dynamics))

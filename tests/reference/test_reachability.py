@@ -4,10 +4,10 @@ import highspy
 import numpy as np
 import pytest
 
-from safestart.corridor import corridor_of
+from safestart.constraints.corridor import corridor_of
 from safestart.dynamics.cwh import planar_input, planar_transition
 from safestart.engines.exact import reach_margin
-from safestart.scenario import Rest, Scenario, SetKind
+from safestart.model.scenario import Rest, Scenario, SetKind
 
 # Source: our own study before this code was written (tube and fixed-time sets by a separate prototype): cone
 # cells of a 31 x 31 grid over x in [-150, 150] m, y in [0, 200] m from which the corridor is reachable at

@@ -2,9 +2,9 @@
 
 import pytest
 
-from safestart import published
-from safestart.certificates.closed_form import certify_grid
-from safestart.scenario import Grid, Scenario
+from safestart.closed_form.paper import certify_grid
+from safestart.model.scenario import Grid, Scenario
+from safestart.papers import safe_start as published
 
 CELLS = [
     (rate, thrust, value)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from safestart import published
-from safestart.cli.table3 import CAUSES
+from safestart.cli.reproduce.table3 import CAUSES
+from safestart.papers import safe_start as published
 from safestart.processes.registry import process
-from safestart.progress import Context
+from safestart.runtime.progress import Context
 
 SHARDING = process("sweep").sharding
 

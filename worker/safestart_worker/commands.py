@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from safestart.logs import configure
-from safestart.settings import settings
+from safestart.runtime.logs import configure
+from safestart.runtime.settings import settings
 
 
 def register(app: typer.Typer) -> None:

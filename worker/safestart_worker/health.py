@@ -6,9 +6,9 @@ import socket
 import sys
 
 from safestart.errors import SafestartError
-from safestart.settings import settings
+from safestart.runtime.settings import settings
 from safestart.store.database import Database
-from safestart.store.jobs import JobRepository
+from safestart.store.jobs.repository import JobRepository
 
 
 def main() -> int:

@@ -13,13 +13,13 @@ from contextlib import suppress
 from dataclasses import dataclass
 
 from safestart.errors import Away, Unavailable
-from safestart.logs import about
+from safestart.runtime.logs import about
 from safestart.store.database import Database
-from safestart.store.jobs import JobRepository
-from safestart.store.retention import Retention
-from safestart_worker.cluster import Cluster
-from safestart_worker.opening import open_cluster
-from safestart_worker.shepherd import Rules, Shepherd
+from safestart.store.jobs.repository import JobRepository
+from safestart.store.jobs.retention import Retention
+from safestart_worker.cluster.cluster import Cluster
+from safestart_worker.cluster.opening import open_cluster
+from safestart_worker.jobs.shepherd import Rules, Shepherd
 
 log = logging.getLogger("safestart.worker")
 

@@ -7,7 +7,8 @@ from importlib.metadata import entry_points
 
 import typer
 
-from safestart.cli import bench, demo, go_no_go, keys, records, reproduce, run, up, verify
+from safestart.cli import bench, demo, go_no_go, keys, records, run, up, verify
+from safestart.cli.reproduce import command as reproduce
 from safestart.errors import SafestartError
 
 COMMAND_GROUP = "safestart.commands"

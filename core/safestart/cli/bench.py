@@ -12,7 +12,7 @@ import typer
 import safestart
 from safestart.cli.console import Json, err, out, print_json, table_of
 from safestart.errors import Unavailable
-from safestart.provenance import versions
+from safestart.records.provenance import versions
 
 
 def register(app: typer.Typer) -> None:

@@ -10,9 +10,9 @@ import typer
 from safestart.cli.console import Json, out, print_json
 from safestart.cli.files import write_json
 from safestart.errors import invalid
+from safestart.model.scenario import Rest
 from safestart.processes.execute import execute
 from safestart.processes.go_no_go.run import single
-from safestart.scenario import Rest
 
 # Options of the command that are no inputs of the process; every other one has the input's name.
 _NO_INPUTS = ("x_m", "y_m", "z_m", "proof", "as_json")

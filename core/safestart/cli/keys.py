@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from rich.markup import escape
 
-from safestart.access import Caller, Role
 from safestart.cli.console import Json, err, out, print_json, table_of
+from safestart.runtime.access import Caller, Role
 
 if TYPE_CHECKING:
     from safestart.store.database import Database
@@ -39,7 +39,7 @@ def create(
     as_json: Json = False,
 ) -> None:
     """Make a key and show it, this once. From the first key on, every call needs one."""
-    from safestart.store.keys import KeyRepository
+    from safestart.store.access.keys import KeyRepository
 
     with _database(database_url) as database:
         record, key = KeyRepository(database).create(name, role, None if days == 0 else days, _operator())
@@ -57,7 +57,7 @@ def create(
 
 def list_keys(database_url: Url = None, as_json: Json = False) -> None:
     """All keys ever made, without their secrets."""
-    from safestart.store.keys import KeyRepository
+    from safestart.store.access.keys import KeyRepository
 
     with _database(database_url) as database:
         found = KeyRepository(database).list()
@@ -78,7 +78,7 @@ def revoke(
     as_json: Json = False,
 ) -> None:
     """End a key for good; a running service follows within about a second."""
-    from safestart.store.keys import KeyRepository
+    from safestart.store.access.keys import KeyRepository
 
     with _database(database_url) as database:
         record = KeyRepository(database).revoke(key_id, _operator())
@@ -96,7 +96,7 @@ def audit(
     as_json: Json = False,
 ) -> None:
     """Who submitted and dismissed which job, made and revoked which key."""
-    from safestart.store.audit import AuditLog
+    from safestart.store.access.audit import AuditLog
 
     with _database(database_url) as database:
         page = AuditLog(database).entries(subject=subject, key_id=key_id, limit=limit)
@@ -125,7 +125,7 @@ def audit(
 
 @contextmanager
 def _database(url: str | None) -> Iterator[Database]:
-    from safestart.settings import settings
+    from safestart.runtime.settings import settings
     from safestart.store.database import Database
 
     database = Database(url or settings().url())

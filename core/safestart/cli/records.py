@@ -15,7 +15,7 @@ from safestart.cli.files import readable, writable
 from safestart.errors import InvalidInput, invalid
 
 if TYPE_CHECKING:
-    from safestart.bundle import Bundle
+    from safestart.records.bundle import Bundle
     from safestart.store.database import Database
 
 DatabaseUrl = Annotated[str, typer.Option("--database-url", help="SQLAlchemy URL; empty: the setting.")]
@@ -38,7 +38,7 @@ def replay(
     as_json: Json = False,
 ) -> None:
     """Run a stored job again here and compare. Exit code 0: as promised, 1: different."""
-    from safestart.replay import replay as run_again
+    from safestart.records.replay import replay as run_again
 
     bundle = _bundle_or_job(job, database_url)
     if bundle.result is None:
@@ -64,7 +64,7 @@ def export(
     database_url: DatabaseUrl = "",
 ) -> None:
     """Write a job as one file that opens without a server (unzip it, open index.html)."""
-    from safestart.bundle import pack
+    from safestart.records.bundle import pack
 
     data, seal = pack(_bundle_of(job, database_url))
     path = output or Path(f"{job}.zip")
@@ -79,7 +79,7 @@ def import_(
     database_url: DatabaseUrl = "",
 ) -> None:
     """Check a bundle and add its job to the database."""
-    from safestart.bundle import unpack
+    from safestart.records.bundle import unpack
     from safestart.store.transfer import Transfer
 
     opened = unpack(_bytes(bundle), seal)
@@ -118,7 +118,7 @@ def purge(
     database_url: DatabaseUrl = "",
 ) -> None:
     """Delete jobs that ended long ago, with their results, artifacts and events."""
-    from safestart.store.retention import Retention
+    from safestart.store.jobs.retention import Retention
 
     seconds = age(older_than)
     with _database(database_url) as database:
@@ -136,7 +136,7 @@ def age(text: str) -> float:
 
 
 def _bundle_or_job(job: str, database_url: str) -> Bundle:
-    from safestart.bundle import unpack
+    from safestart.records.bundle import unpack
 
     return unpack(_bytes(Path(job))) if Path(job).is_file() else _bundle_of(job, database_url)
 
@@ -151,7 +151,7 @@ def _bundle_of(job: str, database_url: str) -> Bundle:
 @contextmanager
 def _database(url: str, *, new: bool = False) -> Iterator[Database]:
     """The database; ``new``: one that is not there is made, where otherwise a mistaken path is refused."""
-    from safestart.settings import settings
+    from safestart.runtime.settings import settings
     from safestart.store.database import Database
 
     database = Database(url or settings().url())

@@ -13,12 +13,12 @@ from typing import Any
 
 import httpx
 
-from safestart import published
 from safestart.cli.console import err, out, print_json, reporting
-from safestart.cli.reproduce import DIFFERENCES, show_table2, table2_inputs, table2_rows
+from safestart.cli.reproduce.command import DIFFERENCES, show_table2, table2_inputs, table2_rows
 from safestart.errors import Unavailable
-from safestart.progress import Context
-from safestart.settings import settings
+from safestart.papers import safe_start as published
+from safestart.runtime.progress import Context
+from safestart.runtime.settings import settings
 
 _START_LIMIT_S = 300.0
 _READY_POLL_S = 0.2

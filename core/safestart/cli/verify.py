@@ -25,8 +25,8 @@ def register(app: typer.Typer) -> None:
     ) -> None:
         """Check a GO or NO_GO proof. Exit code 0: valid, 1: rejected, 2: unreadable."""
         # Ball arithmetic is loaded here and not with every command.
-        from safestart.certificates.checker import check
-        from safestart.certificates.statement import ProofRejected
+        from safestart.proofs.checker import check
+        from safestart.proofs.statement import ProofRejected
 
         document = _load(proof)
         try:

@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from safestart.errors import invalid
-from safestart.scenario import Floats
+from safestart.model.scenario import Floats
 
 
 def _phase_functions(phase: float) -> tuple[float, float, float]:

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.integrate import DOP853
 
 from safestart.errors import invalid
-from safestart.scenario import Floats
+from safestart.model.scenario import Floats
 
 MU = 3.986004418e14
 """Gravitational parameter of the Earth, m^3/s^2 (EGM2008)."""

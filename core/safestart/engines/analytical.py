@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 import time
 
-from safestart.certificates.closed_form import certify_grid
+from safestart.closed_form.paper import certify_grid
 from safestart.engines.base import EngineResult, Problem, ResultCode
-from safestart.progress import Context
+from safestart.runtime.progress import Context
 
 
 class Analytical:

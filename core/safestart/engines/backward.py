@@ -15,7 +15,7 @@ import numpy as np
 
 from safestart.engines.base import EngineResult, Problem
 from safestart.engines.sampled import finish, steps, to_body
-from safestart.progress import Context
+from safestart.runtime.progress import Context
 from safestart.sets.cone import DualArc
 from safestart.sets.cone_meets import warm
 from safestart.sets.zonotope import meet_arc

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any, Protocol
 
-from safestart.corridor import corridor_of
+from safestart.constraints.corridor import corridor_of
 from safestart.errors import invalid
-from safestart.progress import Context
-from safestart.scenario import Bools, Floats, Grid, Rest, Scenario, SetKind, number
+from safestart.model.scenario import Bools, Floats, Grid, Rest, Scenario, SetKind, number
+from safestart.runtime.progress import Context
 
 MAX_HORIZON = 3600.0
 

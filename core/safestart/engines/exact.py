@@ -23,8 +23,8 @@ from safestart.dynamics.cwh import planar_transition
 from safestart.engines.base import MAX_HORIZON, EngineResult, Problem, ResultCode
 from safestart.engines.region import ROUND_OFF, restrict, start_velocity
 from safestart.errors import invalid
-from safestart.progress import Context
-from safestart.scenario import Floats, Rest, Scenario, SetKind, number
+from safestart.model.scenario import Floats, Rest, Scenario, SetKind, number
+from safestart.runtime.progress import Context
 from safestart.sets.cone import DualArc
 from safestart.sets.rotating_reach import RotatingReach, warm
 

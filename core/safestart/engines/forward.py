@@ -20,8 +20,8 @@ import numpy as np
 from safestart.engines.base import EngineResult, Problem
 from safestart.engines.sampled import Step, finish, steps, to_body
 from safestart.errors import invalid
-from safestart.progress import Context
-from safestart.scenario import CorridorShape, Floats
+from safestart.model.scenario import CorridorShape, Floats
+from safestart.runtime.progress import Context
 from safestart.sets.cone import DualArc, directions
 from safestart.sets.cone_meets import warm
 from safestart.sets.template import meet_arc

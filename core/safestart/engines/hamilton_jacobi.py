@@ -20,8 +20,8 @@ from safestart.engines.hj.frame import MODEL
 from safestart.engines.hj.settings import ENGINE, Settings
 from safestart.engines.hj.target import TargetValues, target_at
 from safestart.engines.region import restrict
-from safestart.progress import Context
-from safestart.scenario import Floats, SetKind
+from safestart.model.scenario import Floats, SetKind
+from safestart.runtime.progress import Context
 
 # Between two looks at the context: a twentieth of the steps, and no more than a few seconds of work.
 MIN_STRETCHES, NODE_STEPS = 20, 20_000_000

@@ -14,15 +14,15 @@ from typing import Any
 
 import numpy as np
 
-from safestart.corridor import corridor_of
+from safestart.constraints.corridor import corridor_of
+from safestart.control.forecast import MAX_NODES, flight_plan
+from safestart.control.gains import PRESETS, Gains, preset
 from safestart.engines.base import EngineResult, Problem, ResultCode
 from safestart.errors import invalid
-from safestart.guidance.flight import Flights, fly
-from safestart.guidance.gains import PRESETS, Gains, preset
-from safestart.guidance.plan import MAX_NODES, flight_plan
-from safestart.guidance.trajectory import start_states, steps_of
-from safestart.progress import Context
-from safestart.scenario import Floats, Scenario, number
+from safestart.model.scenario import Floats, Scenario, number
+from safestart.runtime.progress import Context
+from safestart.simulation.compiled_loop import Flights, fly
+from safestart.simulation.trajectory import start_states, steps_of
 
 Indices = np.ndarray[tuple[Any, ...], np.dtype[np.signedinteger[Any]]]
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from safestart.corridor import corridor_of
+from safestart.constraints.corridor import corridor_of
 from safestart.engines.base import Problem
-from safestart.scenario import Bools, Floats, Rest, Scenario
+from safestart.model.scenario import Bools, Floats, Rest, Scenario
 
 ROUND_OFF = 1e-9
 """Metres by which a closed set may miss a point that lies on its boundary (the corridor's edge at t = 0)."""

@@ -12,7 +12,7 @@ from safestart.dynamics.cwh import planar_input, planar_transition
 from safestart.engines.base import EngineResult, Problem, ResultCode
 from safestart.engines.region import restrict, start_velocity
 from safestart.errors import invalid
-from safestart.scenario import Floats, SetKind
+from safestart.model.scenario import Floats, SetKind
 
 MAX_STEPS = 4000
 

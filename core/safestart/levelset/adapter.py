@@ -11,7 +11,7 @@ import numpy as np
 from safestart.errors import InvalidInput, invalid
 from safestart.levelset.dynamics import Aim, Ball, Box, Motion, Rates, check_bound
 from safestart.levelset.lattice import Lattice
-from safestart.scenario import Floats
+from safestart.model.scenario import Floats
 
 _NEEDED = (
     "open_loop_dynamics",

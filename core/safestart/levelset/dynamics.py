@@ -17,7 +17,7 @@ import numpy as np
 
 from safestart.errors import invalid
 from safestart.levelset.lattice import Lattice
-from safestart.scenario import Floats
+from safestart.model.scenario import Floats
 
 Aim = Literal["min", "max"]
 

@@ -8,9 +8,9 @@ import numpy as np
 
 from safestart.errors import invalid
 from safestart.levelset.dynamics import Ball, Motion
+from safestart.levelset.kernels.lookup import lookup
 from safestart.levelset.lattice import Boundary, Lattice
-from safestart.levelset.lookup_kernel import lookup
-from safestart.scenario import Floats
+from safestart.model.scenario import Floats
 
 
 @dataclass(frozen=True, slots=True)

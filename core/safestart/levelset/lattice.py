@@ -10,7 +10,7 @@ from enum import StrEnum
 import numpy as np
 
 from safestart.errors import invalid
-from safestart.scenario import Floats
+from safestart.model.scenario import Floats
 
 MIN_NODES, MAX_NODES, MAX_AXES = 5, 2000, 6
 MAX_TOTAL_NODES = 200_000_000

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from safestart.levelset.lattice import Boundary, Lattice
 from safestart.levelset.numbers import SLACK
-from safestart.scenario import Floats
+from safestart.model.scenario import Floats
 
 Array = NDArray[Any]
 

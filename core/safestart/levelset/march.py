@@ -15,7 +15,7 @@ from safestart.levelset.layout import Array
 from safestart.levelset.numbers import SLACK
 from safestart.levelset.scheme import FACTS, Flux, Kind, Scheme
 from safestart.levelset.stage import Stage
-from safestart.scenario import Floats
+from safestart.model.scenario import Floats
 
 COURANT = 0.75
 

@@ -16,8 +16,8 @@ from safestart.levelset.field import ValueField, optimal_inputs
 from safestart.levelset.lattice import Lattice
 from safestart.levelset.march import Level, March, Options
 from safestart.levelset.scheme import Kind, Scheme
-from safestart.progress import Context
-from safestart.scenario import Floats
+from safestart.model.scenario import Floats
+from safestart.runtime.progress import Context
 
 MAX_STEPS = 1_000_000
 # Share of the initial range by which the value may leave it: rounding for the monotone first-order scheme, over-

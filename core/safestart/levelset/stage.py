@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from safestart.errors import invalid
 from safestart.levelset import numbers
 from safestart.levelset.dynamics import Ball, Box, Motion, Rates
+from safestart.levelset.kernels.rate import fastest
+from safestart.levelset.kernels.sweep import sweep
 from safestart.levelset.lattice import Boundary, Lattice
 from safestart.levelset.layout import Array, Layout
-from safestart.levelset.rate_kernel import fastest
 from safestart.levelset.scheme import FACTS, FLUX_NUMBER, KIND_NUMBER, Flux, Kind, Scheme
-from safestart.levelset.sweep_kernel import sweep
 from safestart.levelset.tables import Tables
-from safestart.scenario import Floats
+from safestart.model.scenario import Floats
 
 _BOUNDARY_NUMBER = {
     Boundary.EDGE: numbers.EDGE,

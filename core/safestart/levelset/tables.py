@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from safestart.levelset.layout import Layout
-from safestart.scenario import Floats
+from safestart.model.scenario import Floats
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,11 +8,11 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from safestart.artifact import Artifact as Artifact
+from safestart.model.validation import validation_error
 from safestart.processes.sharding import Sharding, load
 from safestart.processes.views import Engine, View
-from safestart.progress import Context
-from safestart.validation import validation_error
+from safestart.records.artifact import Artifact as Artifact
+from safestart.runtime.progress import Context
 
 
 class WireModel(BaseModel):

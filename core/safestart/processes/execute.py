@@ -10,8 +10,8 @@ from typing import Any
 from safestart.processes.base import Artifact, ProcessOutput, ProcessSpec, WireModel
 from safestart.processes.registry import process
 from safestart.processes.sharding import Part
-from safestart.progress import Context
-from safestart.provenance import versions
+from safestart.records.provenance import versions
+from safestart.runtime.progress import Context
 
 SCHEMA_VERSION = 1
 

@@ -13,9 +13,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
+from safestart.model.scenario import CorridorShape
 from safestart.processes.base import Artifact
 from safestart.processes.benchmark.spec import ENGINES
-from safestart.scenario import CorridorShape
 
 mpl.use("Agg")
 

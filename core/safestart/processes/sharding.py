@@ -13,8 +13,8 @@ from hashlib import sha256
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from safestart.comparable import canonical
-from safestart.progress import Context
+from safestart.records.comparable import canonical
+from safestart.runtime.progress import Context
 
 if TYPE_CHECKING:
     from safestart.processes.base import ProcessOutput, WireModel

@@ -7,8 +7,7 @@ from typing import Annotated, TypeVar
 
 from pydantic import AfterValidator, Field
 
-from safestart.processes.base import WireModel
-from safestart.scenario import (
+from safestart.model.scenario import (
     MAX_ACCELERATION,
     MAX_MEAN_MOTION,
     MAX_RANGE,
@@ -19,6 +18,7 @@ from safestart.scenario import (
     Scenario,
     Target,
 )
+from safestart.processes.base import WireModel
 
 TumbleRate = Annotated[
     float,

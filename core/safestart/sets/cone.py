@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from safestart.scenario import CorridorShape, Floats
+from safestart.model.scenario import CorridorShape, Floats
 
 
 @dataclass(frozen=True, slots=True)

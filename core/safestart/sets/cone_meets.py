@@ -8,7 +8,7 @@ from functools import cache
 
 import numpy as np
 
-from safestart.scenario import Floats
+from safestart.model.scenario import Floats
 from safestart.sets.cone import directions
 from safestart.sets.meet_kernel import meet_margins
 

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from safestart.scenario import Floats
+from safestart.model.scenario import Floats
 
 # E may be this part of the largest step |w|_P.
 _TAIL = 1e-6

@@ -6,7 +6,7 @@ import math
 
 from numba import njit
 
-from safestart.scenario import Floats
+from safestart.model.scenario import Floats
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

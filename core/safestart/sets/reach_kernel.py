@@ -17,7 +17,7 @@ import math
 import numpy as np
 from numba import njit
 
-from safestart.scenario import Floats
+from safestart.model.scenario import Floats
 
 FINE = 1e-8
 """Accuracy (m) sought for margins near zero, so that the sign is right."""

@@ -9,7 +9,7 @@ from functools import cache
 
 import numpy as np
 
-from safestart.scenario import Floats
+from safestart.model.scenario import Floats
 from safestart.sets.cone import DualArc
 from safestart.sets.reach_kernel import DRIFT, reach_margins, trig_table
 from safestart.sets.series import ReachSeries, reach_series

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from safestart.scenario import Floats
+from safestart.model.scenario import Floats
 
 CONVERGED = 1e-12
 NEGLIGIBLE = 1e-14

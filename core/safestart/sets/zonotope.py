@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from safestart.scenario import Floats
+from safestart.model.scenario import Floats
 from safestart.sets.cone import DualArc
 from safestart.sets.cone_meets import MeetArc
 

@@ -14,7 +14,7 @@ from pathlib import Path
 from sqlalchemy import Connection, Table, func, insert, select, text
 
 from safestart.errors import Conflict, InvalidInput, Unavailable
-from safestart.store import access_models as access_models  # its tables belong to the record, too
+from safestart.store.access import models as access_models
 from safestart.store.database import Database
 from safestart.store.models import Base
 

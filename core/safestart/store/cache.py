@@ -19,7 +19,7 @@ log = logging.getLogger("safestart.store")
 
 
 class Cache:
-    """A :class:`safestart.shelf.Shelf` over the database; one that is away finds nothing and keeps nothing."""
+    """A :class:`safestart.runtime.cache.Shelf` over the database; one that is away finds nothing and keeps nothing."""
 
     def __init__(self, database: Database, most_bytes: int = MOST_BYTES) -> None:
         self._database, self._most = database, most_bytes

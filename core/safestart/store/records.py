@@ -7,7 +7,7 @@ from datetime import datetime
 from enum import StrEnum
 from typing import Any
 
-from safestart.access import Role
+from safestart.runtime.access import Role
 
 
 class JobStatus(StrEnum):
@@ -143,7 +143,7 @@ class JobPage:
 
 @dataclass(frozen=True, slots=True)
 class StoredResult:
-    """The result document of a job with its SHA-256 (:func:`safestart.comparable.digest`)."""
+    """The result document of a job with its SHA-256 (:func:`safestart.records.comparable.digest`)."""
 
     job_id: str
     schema_version: int

@@ -10,16 +10,16 @@ from typing import Any
 from sqlalchemy import insert, select
 from sqlalchemy.orm import Session
 
-from safestart.artifact import Artifact
-from safestart.bundle import Bundle
-from safestart.bundle_parts import event_facts, job_facts
-from safestart.comparable import digest
 from safestart.errors import Conflict, InvalidInput
+from safestart.records.artifact import Artifact
+from safestart.records.bundle import Bundle
+from safestart.records.bundle_parts import event_facts, job_facts
+from safestart.records.comparable import digest
 from safestart.store.database import Database
+from safestart.store.jobs.submissions import find, request_hash
+from safestart.store.jobs.writing import add_result
 from safestart.store.models import ArtifactRow, EventRow, JobRow, ResultRow
 from safestart.store.records import JobStatus
-from safestart.store.submissions import find, request_hash
-from safestart.store.writing import add_result
 
 _TIMES = ("created_at", "started_at", "finished_at", "updated_at")
 _FACTS = (

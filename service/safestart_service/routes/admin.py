@@ -11,12 +11,12 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from safestart.errors import Conflict
 from safestart.store.records import ApiKey, AuditEntry
-from safestart_service.access import caller
-from safestart_service.answers import Json
-from safestart_service.body import parse_body, read_body
-from safestart_service.intervals import without_nul
-from safestart_service.openapi import answer, json_body, refusals
-from safestart_service.schemas import AuditList, KeyDocument, KeyList, KeyRequest, NewKeyDocument
+from safestart_service.access.gate import caller
+from safestart_service.documents.openapi import answer, json_body, refusals
+from safestart_service.documents.schemas import AuditList, KeyDocument, KeyList, KeyRequest, NewKeyDocument
+from safestart_service.http.answers import Json
+from safestart_service.http.body import parse_body, read_body
+from safestart_service.http.intervals import without_nul
 from safestart_service.state import services
 
 router = APIRouter(tags=["administration"])

@@ -6,11 +6,11 @@ from fastapi import APIRouter, Request
 from fastapi.responses import Response
 
 from safestart.processes.certificate.spec import SPEC, CertificateInputs, CertificateOutputs
-from safestart_service.answers import Json
-from safestart_service.body import parse_body, read_body
-from safestart_service.computing import computed
-from safestart_service.execute import run_now
-from safestart_service.openapi import answer, json_body, refusals
+from safestart_service.documents.execution import run_now
+from safestart_service.documents.openapi import answer, json_body, refusals
+from safestart_service.http.answers import Json
+from safestart_service.http.body import parse_body, read_body
+from safestart_service.http.computing import computed
 
 router = APIRouter(tags=["instant answers"])
 

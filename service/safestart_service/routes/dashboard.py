@@ -5,8 +5,8 @@ from __future__ import annotations
 from fastapi import APIRouter, Request
 from fastapi.responses import Response
 
-from safestart_service import pages
-from safestart_service.openapi import content, refusals
+from safestart_service.documents.openapi import content, refusals
+from safestart_service.pages import render as pages
 from safestart_service.routes.jobs import JobId
 
 router = APIRouter(tags=["dashboard"])

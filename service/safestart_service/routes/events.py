@@ -8,11 +8,11 @@ from fastapi import APIRouter, Header, Request
 from fastapi.responses import Response
 from starlette.concurrency import run_in_threadpool
 
-from safestart_service.following import Followed
-from safestart_service.jobs_view import known_job
-from safestart_service.openapi import content, refusals
+from safestart_service.documents.jobs_view import known_job
+from safestart_service.documents.openapi import content, refusals
+from safestart_service.http.following import Followed
+from safestart_service.http.sse import resume_point, stream
 from safestart_service.routes.jobs import JobId
-from safestart_service.sse import resume_point, stream
 from safestart_service.state import services
 
 router = APIRouter(tags=["jobs"])

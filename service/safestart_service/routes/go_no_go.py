@@ -9,14 +9,14 @@ from fastapi.responses import Response
 
 from safestart.errors import NotFound
 from safestart.processes.go_no_go.spec import SPEC, GoNoGoInputs, GoNoGoOutputs
-from safestart.progress import Context
-from safestart_service.answers import Json
-from safestart_service.body import parse_body, read_body
-from safestart_service.computing import computed
-from safestart_service.execute import check_states, run_now
-from safestart_service.instant import GoNoGoAnswer, GoNoGoQuery, flat_answer
-from safestart_service.lean import query_route
-from safestart_service.openapi import answer, content, json_body, refusals
+from safestart.runtime.progress import Context
+from safestart_service.documents.execution import check_states, run_now
+from safestart_service.documents.instant import GoNoGoAnswer, GoNoGoQuery, flat_answer
+from safestart_service.documents.openapi import answer, content, json_body, refusals
+from safestart_service.http.answers import Json
+from safestart_service.http.body import parse_body, read_body
+from safestart_service.http.computing import computed
+from safestart_service.http.lean import query_route
 from safestart_service.state import services
 
 

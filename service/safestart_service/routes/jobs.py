@@ -14,14 +14,14 @@ from starlette.concurrency import run_in_threadpool
 
 from safestart.errors import invalid
 from safestart.processes.registry import PROCESS_IDS
-from safestart.store.filters import JobFilter
+from safestart.store.jobs.filters import JobFilter
 from safestart.store.records import JobStatus
-from safestart_service.access import caller, require_own
-from safestart_service.answers import Json, base_url, link, tagged, this_url
-from safestart_service.intervals import interval, without_nul
-from safestart_service.jobs_view import job_detail, known_job, partial_document, status_infos
-from safestart_service.openapi import TAG, answer, refusals
-from safestart_service.schemas import JobDetail, JobList, Partial
+from safestart_service.access.gate import caller, require_own
+from safestart_service.documents.jobs_view import job_detail, known_job, partial_document, status_infos
+from safestart_service.documents.openapi import TAG, answer, refusals
+from safestart_service.documents.schemas import JobDetail, JobList, Partial
+from safestart_service.http.answers import Json, base_url, link, tagged, this_url
+from safestart_service.http.intervals import interval, without_nul
 from safestart_service.state import services
 
 router = APIRouter(tags=["jobs"])

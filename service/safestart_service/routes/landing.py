@@ -5,10 +5,10 @@ from __future__ import annotations
 from fastapi import APIRouter, Request
 from fastapi.responses import RedirectResponse, Response
 
-from safestart_service import pages
-from safestart_service.answers import Json, base_url, link, tagged
-from safestart_service.openapi import TAG, answer, content, refusals
-from safestart_service.schemas import Conformance, Landing
+from safestart_service.documents.openapi import TAG, answer, content, refusals
+from safestart_service.documents.schemas import Conformance, Landing
+from safestart_service.http.answers import Json, base_url, link, tagged
+from safestart_service.pages import render as pages
 
 router = APIRouter(tags=["service"])
 

@@ -7,9 +7,9 @@ from fastapi.responses import Response
 from prometheus_client.exposition import CONTENT_TYPE_LATEST
 
 from safestart.errors import Unavailable
-from safestart_service.answers import Json
-from safestart_service.openapi import answer, content, refusals
-from safestart_service.schemas import Health, Readiness
+from safestart_service.documents.openapi import answer, content, refusals
+from safestart_service.documents.schemas import Health, Readiness
+from safestart_service.http.answers import Json
 from safestart_service.state import services
 
 router = APIRouter(tags=["operations"])

@@ -9,17 +9,13 @@ from fastapi import APIRouter, Header, Path, Query, Request
 from fastapi.responses import Response
 from pydantic import BaseModel, ConfigDict, Field
 
-from safestart.access import Caller, Role
 from safestart.processes.base import ProcessSpec
 from safestart.processes.registry import PROCESS_IDS, process
-from safestart.progress import Context
-from safestart_service.access import caller
-from safestart_service.answers import Json, base_url, link, tagged, this_url
-from safestart_service.body import read_body
-from safestart_service.computing import computed
-from safestart_service.describe import description, known_process, summary
-from safestart_service.errors import Forbidden
-from safestart_service.execute import (
+from safestart.runtime.access import Caller, Role
+from safestart.runtime.progress import Context
+from safestart_service.access.gate import caller
+from safestart_service.documents.describe import description, known_process, summary
+from safestart_service.documents.execution import (
     ExecuteRequest,
     check_outputs,
     check_states,
@@ -29,9 +25,13 @@ from safestart_service.execute import (
     run_now,
     selected,
 )
-from safestart_service.jobs_view import job_detail
-from safestart_service.openapi import TAG, answer, content, json_body, refusals
-from safestart_service.schemas import ProcessDescription, ProcessList, Submitted
+from safestart_service.documents.jobs_view import job_detail
+from safestart_service.documents.openapi import TAG, answer, content, json_body, refusals
+from safestart_service.documents.schemas import ProcessDescription, ProcessList, Submitted
+from safestart_service.errors import Forbidden
+from safestart_service.http.answers import Json, base_url, link, tagged, this_url
+from safestart_service.http.body import read_body
+from safestart_service.http.computing import computed
 from safestart_service.state import Services, services
 
 router = APIRouter(tags=["processes"])

@@ -7,14 +7,14 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Path, Query, Request
 from fastapi.responses import Response
 
-from safestart_service import formats
-from safestart_service.answers import Json, base_url, entity_tag, not_modified
-from safestart_service.arrays import arrays_of
-from safestart_service.jobs_view import known_job, result_document
-from safestart_service.negotiation import chosen
-from safestart_service.openapi import REF, content, refusals
+from safestart_service.documents import formats
+from safestart_service.documents.arrays import arrays_of
+from safestart_service.documents.jobs_view import known_job, result_document
+from safestart_service.documents.openapi import REF, content, refusals
+from safestart_service.documents.schemas import ResultDocument
+from safestart_service.http.answers import Json, base_url, entity_tag, not_modified
+from safestart_service.http.negotiation import chosen
 from safestart_service.routes.jobs import JobId
-from safestart_service.schemas import ResultDocument
 from safestart_service.state import services
 
 router = APIRouter(tags=["results"])

@@ -16,8 +16,8 @@ import numpy as np
 from safestart.engines.base import EngineResult, Problem, ResultCode
 from safestart.engines.exact import Exact
 from safestart.engines.hj.settings import Settings
-from safestart.progress import Context
-from safestart.scenario import Bools, Floats
+from safestart.model.scenario import Bools, Floats
+from safestart.runtime.progress import Context
 
 TOLERANCE = 1e-6
 """Metres; margins near zero are good to 1e-7."""

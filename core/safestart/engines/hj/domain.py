@@ -12,13 +12,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from safestart.dynamics.body_frame import transport
+from safestart.attitude.body_frame import transport
 from safestart.engines.base import Problem
 from safestart.engines.hj.frame import Frame, coefficients
 from safestart.engines.hj.settings import ENGINE, Settings, Shape
 from safestart.engines.region import start_velocity
 from safestart.errors import invalid
-from safestart.scenario import Floats, SetKind
+from safestart.model.scenario import Floats, SetKind
 
 CFL_NUMBER = 0.75
 # Against steps of an eighth of a cell, half a cell changes margins by at most 1.8 m, a whole one by 3.3 m and no

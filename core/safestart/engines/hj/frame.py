@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from safestart.scenario import Floats, Target
+from safestart.model.scenario import Floats, Target
 
 
 class Frame(StrEnum):

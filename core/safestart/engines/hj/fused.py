@@ -11,7 +11,7 @@ from safestart.engines.hj.settings import Settings
 from safestart.engines.hj.target import faces, mismatch
 from safestart.levelset import Ball, Input, Kind, Lattice, Linear, March, Options, Scheme
 from safestart.levelset.warm import warm
-from safestart.scenario import Floats, SetKind
+from safestart.model.scenario import Floats, SetKind
 
 _SCHEMES = {
     "low": Scheme.FIRST,

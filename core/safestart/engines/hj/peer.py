@@ -25,7 +25,7 @@ from safestart.engines.hj.frame import Frame, coefficients
 from safestart.engines.hj.model import LinearMotion
 from safestart.engines.hj.settings import Settings
 from safestart.engines.hj.target import MATCH_S, faces
-from safestart.scenario import Floats, SetKind
+from safestart.model.scenario import Floats, SetKind
 
 KEPT_PROGRAMS = 8
 

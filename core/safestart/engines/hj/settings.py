@@ -9,7 +9,7 @@ from typing import Any
 from safestart.engines.base import Problem
 from safestart.engines.hj.frame import Frame
 from safestart.errors import invalid
-from safestart.scenario import Rest, SetKind, number
+from safestart.model.scenario import Rest, SetKind, number
 
 ENGINE = "hamilton_jacobi"
 

@@ -12,13 +12,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from safestart.corridor import corridor_of
-from safestart.dynamics.body_frame import rotation
+from safestart.attitude.body_frame import rotation
+from safestart.constraints.corridor import corridor_of
 from safestart.engines.base import Problem
 from safestart.engines.hj.domain import Domain
 from safestart.engines.hj.frame import Frame
 from safestart.engines.hj.settings import Settings
-from safestart.scenario import CorridorShape, Floats, SetKind
+from safestart.model.scenario import CorridorShape, Floats, SetKind
 
 MATCH_S = 30.0
 """Seconds tau that turn a difference of velocities into metres; the zero level does not depend on it."""

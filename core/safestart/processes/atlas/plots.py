@@ -8,11 +8,11 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Polygon
 
-from safestart.certificates.atlas import Atlas
-from safestart.certificates.closed_form import certify_grid
+from safestart.atlas.atlas import Atlas
+from safestart.closed_form.paper import certify_grid
+from safestart.model.scenario import Grid, Scenario
 from safestart.processes.base import Artifact
 from safestart.processes.plotting import PALETTE, draw_corridor, figure, png
-from safestart.scenario import Grid, Scenario
 
 _GO, _NO_GO = "#56B4E9", "#E69F00"
 _FINE = 400

@@ -6,18 +6,18 @@ from typing import Any
 
 import numpy as np
 
-from safestart.certificates.atlas import Atlas
-from safestart.certificates.atlas_file import key_of, pack
-from safestart.certificates.closed_form import certify_grid
-from safestart.certificates.question import Question
-from safestart.certificates.survey import build
+from safestart.atlas.atlas import Atlas
+from safestart.atlas.file import key_of, pack
+from safestart.atlas.survey import build
+from safestart.closed_form.paper import certify_grid
 from safestart.errors import invalid
+from safestart.exact.question import Question
+from safestart.model.scenario import Floats
 from safestart.processes.atlas.plots import atlas_map
 from safestart.processes.atlas.spec import AtlasInputs
 from safestart.processes.base import Artifact, ProcessOutput
 from safestart.processes.plotting import NPZ, npz
-from safestart.progress import Context
-from safestart.scenario import Floats
+from safestart.runtime.progress import Context
 
 
 def run(inputs: AtlasInputs, context: Context) -> ProcessOutput:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from safestart.model.scenario import SetKind
 from safestart.processes.benchmark.spec import BenchmarkInputs
-from safestart.scenario import SetKind
 
 
 def notes(inputs: BenchmarkInputs, rows: Sequence[dict[str, Any]], contained: float | None) -> list[str]:

@@ -13,9 +13,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch
 
 from safestart.engines.base import EngineResult, Problem
+from safestart.model.scenario import Floats
 from safestart.processes.base import Artifact
 from safestart.processes.plotting import LABELS, PALETTE, draw_corridor, figure, png
-from safestart.scenario import Floats
 
 _LineStyle = Literal["-", "--", ":", "-."]
 _STYLES: dict[str, _LineStyle] = {

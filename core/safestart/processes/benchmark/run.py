@@ -10,16 +10,16 @@ import numpy as np
 from safestart.engines.base import EngineResult, Problem
 from safestart.engines.exact import containment_horizon
 from safestart.engines.registry import engine
-from safestart.metrics import ConfusionMatrix, iou, ratio, violation
+from safestart.model.metrics import ConfusionMatrix, iou, ratio, violation
+from safestart.model.scenario import Bools
+from safestart.papers.safe_start import TABLE2, TABLE2_THRUST_M_S2
 from safestart.processes.base import Artifact, ProcessOutput
 from safestart.processes.benchmark.notes import notes
 from safestart.processes.benchmark.plots import agreement_panels, overlay_map
 from safestart.processes.benchmark.spec import BenchmarkInputs
 from safestart.processes.plotting import npz
 from safestart.processes.wire import DT_S
-from safestart.progress import Context
-from safestart.published import TABLE2, TABLE2_THRUST_M_S2
-from safestart.scenario import Bools
+from safestart.runtime.progress import Context
 
 # Shares of the progress bar, roughly the share of the time.
 _WEIGHTS = {"hamilton_jacobi": 40.0, "monte_carlo": 6.0}

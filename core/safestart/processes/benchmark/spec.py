@@ -6,10 +6,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
+from safestart.model.scenario import Rest, SetKind
 from safestart.processes.base import ProcessSpec, WireModel
 from safestart.processes.views import Column, Comparison, Engine, Facts, Matrices, Overlay, Rows
 from safestart.processes.wire import DISTINCT, Confusion, GridInput, Horizon, ScenarioInput, Seed
-from safestart.scenario import Rest, SetKind
 
 EngineName = Literal["analytical", "exact", "backward", "forward", "hamilton_jacobi", "monte_carlo"]
 ALL_ENGINES: tuple[EngineName, ...] = (

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from safestart.certificates.closed_form import certify_grid
+from safestart.closed_form.paper import certify_grid
 from safestart.processes.base import ProcessOutput
 from safestart.processes.benchmark.spec import BenchmarkInputs
 from safestart.processes.certificate.spec import CertificateInputs
 from safestart.processes.wire import NO_SYNC_LIMIT, finite
-from safestart.progress import Context
+from safestart.runtime.progress import Context
 
 
 def answer(inputs: CertificateInputs | BenchmarkInputs) -> dict[str, Any]:

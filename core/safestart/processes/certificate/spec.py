@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pydantic import Field
 
+from safestart.model.scenario import Rest
 from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.views import Column, Facts
 from safestart.processes.wire import GridInput, ScenarioInput
-from safestart.scenario import Rest
 
 
 class CertificateInputs(ScenarioInput):

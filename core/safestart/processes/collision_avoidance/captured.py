@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from safestart.avoidance.capture import arrival_times, compare, level_set
-from safestart.avoidance.feedback import RECOVERY, Slot
-from safestart.avoidance.game import Game
+from safestart.collision_avoidance.capture import arrival_times, compare, level_set
+from safestart.collision_avoidance.encounters.feedback import RECOVERY, Slot
+from safestart.collision_avoidance.game import Game
 from safestart.levelset import Lattice, Options, Scheme
+from safestart.model.scenario import Floats
 from safestart.processes.collision_avoidance.spec import CollisionAvoidanceInputs
-from safestart.progress import Context
-from safestart.scenario import Floats
+from safestart.runtime.progress import Context
 
 HALF_WIDTH_M, SPEED_M_S, POINTS = 2000.0, 8.0, 61
 BEYOND = 1.3

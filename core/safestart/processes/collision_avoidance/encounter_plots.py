@@ -9,13 +9,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle
 
-from safestart.avoidance.adversary import TITLES as ADVERSARIES
-from safestart.avoidance.pilots import TITLES as PILOTS
+from safestart.collision_avoidance.encounters.adversary import TITLES as ADVERSARIES
+from safestart.collision_avoidance.encounters.pilots import TITLES as PILOTS
+from safestart.model.scenario import Floats
 from safestart.processes.base import Artifact
 from safestart.processes.collision_avoidance.flown import Flown
 from safestart.processes.collision_avoidance.spec import CollisionAvoidanceInputs
 from safestart.processes.plotting import figure, png
-from safestart.scenario import Floats
 
 LOST, SAFE, LINE = "#D55E00", "#0072B2", "#333333"
 _TITLES = {"outside": "starts outside the unsafe set, near it", "inside": "starts proved unsafe"}

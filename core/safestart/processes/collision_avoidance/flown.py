@@ -8,18 +8,18 @@ from typing import Any
 
 import numpy as np
 
-from safestart.avoidance.adversary import adversary, until
-from safestart.avoidance.encounter import Clock, Flights, fly
-from safestart.avoidance.feedback import Slot
-from safestart.avoidance.pilots import Pilot, pilot
-from safestart.avoidance.sight import Sight
-from safestart.avoidance.starts import approaching, certified_unsafe, near_boundary
-from safestart.avoidance.supervisor import Guards, Mode, Supervisor
+from safestart.collision_avoidance.encounters.adversary import adversary, until
+from safestart.collision_avoidance.encounters.encounter import Clock, Flights, fly
+from safestart.collision_avoidance.encounters.feedback import Slot
+from safestart.collision_avoidance.encounters.observation import Sight
+from safestart.collision_avoidance.encounters.pilots import Pilot, pilot
+from safestart.collision_avoidance.encounters.starts import approaching, certified_unsafe, near_boundary
+from safestart.collision_avoidance.encounters.supervisor import Guards, Mode, Supervisor
 from safestart.errors import InvalidInput
-from safestart.metrics import wilson
+from safestart.model.metrics import wilson
+from safestart.model.scenario import Floats
 from safestart.processes.collision_avoidance.spec import CollisionAvoidanceInputs
-from safestart.progress import Context
-from safestart.scenario import Floats
+from safestart.runtime.progress import Context
 
 CLEARANCE = 0.1
 """Share of the keep-out distance above the grid error at which an evasion ends."""

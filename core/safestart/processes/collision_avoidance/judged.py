@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from safestart.avoidance.certified import lower, upper
-from safestart.avoidance.game import Game, Players
-from safestart.avoidance.space import SpaceTube
-from safestart.avoidance.tube import Answer, Tube, solve_tube
+from safestart.collision_avoidance.bounds.certified import lower, upper
+from safestart.collision_avoidance.game import Game, Players
+from safestart.collision_avoidance.space import SpaceTube
+from safestart.collision_avoidance.tube import Answer, Tube, solve_tube
+from safestart.model.scenario import Floats
 from safestart.processes.collision_avoidance.spec import CollisionAvoidanceInputs
 from safestart.processes.wire import finite
-from safestart.progress import Context
-from safestart.scenario import Floats
+from safestart.runtime.progress import Context
 
 _FINER = 4
 """Nodes per axis of the normal motion's grid, of two axes, for one of the plane's, of four."""

@@ -12,18 +12,18 @@ from matplotlib.colors import ListedColormap
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch, Rectangle
 
-from safestart.avoidance.capture import arrival_times
-from safestart.avoidance.certified import lower, upper
-from safestart.avoidance.escape import Escape
-from safestart.avoidance.feedback import RECOVERY, Slot
-from safestart.avoidance.game import Game, Players
-from safestart.avoidance.tube import Tube
+from safestart.collision_avoidance.bounds.certified import lower, upper
+from safestart.collision_avoidance.capture import arrival_times
+from safestart.collision_avoidance.encounters.escape import Escape
+from safestart.collision_avoidance.encounters.feedback import RECOVERY, Slot
+from safestart.collision_avoidance.game import Game, Players
+from safestart.collision_avoidance.tube import Tube
 from safestart.levelset import ValueField
+from safestart.model.scenario import Floats
 from safestart.processes.base import Artifact
 from safestart.processes.collision_avoidance.captured import BEYOND, HALF_WIDTH_M, Captured
 from safestart.processes.collision_avoidance.spec import CollisionAvoidanceInputs
 from safestart.processes.plotting import figure, png
-from safestart.scenario import Floats
 
 LOST, SAFE, OPEN, LINE = "#D55E00", "#0072B2", "#F0E442", "#333333"
 _POINTS = 141

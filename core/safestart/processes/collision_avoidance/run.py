@@ -8,15 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from safestart.avoidance.escape import MODES
-from safestart.avoidance.escape import fly as escape
-from safestart.avoidance.feedback import Slot
-from safestart.avoidance.game import Game, Players
-from safestart.avoidance.inputs import InputSet
-from safestart.avoidance.sight import Sight
-from safestart.avoidance.tube import Tube, solve_tube
-from safestart.avoidance.tube_settings import TubeSettings
-from safestart.metrics import wilson
+from safestart.collision_avoidance.encounters.escape import MODES
+from safestart.collision_avoidance.encounters.escape import fly as escape
+from safestart.collision_avoidance.encounters.feedback import Slot
+from safestart.collision_avoidance.encounters.observation import Sight
+from safestart.collision_avoidance.game import Game, Players
+from safestart.collision_avoidance.inputs import InputSet
+from safestart.collision_avoidance.tube import Tube, solve_tube
+from safestart.collision_avoidance.tube_settings import TubeSettings
+from safestart.model.metrics import wilson
 from safestart.processes.base import ProcessOutput
 from safestart.processes.collision_avoidance.captured import Captured, captured
 from safestart.processes.collision_avoidance.encounter_plots import flights_picture, matrix_picture
@@ -32,7 +32,7 @@ from safestart.processes.collision_avoidance.plots import (
 from safestart.processes.collision_avoidance.spec import CollisionAvoidanceInputs
 from safestart.processes.plotting import npz
 from safestart.processes.wire import finite
-from safestart.progress import Context
+from safestart.runtime.progress import Context
 
 ORBIT_WITHOUT_ROTATION_S = 5400.0
 

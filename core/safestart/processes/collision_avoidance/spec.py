@@ -6,10 +6,10 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from safestart.model.scenario import MAX_ACCELERATION, MAX_MEAN_MOTION
 from safestart.processes.base import ProcessSpec, WireModel
 from safestart.processes.views import Column, Facts, Findings, Rows
 from safestart.processes.wire import DISTINCT, Seed, Thrust
-from safestart.scenario import MAX_ACCELERATION, MAX_MEAN_MOTION
 
 PilotName = Literal["certified", "hj", "supervisor", "mode1", "mode2", "mode3", "mode4", "pd", "coast"]
 AdversaryName = Literal["worst", "mirror", "pursuit", "random", "none"]

@@ -8,9 +8,9 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.patches import Patch
 
+from safestart.model.scenario import Bools, CorridorShape, Grid
 from safestart.processes.base import Artifact
 from safestart.processes.plotting import draw_corridor, figure, png
-from safestart.scenario import Bools, CorridorShape, Grid
 
 _MAX_PANELS = 6
 _MAX_LEVELS = 6

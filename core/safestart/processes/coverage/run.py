@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from safestart.certificates.closed_form import certify_grid
+from safestart.closed_form.paper import certify_grid
+from safestart.model.scenario import Bools, Chaser, Scenario, Target
 from safestart.processes.base import ProcessOutput
 from safestart.processes.coverage.plots import coverage_map
 from safestart.processes.coverage.spec import CoverageInputs
 from safestart.processes.plotting import npz
 from safestart.processes.wire import finite
-from safestart.progress import Context
-from safestart.scenario import Bools, Chaser, Scenario, Target
+from safestart.runtime.progress import Context
 
 
 def run(inputs: CoverageInputs, context: Context) -> ProcessOutput:

@@ -6,10 +6,10 @@ from typing import Annotated
 
 from pydantic import Field
 
+from safestart.model.scenario import MAX_MEAN_MOTION
 from safestart.processes.base import ProcessSpec, WireModel
 from safestart.processes.views import Column, Rows
 from safestart.processes.wire import CorridorInput, GridInput, Thrust, TumbleRate
-from safestart.scenario import MAX_MEAN_MOTION
 
 Rates = Annotated[list[TumbleRate], Field(min_length=1, max_length=50)]
 Thrusts = Annotated[list[Thrust], Field(min_length=1, max_length=50)]

@@ -6,17 +6,17 @@ import math
 
 import numpy as np
 
-from safestart.certificates.attempt import best_thrust
-from safestart.certificates.exact import decide
-from safestart.certificates.motion import motion_tables
-from safestart.certificates.question import Goal, Question
-from safestart.corridor import corridor_of
-from safestart.dynamics.body_frame import body_to_lvlh, lvlh_to_body
+from safestart.attitude.body_frame import body_to_lvlh, lvlh_to_body
+from safestart.constraints.corridor import corridor_of
+from safestart.exact.best_flight import best_thrust
+from safestart.exact.decide import decide
+from safestart.exact.motion import motion_tables
+from safestart.exact.question import Goal, Question
+from safestart.model.scenario import Floats, Rest
 from safestart.processes.base import ProcessOutput
 from safestart.processes.flight.spec import FlightInputs
 from safestart.processes.wire import DT_S, finite
-from safestart.progress import Context
-from safestart.scenario import Floats, Rest
+from safestart.runtime.progress import Context
 
 _PARTS = 4
 

@@ -6,12 +6,12 @@ from typing import Literal
 
 from pydantic import Field
 
+from safestart.model.scenario import Rest
 from safestart.processes.base import ProcessSpec, Table, WireModel
-from safestart.processes.go_no_go.asked import Kind
+from safestart.processes.go_no_go.question_fields import Kind
 from safestart.processes.go_no_go.spec import StateInput
 from safestart.processes.views import Column, Findings
 from safestart.processes.wire import Horizon, ScenarioInput
-from safestart.scenario import Rest
 
 
 class FlightInputs(ScenarioInput):

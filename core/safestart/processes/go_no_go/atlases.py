@@ -5,14 +5,14 @@ from __future__ import annotations
 import threading
 from collections import OrderedDict
 
-from safestart.certificates.atlas import Atlas
-from safestart.certificates.atlas_file import key_of, pack, unpack
-from safestart.certificates.question import Question
-from safestart.certificates.survey import TOLERANCE
+from safestart.atlas.atlas import Atlas
+from safestart.atlas.file import key_of, pack, unpack
+from safestart.atlas.survey import TOLERANCE
 from safestart.errors import InvalidInput
-from safestart.progress import Context
-from safestart.scenario import MAX_RANGE
-from safestart.shelf import Shelf
+from safestart.exact.question import Question
+from safestart.model.scenario import MAX_RANGE
+from safestart.runtime.cache import Shelf
+from safestart.runtime.progress import Context
 
 CUTS_M = (50.0, 150.0, 500.0, 1500.0, 5000.0, MAX_RANGE)
 """Far ends an atlas may have: few, so that questions about different starts find the same one."""
@@ -37,7 +37,7 @@ def atlas_for(question: Question, farthest: float, context: Context, *, make: bo
             return _kept[key]
     atlas = _from(context.shelf, key)
     if atlas is None and make:
-        from safestart.certificates.survey import build
+        from safestart.atlas.survey import build
 
         atlas = build(question, cut, context=context)
         context.shelf.keep(key, pack(atlas))

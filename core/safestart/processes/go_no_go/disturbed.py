@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from safestart.certificates.answer import Answer, Verdict
-from safestart.certificates.question import Question
-from safestart.certificates.tube import Disturbance, decide_disturbed, tube_of
+from safestart.disturbance.tube import Disturbance, decide_disturbed, tube_of
 from safestart.errors import invalid
+from safestart.exact.answer import Answer, Verdict
+from safestart.exact.question import Question
+from safestart.model.scenario import Floats
 from safestart.processes.go_no_go.spec import GoNoGoInputs
-from safestart.progress import Context
-from safestart.scenario import Floats
+from safestart.runtime.progress import Context
 
 
 def disturbance_of(inputs: GoNoGoInputs) -> Disturbance | None:

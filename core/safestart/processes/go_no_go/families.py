@@ -5,17 +5,17 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from safestart.certificates.answer import Verdict
-from safestart.certificates.families.answer import Example, ForAll
-from safestart.certificates.families.decide import decide_for_all
-from safestart.certificates.families.members import Family
-from safestart.certificates.families.prove import proof_for_all
-from safestart.certificates.question import Question
 from safestart.errors import invalid
+from safestart.exact.answer import Verdict
+from safestart.exact.question import Question
+from safestart.families.answer import Example, ForAll
+from safestart.families.decide import decide_for_all
+from safestart.families.members import Family
+from safestart.families.prove import proof_for_all
+from safestart.model.scenario import MAX_MEAN_MOTION, MIN_ACCELERATION, Floats, number
 from safestart.processes.go_no_go.spec import GoNoGoInputs
 from safestart.processes.wire import finite
-from safestart.progress import Context
-from safestart.scenario import MAX_MEAN_MOTION, MIN_ACCELERATION, Floats, number
+from safestart.runtime.progress import Context
 
 MOST_FAMILIES = {"common": 50, "per_corner": 10}
 

@@ -7,17 +7,17 @@ from typing import Any
 
 import numpy as np
 
-from safestart.certificates.exact import Answer, Verdict, decide
-from safestart.certificates.question import Question
-from safestart.dynamics.body_frame import body_to_lvlh
+from safestart.attitude.body_frame import body_to_lvlh
 from safestart.errors import invalid
+from safestart.exact.decide import Answer, Verdict, decide
+from safestart.exact.question import Question
+from safestart.model.scenario import Floats, Rest
 from safestart.processes.go_no_go.atlases import atlas_for
 from safestart.processes.go_no_go.disturbed import disturbance_of, told, under
 from safestart.processes.go_no_go.families import decide_families
-from safestart.processes.go_no_go.posed import question_of, sentence
+from safestart.processes.go_no_go.question import question_of, sentence
 from safestart.processes.go_no_go.spec import GoNoGoInputs
-from safestart.progress import Context
-from safestart.scenario import Floats, Rest
+from safestart.runtime.progress import Context
 
 MOST_PROGRAMS = 1000
 MOST_PROOFS = MOST_SEARCHES = 100
@@ -104,6 +104,6 @@ def _end(question: Question, answer: Answer) -> float | None:
 
 
 def _proof(question: Question, start: Floats, answer: Answer) -> dict[str, Any] | None:
-    from safestart.certificates.prove import proof_of
+    from safestart.exact.prove import proof_of
 
     return None if answer.verdict is Verdict.UNDECIDED else proof_of(question, start, answer)

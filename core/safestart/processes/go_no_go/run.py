@@ -7,15 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from safestart.certificates.closed_form import Certificate, certify
-from safestart.certificates.explain import explain
+from safestart.closed_form.explain import explain
+from safestart.closed_form.paper import Certificate, certify
 from safestart.errors import invalid
+from safestart.model.scenario import Floats
 from safestart.processes.base import ProcessOutput
-from safestart.processes.go_no_go.asked import refuse_closed_form
+from safestart.processes.go_no_go.question_fields import refuse_closed_form
 from safestart.processes.go_no_go.spec import GoNoGoInputs
 from safestart.processes.wire import NO_SYNC_LIMIT, finite
-from safestart.progress import Context
-from safestart.scenario import Floats
+from safestart.runtime.progress import Context
 
 
 def run(inputs: GoNoGoInputs, context: Context) -> ProcessOutput:

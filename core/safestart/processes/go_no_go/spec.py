@@ -6,12 +6,12 @@ from typing import Any, Literal
 
 from pydantic import Field
 
+from safestart.model.scenario import MAX_RANGE, Rest
 from safestart.processes.base import ProcessSpec, Table, WireModel
-from safestart.processes.go_no_go.asked import Asked, Kind, Method
-from safestart.processes.go_no_go.widths import Member
+from safestart.processes.go_no_go.question_fields import Asked, Kind, Method
+from safestart.processes.go_no_go.uncertainty import Member
 from safestart.processes.views import Column, Findings
 from safestart.processes.wire import ScenarioInput
-from safestart.scenario import MAX_RANGE, Rest
 
 MAX_STATES = 100_000
 

@@ -6,16 +6,16 @@ from typing import Any
 
 import numpy as np
 
-from safestart.certificates.closed_form import certify_grid
-from safestart.certificates.exact import Verdict, decide
-from safestart.certificates.survey import build
+from safestart.atlas.survey import build
+from safestart.closed_form.paper import certify_grid
 from safestart.engines.exact import containment_horizon
+from safestart.exact.decide import Verdict, decide
+from safestart.model.scenario import Floats, Grid
 from safestart.processes.inclusion_chain.evidence import proof_at
 from safestart.processes.inclusion_chain.regions import question_of, state_at
 from safestart.processes.inclusion_chain.spec import ChainInputs
 from safestart.processes.wire import DT_S
-from safestart.progress import Context
-from safestart.scenario import Floats, Grid
+from safestart.runtime.progress import Context
 
 _FINE = 401
 

@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from safestart.certificates.exact import Verdict, decide
-from safestart.certificates.prove import proof_of
-from safestart.certificates.question import Question
 from safestart.engines.base import ResultCode
-from safestart.metrics import ratio
+from safestart.exact.decide import Verdict, decide
+from safestart.exact.prove import proof_of
+from safestart.exact.question import Question
+from safestart.model.metrics import ratio
+from safestart.model.scenario import Floats
 from safestart.processes.inclusion_chain.regions import Region, state_at
 from safestart.processes.wire import finite
-from safestart.scenario import Floats
 
 _IN = {
     "tube": "a plan keeps {:.2f} m to every face of the tightened corridor",

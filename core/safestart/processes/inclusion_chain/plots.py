@@ -12,11 +12,11 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch
 
 from safestart.engines.base import ResultCode
+from safestart.model.scenario import Floats
 from safestart.processes.base import Artifact
 from safestart.processes.inclusion_chain.regions import Region
 from safestart.processes.inclusion_chain.spec import CHAIN, ChainInputs
 from safestart.processes.plotting import PALETTE, draw_corridor, figure, png
-from safestart.scenario import Floats
 
 _LABELS = {
     "tube": "S_tube (stays, disturbed)",

@@ -10,17 +10,17 @@ from typing import Any
 
 import numpy as np
 
-from safestart.certificates.closed_form import certify_grid
-from safestart.certificates.exact import Verdict, decide
-from safestart.certificates.question import Goal, Question
-from safestart.certificates.survey import build
-from safestart.certificates.tube import Disturbance, Tube, tube_of
+from safestart.atlas.survey import build
+from safestart.closed_form.paper import certify_grid
+from safestart.disturbance.tube import Disturbance, Tube, tube_of
 from safestart.engines.base import Problem, ResultCode
 from safestart.engines.registry import engine
+from safestart.exact.decide import Verdict, decide
+from safestart.exact.question import Goal, Question
+from safestart.model.scenario import Bools, Floats, Rest, Scenario, SetKind
 from safestart.processes.inclusion_chain.spec import ChainInputs
 from safestart.processes.wire import DT_S
-from safestart.progress import Context
-from safestart.scenario import Bools, Floats, Rest, Scenario, SetKind
+from safestart.runtime.progress import Context
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from safestart.corridor import corridor_of
+from safestart.constraints.corridor import corridor_of
 from safestart.engines.base import ResultCode
+from safestart.model.scenario import Bools, Floats
 from safestart.processes.base import Artifact, ProcessOutput
 from safestart.processes.inclusion_chain.containment import in_exact_position, in_synchronize, sliver
 from safestart.processes.inclusion_chain.evidence import counter_example, fraction, pairs
@@ -18,8 +19,7 @@ from safestart.processes.inclusion_chain.plots import chain_map, violation_table
 from safestart.processes.inclusion_chain.regions import Region, region_of
 from safestart.processes.inclusion_chain.spec import CHAIN, ChainInputs
 from safestart.processes.plotting import npz
-from safestart.progress import Context
-from safestart.scenario import Bools, Floats
+from safestart.runtime.progress import Context
 
 # Shares of the progress bar, roughly the share of the time.
 _WEIGHTS = {"hj_match": 20.0, "hj_position": 20.0, "synchronize": 40.0}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from safestart.scenario import Floats
+from safestart.model.scenario import Floats
 
 
 def outlines(centre: Floats, gens: Floats) -> Floats:

@@ -11,19 +11,19 @@ from matplotlib.collections import PolyCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch, Polygon, Rectangle
 
+from safestart.model.scenario import Floats
+from safestart.passive_safety.flights.rk8_flights import simulate
+from safestart.passive_safety.model import LOS_SLOPE, MAX_SPEED, MAX_THRUST, NEWTON, gain
+from safestart.passive_safety.reach.passive import cell_positions, flow_steps, make_bins, prove_drift
+from safestart.passive_safety.reach.reach_set import Reach
+from safestart.passive_safety.reach.tube import Tube
+from safestart.passive_safety.requirements import SPEED_FACES, SPEED_LIMITS
+from safestart.passive_safety.switching_guard import FACE_LIMITS, FACES, GAP_GUARD, Guard
+from safestart.passive_safety.verify import Verification, drift_sources
 from safestart.processes.base import Artifact
 from safestart.processes.passive_safety.outlines import outlines
 from safestart.processes.plotting import figure, png
-from safestart.progress import Context
-from safestart.scenario import Floats
-from safestart.verification.flights import simulate
-from safestart.verification.guard import FACE_LIMITS, FACES, GAP_GUARD, Guard
-from safestart.verification.model import LOS_SLOPE, MAX_SPEED, MAX_THRUST, NEWTON, gain
-from safestart.verification.passive import cell_positions, flow_steps, make_bins, prove_drift
-from safestart.verification.reach import Reach
-from safestart.verification.requirements import SPEED_FACES, SPEED_LIMITS
-from safestart.verification.tube import Tube
-from safestart.verification.verify import Verification, drift_sources
+from safestart.runtime.progress import Context
 
 _FAR, _NEAR, _DRIFT, _BAD, _CONE = "#0072B2", "#009E73", "#CC79A7", "#D55E00", "#F0E442"
 

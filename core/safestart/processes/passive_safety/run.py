@@ -7,16 +7,16 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+from safestart.passive_safety.critical import CriticalAbort, critical_abort
+from safestart.passive_safety.model import NEWTON, Mode, gain
+from safestart.passive_safety.question import Finding, Question
+from safestart.passive_safety.verify import Verification, verify
 from safestart.processes.base import ProcessOutput
 from safestart.processes.passive_safety.plots import arrays, drift_picture, powered_picture
 from safestart.processes.passive_safety.spec import PassiveSafetyInputs
 from safestart.processes.passive_safety.system import MINUTE, system_of
 from safestart.processes.plotting import npz
-from safestart.progress import Context
-from safestart.verification.critical import CriticalAbort, critical_abort
-from safestart.verification.model import NEWTON, Mode, gain
-from safestart.verification.question import Finding, Question
-from safestart.verification.verify import Verification, verify
+from safestart.runtime.progress import Context
 
 _UNITS = {
     "separation": ("m", 1.0),

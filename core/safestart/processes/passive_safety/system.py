@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from safestart.passive_safety.gains import Bryson, Design
+from safestart.passive_safety.model import NEWTON, Dynamics, System
+from safestart.passive_safety.switching_guard import Guard
 from safestart.processes.passive_safety.rendezvous import BrysonInput, RendezvousInputs
-from safestart.verification.gains import Bryson, Design
-from safestart.verification.guard import Guard
-from safestart.verification.model import NEWTON, Dynamics, System
 
 MINUTE = 60.0
 

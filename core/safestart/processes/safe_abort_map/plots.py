@@ -10,12 +10,12 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import BoundaryNorm
 
+from safestart.model.scenario import Floats
+from safestart.passive_safety.switching_guard import Guard
 from safestart.processes.base import Artifact
 from safestart.processes.passive_safety.plots import frame
 from safestart.processes.plotting import figure, png
 from safestart.processes.safe_abort_map.spec import SafeAbortMapInputs
-from safestart.scenario import Floats
-from safestart.verification.guard import Guard
 
 _STEPS = 12
 

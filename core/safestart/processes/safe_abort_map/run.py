@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from safestart.errors import InvalidInput
+from safestart.passive_safety.abort_map import safe_until
+from safestart.passive_safety.question import Question
 from safestart.processes.base import ProcessOutput
 from safestart.processes.passive_safety.system import system_of
 from safestart.processes.plotting import npz
@@ -13,9 +15,7 @@ from safestart.processes.safe_abort_map.parts import summary
 from safestart.processes.safe_abort_map.plots import arrays, map_picture
 from safestart.processes.safe_abort_map.spec import SafeAbortMapInputs
 from safestart.processes.sharding import Part
-from safestart.progress import Context
-from safestart.verification.abort_map import safe_until
-from safestart.verification.question import Question
+from safestart.runtime.progress import Context
 
 INSIDE = "not wholly outside the guard"
 

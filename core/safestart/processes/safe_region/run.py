@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from safestart.certificates.question import Question
-from safestart.corridor import corridor_of
+from safestart.constraints.corridor import corridor_of
 from safestart.errors import invalid
+from safestart.exact.question import Question
+from safestart.model.scenario import Floats
 from safestart.processes.base import ProcessOutput
 from safestart.processes.go_no_go.atlases import atlas_for
 from safestart.processes.safe_region.spec import SafeRegionInputs
 from safestart.processes.wire import DT_S
-from safestart.progress import Context
-from safestart.scenario import Floats
+from safestart.runtime.progress import Context
 
 
 def run(inputs: SafeRegionInputs, context: Context) -> ProcessOutput:

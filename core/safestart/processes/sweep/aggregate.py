@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from safestart.metrics import ConfusionMatrix, ratio, wilson
+from safestart.model.metrics import ConfusionMatrix, ratio, wilson
 from safestart.processes.sweep.spec import SweepInputs
 
 # Of the false GOs of the closed form, this many are kept with their numbers.

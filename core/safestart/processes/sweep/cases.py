@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from safestart.model.scenario import Chaser, CorridorShape, Floats, Scenario, Target
 from safestart.processes.sweep.spec import SweepInputs
 from safestart.processes.sweep.split import DRAWN
-from safestart.scenario import Chaser, CorridorShape, Floats, Scenario, Target
 
 Ints = np.ndarray[tuple[int], np.dtype[np.int64]]
 

@@ -9,18 +9,18 @@ from typing import Any
 
 import numpy as np
 
-from safestart.guidance.flight import fly
-from safestart.guidance.gains import Gains, preset
-from safestart.guidance.pilots import FilterPilot, Flown, Pilot, SequencePilot, fly_in
-from safestart.guidance.plan import flight_plan
-from safestart.guidance.trajectory import start_states
-from safestart.guidance.truth import Truth, draws, truth_of
-from safestart.guidance.worlds import CwhWorld, TwoBodyWorld, World
+from safestart.control.forecast import flight_plan
+from safestart.control.gains import Gains, preset
+from safestart.model.scenario import Bools, Floats, Rest
 from safestart.processes.sweep.cases import Cases
 from safestart.processes.sweep.judge import UNASKED, Verdicts, of
 from safestart.processes.sweep.spec import FINE_DT_S, SweepInputs
 from safestart.processes.wire import DT_S
-from safestart.scenario import Bools, Floats, Rest
+from safestart.simulation.compiled_loop import fly
+from safestart.simulation.pilots import FilterPilot, Flown, Pilot, SequencePilot, fly_in
+from safestart.simulation.trajectory import start_states
+from safestart.simulation.truth import Truth, draws, truth_of
+from safestart.simulation.worlds import CwhWorld, TwoBodyWorld, World
 
 # Flights between two looks at a dismissal, some 10 ms.
 CHUNK = 500

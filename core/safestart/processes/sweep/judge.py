@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from safestart.certificates.answer import GUARD, Verdict
-from safestart.certificates.closed_form import certify
-from safestart.certificates.exact import decide
-from safestart.certificates.question import Question
-from safestart.certificates.survey import build
+from safestart.atlas.survey import build
+from safestart.closed_form.paper import certify
+from safestart.exact.answer import GUARD, Verdict
+from safestart.exact.decide import decide
+from safestart.exact.question import Question
+from safestart.model.scenario import Floats
 from safestart.processes.sweep.cases import Cases
 from safestart.processes.wire import DT_S
-from safestart.scenario import Floats
 
 # From here on an atlas, which costs as much as some hundred answers, is the cheaper way to the same verdicts.
 WORTH_AN_ATLAS = 400

@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from safestart.certificates.exact import decide
-from safestart.certificates.prove import proof_of
-from safestart.certificates.question import Question
+from safestart.exact.decide import decide
+from safestart.exact.prove import proof_of
+from safestart.exact.question import Question
+from safestart.model.scenario import Floats
 from safestart.processes.base import Artifact, ProcessOutput
 from safestart.processes.plotting import npz
 from safestart.processes.sharding import Part
@@ -21,8 +22,7 @@ from safestart.processes.sweep.plots import confusion_picture, table_picture, wo
 from safestart.processes.sweep.records import MEDIA_TYPE, joined
 from safestart.processes.sweep.spec import SweepInputs
 from safestart.processes.wire import DT_S
-from safestart.progress import Context
-from safestart.scenario import Floats
+from safestart.runtime.progress import Context
 
 Path = tuple[dict[str, Any], Floats, Floats]
 """A worst case with the times (T,) and body-frame positions (T, 2) of its flight."""

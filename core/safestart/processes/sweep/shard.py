@@ -22,7 +22,7 @@ from safestart.processes.sweep.fleet import Outcome, fly_all
 from safestart.processes.sweep.judge import GO, NO_GO, UNASKED, UNDECIDED, Verdicts
 from safestart.processes.sweep.records import parquet
 from safestart.processes.sweep.spec import SweepInputs
-from safestart.progress import Context
+from safestart.runtime.progress import Context
 
 Verdict = dict[str, Verdicts]
 Flown = dict[str, Outcome]

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from safestart.model.scenario import MAX_MEAN_MOTION, MAX_RANGE
 from safestart.processes.base import ProcessSpec, WireModel
 from safestart.processes.sharding import Sharding
 from safestart.processes.views import Column, Facts, Flights, Matrices, Rows
@@ -19,7 +20,6 @@ from safestart.processes.wire import (
     Thrust,
     TumbleRate,
 )
-from safestart.scenario import MAX_MEAN_MOTION, MAX_RANGE
 
 Controller = Literal["filter", "filter_fine", "sequence"]
 CertificateName = Literal["closed_form", "exact"]

@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 
-from safestart.certificates.closed_form import certify, certify_grid
+from safestart.closed_form.paper import certify, certify_grid
+from safestart.model.scenario import MAX_ACCELERATION, MIN_ACCELERATION, Chaser, Grid, Scenario, Target
 from safestart.processes.base import ProcessOutput
 from safestart.processes.thrust_map.spec import ThrustMapInputs
-from safestart.progress import Context
-from safestart.scenario import MAX_ACCELERATION, MIN_ACCELERATION, Chaser, Grid, Scenario, Target
+from safestart.runtime.progress import Context
 
 _CELLS = 61
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from pydantic import Field, model_validator
 
+from safestart.model.scenario import MAX_MEAN_MOTION, Rest
 from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.coverage.spec import Rates, Thrusts
 from safestart.processes.views import Column, Rows
 from safestart.processes.wire import CorridorInput
-from safestart.scenario import MAX_MEAN_MOTION, Rest
 
 
 class ThrustMapInputs(WireModel):

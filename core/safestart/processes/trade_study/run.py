@@ -8,24 +8,24 @@ from typing import Any
 
 import numpy as np
 
-from safestart.certificates.closed_form import certify
-from safestart.certificates.question import Question
-from safestart.certificates.survey import build
-from safestart.corridor import corridor_of
-from safestart.guidance.flight import fly
-from safestart.guidance.gains import preset
-from safestart.guidance.plan import flight_plan
-from safestart.guidance.trajectory import start_states
-from safestart.guidance.truth import CONTINUOUS, Truth
-from safestart.metrics import ratio
+from safestart.atlas.survey import build
+from safestart.closed_form.paper import certify
+from safestart.constraints.corridor import corridor_of
+from safestart.control.forecast import flight_plan
+from safestart.control.gains import preset
+from safestart.exact.question import Question
+from safestart.model.metrics import ratio
+from safestart.model.scenario import Chaser, Rest, Scenario, Target
 from safestart.processes.base import ProcessOutput
 from safestart.processes.sharding import Part
 from safestart.processes.trade_study.plots import heat_maps
 from safestart.processes.trade_study.spec import TradeStudyInputs
 from safestart.processes.trade_study.split import area, summary
 from safestart.processes.wire import DT_S
-from safestart.progress import Context
-from safestart.scenario import Chaser, Rest, Scenario, Target
+from safestart.runtime.progress import Context
+from safestart.simulation.compiled_loop import fly
+from safestart.simulation.trajectory import start_states
+from safestart.simulation.truth import CONTINUOUS, Truth
 
 
 def shard(part: dict[str, Any], context: Context) -> Part:

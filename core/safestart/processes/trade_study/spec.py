@@ -6,12 +6,12 @@ from typing import Literal
 
 from pydantic import Field, field_validator
 
+from safestart.model.scenario import MAX_MEAN_MOTION
 from safestart.processes.base import ProcessSpec, WireModel
 from safestart.processes.sharding import Sharding
 from safestart.processes.sweep.spec import Rates, Thrusts
 from safestart.processes.views import Column, Facts, Rows
 from safestart.processes.wire import CorridorInput, GridInput, Horizon, Seed
-from safestart.scenario import MAX_MEAN_MOTION
 
 
 class TradeStudyInputs(WireModel):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from safestart.corridor import corridor_of
+from safestart.constraints.corridor import corridor_of
 from safestart.processes.trade_study.spec import TradeStudyInputs
 
 

@@ -1,0 +1,142 @@
+"""How far the set of starts that can stay extends in a direction: a cone program over start and thrust together.
+
+Starts are at rest in LVLH, planar, p = (x, y). Maximise g . p subject to offset_j + start_j . p + thrust_j . u >= e at
+the rows so far, |u_k| <= a_max and y <= y_max; rows are added where the proposed flight comes closer (as in `exact`).
+The dual weights lambda >= 0 prove, for EVERY start, the affine bound on its margin in metres
+
+    margin(p) <= sum_j lambda_j (offset_j + start_j . p) + a_max sum_k |sum_j lambda_j thrust_jk|,  sum lambda = 1.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from safestart.exact.watch import Watch
+from safestart.model.scenario import Floats
+from safestart.optim.conic import bound, into_disk, solver_settings
+
+CLEARANCE = 1e-3
+"""Distance (m) that the witness of a farthest start keeps, so that its proof does not hang on the last digit."""
+_ROUNDS = 40
+_FIRST_TIMES = 7
+
+
+@dataclass(frozen=True, slots=True)
+class Witness:
+    """A start (2,) with thrust (N, 2) that keeps ``margin`` metres at all times."""
+
+    start: Floats
+    thrust: Floats
+    margin: float
+
+
+@dataclass(frozen=True, slots=True)
+class Ceiling:
+    """Bound on every margin: ``slope`` (2,) . p + ``level`` metres, from weights (J,) at times (s) and faces."""
+
+    slope: Floats
+    level: float
+    times: Floats
+    faces: Any
+    weights: Floats
+
+
+class NotSolved(Exception):
+    """The cone program gave nothing usable; the message is the solver's word."""
+
+
+class Extent:
+    """The cone programs of one question, planar, starts at rest in LVLH, y at most ``y_max`` metres."""
+
+    def __init__(self, watch: Watch, y_max: float) -> None:
+        self.watch, self.y_max = watch, y_max
+        self.a_max = watch.question.scenario.chaser.max_acceleration
+        faces = len(watch.names)
+        times = np.repeat(np.linspace(0.0, watch.question.horizon, _FIRST_TIMES), faces)
+        self._base: tuple[Floats, Any] = (times, np.tile(np.arange(faces), _FIRST_TIMES))
+        # Rows that bound the last answer: a neighbouring direction touches the corridor at nearly the same times.
+        self._active: tuple[Floats, Any] = (np.empty(0), np.empty(0, dtype=np.int64))
+
+    def farthest(self, direction: Floats) -> tuple[Witness, Ceiling | None, float]:
+        """Start that keeps ``CLEARANCE`` and lies farthest along the unit ``direction`` (2,), its ceiling, and how far
+        any start can lie.
+
+        No ceiling where y_max alone limits. Raises :class:`NotSolved`.
+        """
+        return self._search(direction)
+
+    def deepest(self) -> tuple[Witness, Ceiling | None]:
+        """The start with the largest margin, negative when no start can stay. Raises :class:`NotSolved`."""
+        return self._search(None)[:2]
+
+    def _search(self, direction: Floats | None) -> tuple[Witness, Ceiling | None, float]:
+        watch = self.watch
+        times, faces = (np.concatenate(pair) for pair in zip(self._base, self._active, strict=True))
+        for _ in range(_ROUNDS):
+            cuts = watch.cuts(times, faces)
+            start, thrust, margin, weights, reach = self._solve(
+                cuts.offset, cuts.start[:, :2], cuts.thrust, direction
+            )
+            minima = watch.minima(np.concatenate([start, [0.0, 0.0]]), thrust)
+            wanted = CLEARANCE if direction is not None else margin
+            low = minima.values < wanted - 0.25 * CLEARANCE
+            if minima.lowest >= wanted - 0.5 * CLEARANCE or not low.any():
+                active = weights > 1e-9 * weights.sum()
+                self._active = times[active], faces[active]
+                return Witness(start, thrust, minima.lowest), self._ceiling(times, faces, weights), reach
+            times, faces = np.append(times, minima.times[low]), np.append(faces, minima.faces[low])
+        raise NotSolved("the flight still came closer than the program knew after every round")
+
+    def _ceiling(self, times: Floats, faces: Any, weights: Floats) -> Ceiling | None:
+        total = float(weights.sum())
+        if total <= 1e-6:
+            return None
+        kept = weights > 1e-12 * total
+        times, faces, weights = times[kept], faces[kept], weights[kept] / total
+        weights = weights / weights.sum()
+        cuts = self.watch.cuts(times, faces)
+        level = bound(cuts.offset, cuts.thrust, weights, self.a_max, 2)
+        return Ceiling(weights @ cuts.start[:, :2], level, times, faces, weights)
+
+    def _solve(
+        self, offset: Floats, start: Floats, thrust: Floats, direction: Floats | None
+    ) -> tuple[Floats, Floats, float, Floats, float]:
+        """Start, thrust inside the disk, the common margin asked for or found, the rows' weights, and by the dual how
+        far along ``direction`` any start with margin 0 lies (m).
+        """
+        import clarabel
+        from scipy.sparse import csc_array
+
+        rows, columns = thrust.shape
+        count = columns // 2
+        free = direction is None
+        size = rows + 1 + 3 * count
+        a = np.zeros((size, columns + 2 + free))
+        b = np.zeros(size)
+        a[:rows, :columns], a[:rows, columns : columns + 2] = -self.a_max * thrust, -start
+        b[:rows] = offset if free else offset - CLEARANCE
+        a[rows, columns + 1], b[rows] = 1.0, self.y_max
+        cones = rows + 1 + 3 * np.arange(count)
+        b[cones] = 1.0
+        for axis in (0, 1):
+            a[cones + 1 + axis, 2 * np.arange(count) + axis] = -1.0
+        cost = np.zeros(columns + 2 + free)
+        if direction is None:
+            a[:rows, -1], cost[-1] = 1.0, -1.0
+        else:
+            cost[columns : columns + 2] = -direction
+        kinds = [clarabel.NonnegativeConeT(rows + 1), *[clarabel.SecondOrderConeT(3)] * count]
+        none = csc_array((len(cost), len(cost)))
+        found = clarabel.DefaultSolver(none, cost, csc_array(a), b, kinds, solver_settings()).solve()
+        status = str(found.status)
+        x, weights = np.array(found.x), np.maximum(np.array(found.z[:rows]), 0.0)
+        if status not in ("Solved", "AlmostSolved") or not (
+            np.isfinite(x).all() and np.isfinite(weights).all()
+        ):
+            raise NotSolved(f"the solver stopped with {status}")
+        used = self.a_max * into_disk(x[:columns].reshape(count, 2))
+        reach = bound(offset, thrust, weights, self.a_max, 2) + max(float(found.z[rows]), 0.0) * self.y_max
+        return x[columns : columns + 2], used, float(x[-1]) if free else CLEARANCE, weights, reach

@@ -1,0 +1,129 @@
+"""An atlas as bytes (NPZ) and back, bit for bit, and the content key under which it is found again."""
+
+from __future__ import annotations
+
+import io
+import json
+import zipfile
+from dataclasses import asdict
+from hashlib import sha256
+from typing import Any
+
+import numpy as np
+
+from safestart.atlas.atlas import Atlas
+from safestart.atlas.extent import Ceiling, Witness
+from safestart.errors import InvalidInput, invalid
+from safestart.exact.question import Question
+from safestart.model.scenario import Chaser, CorridorShape, Floats, Scenario, Target
+from safestart.records.provenance import source
+
+FORMAT = "safestart-atlas/1"
+_REQUIRED = f"an atlas file ({FORMAT})"
+
+
+def key_of(question: Question, y_max: float, tolerance: float) -> str:
+    """Content key: SHA-256 over the format, our source, the question, the cut (m) and the relative gap asked for.
+
+    What other code has built is built again: answers rest on the code that their provenance names.
+    """
+    stated = {
+        "format": FORMAT,
+        "source": source(),
+        "question": asdict(question),
+        "y_max": float(y_max),
+        "tolerance": float(tolerance),
+    }
+    return sha256(json.dumps(stated, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
+
+
+def pack(atlas: Atlas) -> bytes:
+    """The atlas with all its witnesses and multipliers; equal atlases give equal bytes."""
+    head = {
+        "format": FORMAT,
+        "question": asdict(atlas.question),
+        "y_max": atlas.y_max,
+        "inner_area": atlas.inner_area,
+        "outer_area": atlas.outer_area,
+        "names": list(atlas.names),
+        "message": atlas.message,
+    }
+    witnesses = (atlas.deepest, atlas.centre, *atlas.rim)
+    rows = [len(c.times) for c in atlas.ceilings]
+    buffer = io.BytesIO()
+    np.savez_compressed(
+        buffer,
+        allow_pickle=False,
+        head=np.array(json.dumps(head, sort_keys=True)),
+        start=np.array([w.start for w in witnesses]),
+        thrust=np.array([w.thrust for w in witnesses]),
+        margin=np.array([w.margin for w in witnesses]),
+        angles=atlas.angles,
+        corners=atlas.corners,
+        slope=atlas.slopes,
+        level=atlas.levels,
+        rows=np.array(rows, dtype=np.int64),
+        times=_joined([c.times for c in atlas.ceilings]),
+        faces=_joined([c.faces for c in atlas.ceilings]).astype(np.int64),
+        weights=_joined([c.weights for c in atlas.ceilings]),
+    )
+    return buffer.getvalue()
+
+
+def unpack(data: bytes) -> Atlas:
+    """The atlas that :func:`pack` wrote; raises ``InvalidInput`` for anything else."""
+    try:
+        with np.load(io.BytesIO(data), allow_pickle=False) as found:
+            arrays = dict(found)
+        head = json.loads(str(arrays["head"]))
+        if head["format"] != FORMAT:
+            raise invalid("atlas", _REQUIRED, head["format"])
+        return _assembled(head, arrays)
+    except InvalidInput:
+        raise
+    except (KeyError, ValueError, TypeError, IndexError, OSError, EOFError, zipfile.BadZipFile) as error:
+        raise invalid("atlas", _REQUIRED, f"{type(error).__name__} while reading it") from None
+
+
+def _assembled(head: dict[str, Any], arrays: dict[str, Any]) -> Atlas:
+    stated = dict(head["question"])
+    scenario = stated.pop("scenario")
+    question = Question(
+        Scenario(
+            Target(**scenario["target"]),
+            Chaser(**scenario["chaser"]),
+            CorridorShape(**scenario["corridor"]),
+        ),
+        **stated,
+    )
+    witnesses = [
+        Witness(start, thrust, float(margin))
+        for start, thrust, margin in zip(arrays["start"], arrays["thrust"], arrays["margin"], strict=True)
+    ]
+    ends = np.cumsum(arrays["rows"])[:-1]
+    parts = (np.split(arrays[name], ends) for name in ("times", "faces", "weights"))
+    ceilings = tuple(
+        Ceiling(slope, float(level), times, faces, weights)
+        for slope, level, times, faces, weights in zip(arrays["slope"], arrays["level"], *parts, strict=False)
+    )
+    return Atlas(
+        question,
+        float(head["y_max"]),
+        witnesses[0],
+        witnesses[1],
+        tuple(witnesses[2:]),
+        arrays["corners"],
+        arrays["margin"][2:],
+        arrays["angles"],
+        ceilings,
+        arrays["slope"],
+        arrays["level"],
+        float(head["inner_area"]),
+        float(head["outer_area"]),
+        tuple(head["names"]),
+        str(head["message"]),
+    )
+
+
+def _joined(parts: list[Floats]) -> Any:
+    return np.concatenate(parts) if parts else np.empty(0)

@@ -1,1 +1,0 @@
-"""Answers to the safe-start question that need no grid and no iteration."""

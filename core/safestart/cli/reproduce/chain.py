@@ -1,0 +1,96 @@
+"""``safestart reproduce chain``: the inclusions of eq. (12), claimed and found."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import typer
+
+from safestart.cli.console import Json, Justify, number, out, print_json, reporting, table_of
+from safestart.papers import safe_start as published
+from safestart.processes.execute import execute
+from safestart.processes.inclusion_chain.spec import ALL_SETS
+
+_COLUMNS: tuple[tuple[str, Justify], ...] = (
+    ("deg/s", "right"),
+    ("claimed", "left"),
+    ("cells", "right"),
+    ("outside", "right"),
+    ("share", "right"),
+    ("counter-example", "left"),
+)
+
+
+def register(group: typer.Typer) -> None:
+    """Add the command to the group ``reproduce``."""
+
+    @group.command("chain")
+    def chain(
+        rate: Annotated[
+            list[float] | None,
+            typer.Option(help="Tumble rate, deg/s; repeatable. Absent: those of Table 2."),
+        ] = None,
+        level_sets: Annotated[
+            bool, typer.Option(help="Leave out the level sets with --no-level-sets: seconds, not a minute.")
+        ] = True,
+        as_json: Json = False,
+    ) -> None:
+        """Eq. (12): S_tube in S_ana in S_sync in S_HJpos, at 0.10 m/s^2 and 40 s: does it hold, and where not?"""
+        document = chain_document(rate or list(published.TABLE2), level_sets=level_sets)
+        print_json(document) if as_json else show(document)
+
+
+def chain_document(rates: list[float], *, level_sets: bool = True) -> dict[str, Any]:
+    """Outputs of ``inclusion-chain`` per tumble rate (deg/s), at the thrust of Table 2."""
+    sets = [name for name in ALL_SETS if level_sets or not name.startswith("hj_")]
+    points = []
+    for rate in rates:
+        with reporting(f"chain at {rate:g} deg/s") as context:
+            inputs = {"omega_t_deg_s": rate, "a_max_m_s2": published.TABLE2_THRUST_M_S2, "sets": sets}
+            outputs = execute("inclusion-chain", inputs, context).document["outputs"]
+        points.append({"omega_t_deg_s": rate, "a_max_m_s2": published.TABLE2_THRUST_M_S2, **outputs})
+    return {"points": points}
+
+
+def show(document: dict[str, Any]) -> None:
+    """Print the chain's links, then every pair of sets, then what is said of each point."""
+    table, said = table_of("Eq. (12): is each set inside the next?", _COLUMNS), []
+    for point in document["points"]:
+        cells = {row["name"]: row["cells"] for row in point["sets"]}
+        for link in point["chain"]:
+            found = _example(point, link["inner"], link["outer"])
+            where = "-" if found is None else f"({found['x_m']:.3f}, {found['y_m']:.3f}) m"
+            if found is not None:
+                said.append(f"{point['omega_t_deg_s']:g} deg/s, {where}: {found['evidence']}")
+            table.add_row(
+                f"{point['omega_t_deg_s']:g}",
+                f"{link['inner']} in {link['outer']}",
+                str(cells[link["inner"]]),
+                "-" if link["cells"] is None else str(link["cells"]),
+                number(link["violation_fraction"]),
+                where,
+            )
+        table.add_section()
+    out.print(table)
+    for line in said:
+        out.print(f"- {line}")
+    for point in document["points"]:
+        _matrix(point)
+        for line in point["notes"]:
+            out.print(f"- {line}")
+
+
+def _matrix(point: dict[str, Any]) -> None:
+    names = list(point["violation_fraction"])
+    columns: list[tuple[str, Justify]] = [("share of / outside", "left")]
+    columns += [(name.replace("analytical", "ana").replace("position", "pos"), "right") for name in names]
+    table = table_of(f"Violation fractions at {point['omega_t_deg_s']:g} deg/s", columns)
+    for inner in names:
+        row = point["violation_fraction"][inner]
+        table.add_row(inner, *("·" if inner == outer else number(row[outer]) for outer in names))
+    out.print(table)
+
+
+def _example(point: dict[str, Any], inner: str, outer: str) -> dict[str, Any] | None:
+    pairs = ((e["inner"], e["outer"], e) for e in point["counter_examples"])
+    return next((e for one, other, e in pairs if (one, other) == (inner, outer)), None)

@@ -1,0 +1,117 @@
+"""Capture set of the recovery box under the saturated PD law (paper 001, eqs. 8, 9, 16, 19, Figs. 3 and 4).
+
+The law is a function of the state, so nothing is left to decide: whether a state comes into the box within the horizon
+is found by flying it, without a grid. The level set that the paper computes is here too, to be counted against it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from safestart.collision_avoidance.capture_kernel import arrivals
+from safestart.collision_avoidance.encounters.feedback import Gains, Slot, command
+from safestart.collision_avoidance.game import Game
+from safestart.errors import invalid
+from safestart.levelset import Ball, Box, Lattice, Options, Solution, solve
+from safestart.levelset.dynamics import Aim, Rates
+from safestart.model.scenario import Floats
+from safestart.runtime.progress import Context
+
+STEP = 0.5
+"""Seconds between two looks at a flight; the law's fastest time constant is tens of seconds."""
+
+# Speeds count as distances covered in this many seconds, so that the level set is as steep along every axis.
+_TIME = 100.0
+
+
+def arrival_times(game: Game, slot: Slot, gains: Gains, states: Floats, horizon_s: float) -> Floats:
+    """First time (...) in s at which states (..., 4) are in the slot's box; inf where not within the horizon.
+
+    No disturbance acts. Raises ``InvalidInput`` for a game that is not planar.
+    """
+    if game.channels != 2:
+        raise invalid("game", "a planar game", f"{game.channels} channels")
+    flat = np.ascontiguousarray(states, dtype=np.float64).reshape(-1, 4)
+    disk = len(game.control.parts) == 1
+    limits = [part.radius for part in game.control.parts]
+    law = np.array(
+        [game.mean_motion, *gains.position, *gains.speed, disk, limits[0], limits[-1], *slot.centre]
+    )
+    out = np.empty(len(flat))
+    arrivals(flat, law, np.array(slot.half), STEP, horizon_s, out)
+    return out.reshape(np.shape(states)[:-1])
+
+
+@dataclass(frozen=True)
+class ClosedLoop:
+    """Motion of the level-set solver: eq. (5) with the PD law in the place of u, and no input left."""
+
+    game: Game
+    slot: Slot
+    gains: Gains
+    varies: bool = False
+
+    @property
+    def bounds(self) -> list[tuple[Box | Ball, Aim, float]]:
+        """No inputs."""
+        return []
+
+    def rates(self, lattice: Lattice, time: float) -> Rates:
+        """Rates on the nodes."""
+        del time
+        axes = lattice.coordinates()
+        a = self.game.matrix()
+        drift = [[a[i, k] * axes[k] for k in range(4) if a[i, k] != 0.0] for i in range(4)]
+        u = command(np.stack(np.broadcast_arrays(*axes), axis=-1), self.slot, self.gains, self.game.control)
+        for channel in range(2):
+            pushed = u[..., channel]
+            # Of a box every channel depends on its own position and speed alone.
+            if len(self.game.control.parts) == 2:
+                pushed = pushed.take([0], axis=1 - channel).take([0], axis=3 - channel)
+            drift[2 + channel].append(pushed)
+        return Rates(drift, [])
+
+    def gains_at(self, states: Floats, time: float) -> list[Floats]:
+        """No inputs."""
+        del states, time
+        return []
+
+
+def level_set(
+    game: Game,
+    slot: Slot,
+    gains: Gains,
+    lattice: Lattice,
+    horizon_s: float,
+    options: Options,
+    context: Context | None = None,
+) -> Solution:
+    """The capture set as a level set, captured where V <= 0: the largest excess over the box, least on the way.
+
+    Speeds are weighed by 100 s. ``lattice`` should have a node in the middle of the box, or it may miss it.
+    """
+    pairs = zip(lattice.coordinates(), slot.centre, slot.half, (1.0, 1.0, _TIME, _TIME), strict=True)
+    excess = np.broadcast_arrays(*[(np.abs(x - c) - h) * scale for x, c, h, scale in pairs])
+    values = np.max(np.stack(excess), axis=0)
+    return solve(lattice, ClosedLoop(game, slot, gains), values, horizon_s, options=options, context=context)
+
+
+@dataclass(frozen=True, slots=True)
+class Agreement:
+    """Nodes by what flight and level set say of them; the flight is right."""
+
+    both: int
+    flown_only: int
+    level_set_only: int
+    neither: int
+
+
+def compare(solution: Solution, flown: Floats, states: Floats) -> Agreement | None:
+    """Count ``flown`` arrival times (N,) of ``states`` (N, 4) against a level set; None where that has failed."""
+    if solution.field is None:
+        return None
+    claimed, arrived = solution.field.value_at(states) <= 0.0, np.isfinite(flown)
+    counts = [(claimed & arrived), (~claimed & arrived), (claimed & ~arrived), (~claimed & ~arrived)]
+    return Agreement(*(int(mask.sum()) for mask in counts))

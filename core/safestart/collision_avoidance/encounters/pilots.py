@@ -1,0 +1,76 @@
+"""What Player 1 does: evade by the value function, burn an escape mode, follow the PD law, or coast.
+
+The gradient of a value on a grid does not tell left from right near a head-on course: the two ways out are worth
+the same there and differ by less than a cell. ``certified`` therefore flies the best constant sum u + d whenever it is
+proved to keep the distance (:func:`~safestart.collision_avoidance.bounds.certified.witness`), and the gradient elsewhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from safestart.collision_avoidance.bounds.certified import witness
+from safestart.collision_avoidance.encounters.escape import MODES
+from safestart.collision_avoidance.encounters.feedback import EVASIVE, Slot, command
+from safestart.collision_avoidance.encounters.observation import Moment
+from safestart.collision_avoidance.game import Game
+from safestart.model.scenario import Floats
+
+Pilot = Callable[[Moment], Floats]
+"""u (N, m) at a moment."""
+
+TITLES = {
+    "certified": "HJ joined with the certified bound",
+    "hj": "HJ, gradient alone",
+    "supervisor": "supervisor",
+    **{mode.name: f"escape mode {mode.title}" for mode in MODES},
+    "pd": "PD, evasive gains",
+    "coast": "coast",
+}
+PILOTS = tuple(name for name in TITLES if name != "supervisor")
+
+
+def pilot(name: str, game: Game, slot: Slot, fuel_price: float = 0.0) -> Pilot:
+    """The memoryless pilot of that name.
+
+    ``hj`` raises the value as fast as it can, and coasts where that is not worth ``fuel_price`` (m per m/s); a
+    mode burns at full thrust all the time; ``pd`` follows the evasive PD law to the slot.
+    """
+    if name == "certified":
+        return lambda moment: evade(game, moment)
+    if name == "hj":
+        return lambda moment: climb(game, moment, fuel_price)
+    if name == "pd":
+        return lambda moment: command(moment.states, slot, EVASIVE, game.control)
+    for mode in MODES:
+        if mode.name == name:
+            push = game.control.extreme(np.array(mode.direction))
+            return lambda moment: np.broadcast_to(push, (len(moment.states), game.channels))
+    return lambda moment: np.zeros((len(moment.states), game.channels))
+
+
+def climb(game: Game, moment: Moment, fuel_price: float = 0.0) -> Floats:
+    """The u (N, m) that raises the value fastest; none where that gains no more than the price."""
+    slope = moment.gradient[:, game.channels :]
+    push = game.control.extreme(slope)
+    for part in game.control.parts:
+        gain = np.linalg.norm(slope[:, part.begin : part.end], axis=1, keepdims=True)
+        push[:, part.begin : part.end] *= gain > fuel_price
+    return push
+
+
+def evade(game: Game, moment: Moment) -> Floats:
+    """Thrust (N, m) for the best constant sum that is proved to keep the distance; the climb where none is."""
+    push, left = climb(game, moment), game.realisable
+    if left is None or moment.to_go <= 0.0:
+        return push
+    # What is asked of the sum, stretched to Player 1's own set: whatever d takes, the sum goes at least that way.
+    stretch = np.ones(game.channels)
+    for own, part in zip(game.control.parts, left.parts, strict=True):
+        stretch[part.begin : part.end] = own.radius / part.radius if part.radius > 0.0 else 0.0
+    found = witness(game, moment.states, moment.to_go, effort=0)
+    proved = found.margin_m > 0.0
+    push[proved] = stretch * found.inputs[proved, 0]
+    return push

@@ -1,0 +1,117 @@
+"""Starts of encounters: near the boundary of the unsafe set from outside, wholly inside it, or on the way to it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from safestart.collision_avoidance.bounds.certified import unavoidable
+from safestart.collision_avoidance.bounds.closest_approach import closest
+from safestart.collision_avoidance.encounters.observation import Sight
+from safestart.collision_avoidance.tube import Answer
+from safestart.errors import invalid
+from safestart.model.scenario import Bools, Floats
+from safestart.runtime.progress import Context
+
+BATCH, BATCHES = 20_000, 200
+"""States drawn at a time, and how many times before the search is given up."""
+
+Accept = Callable[[Floats], Bools]
+
+
+def near_boundary(sight: Sight, count: int, band_m: float, seed: int, context: Context) -> Floats:
+    """``count`` starts (count, 2 m), uniform in the lattice's box, kept if hard and not lost.
+
+    Kept: 0 < value <= band; a free motion (no one thrusts) that comes within the keep-out distance inside the
+    horizon, so that Player 1 must act; and outside the unsafe set by the tube's answer (proved safe at the state, or a
+    value above the grid error). Raises ``InvalidInput`` where too few are found.
+    """
+    tube = sight.tube
+
+    def accept(states: Floats) -> Bools:
+        value = sight.look(0, states, tube.horizon_s).value
+        kept: Bools = (value > 0.0) & (value <= band_m)
+        kept[kept] = _coasting_lost(sight, states[kept])
+        if kept.any():
+            kept[kept] = tube.answer(states[kept]) >= Answer.SAFE
+        return kept
+
+    return _draw(sight, count, accept, seed, "starts near the boundary", context)
+
+
+def certified_unsafe(sight: Sight, count: int, seed: int, context: Context) -> Floats:
+    """``count`` starts (count, 2 m) outside the keep-out distance, proved lost whatever Player 1 does.
+
+    Uniform in the lattice's box among those; raises as :func:`near_boundary`.
+    """
+
+    def accept(states: Floats) -> Bools:
+        kept: Bools = _coasting_lost(sight, states)
+        kept[kept] = unavoidable(sight.game, states[kept], sight.tube.horizon_s)
+        return kept
+
+    return _draw(sight, count, accept, seed, "certified unsafe starts", context)
+
+
+def approaching(
+    sight: Sight, radius_m: float, speed_m_s: float, count: int, level_m: float, seed: int, context: Context
+) -> Floats:
+    """``count`` planar starts (count, 4) of a supervised flight: uniform in a disk of ``radius_m``.
+
+    At a speed up to ``speed_m_s``, aimed to pass within two keep-out distances; the value is above ``level_m``.
+    Raises as :func:`near_boundary`.
+    """
+    keep_out = sight.game.keep_out_m
+    rng = np.random.default_rng(seed)
+
+    def draw(size: int) -> Floats:
+        radius = radius_m * np.sqrt(rng.random(size))
+        angle, turn = rng.uniform(-np.pi, np.pi, size), rng.uniform(-1.0, 1.0, size)
+        speed = rng.random(size) * speed_m_s
+        heading = angle + np.pi + turn * np.arcsin(np.minimum(2.0 * keep_out / np.maximum(radius, 1e-9), 1.0))
+        place = radius * np.array([np.cos(angle), np.sin(angle)])
+        return np.concatenate([place, speed * np.array([np.cos(heading), np.sin(heading)])]).T
+
+    def accept(states: Floats) -> Bools:
+        outside: Bools = np.linalg.norm(states[:, :2], axis=1) > keep_out
+        return outside & (sight.look(0, states, sight.tube.horizon_s).value > level_m)
+
+    return _collect(draw, accept, count, "approaching starts", context)
+
+
+def _coasting_lost(sight: Sight, states: Floats) -> Bools:
+    """Outside the keep-out distance, and a free motion comes inside within the horizon, (N,)."""
+    game, horizon = sight.game, sight.tube.horizon_s
+    lost: Bools = np.linalg.norm(states[:, : game.channels], axis=1) > game.keep_out_m
+    near = closest(game, states[lost], horizon, horizon)
+    lost[lost] = np.linalg.norm(near.vector, axis=1) <= game.keep_out_m
+    return lost
+
+
+def _draw(sight: Sight, count: int, accept: Accept, seed: int, what: str, context: Context) -> Floats:
+    rng = np.random.default_rng(seed)
+    lattice = sight.tube.lattice
+
+    def draw(size: int) -> Floats:
+        return rng.uniform(lattice.low, lattice.high, size=(size, lattice.ndim))
+
+    return _collect(draw, accept, count, what, context)
+
+
+def _collect(
+    draw: Callable[[int], Floats], accept: Accept, count: int, what: str, context: Context
+) -> Floats:
+    found: list[Floats] = []
+    have = 0
+    for batch in range(BATCHES):
+        context.step(min(have, count), count, what)
+        states = draw(BATCH)
+        kept = states[accept(states)]
+        found.append(kept)
+        have += len(kept)
+        if have >= count:
+            return np.concatenate(found)[:count]
+        if batch >= 9 and have * (BATCHES / (batch + 1)) < 0.5 * count:
+            break
+    raise invalid("encounters", f"at most {have}: no more {what} were found in the lattice's box", count)

@@ -1,0 +1,117 @@
+"""Answers to the exact questions: verdict, bracket, and the evidence either way."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+import numpy as np
+
+from safestart.exact.norm_rows import Blocks
+from safestart.exact.watch import Ints
+from safestart.model.scenario import Floats
+
+TOLERANCE = 1e-4
+# Floats carry the distances to about 1e-12 m; a verdict keeps three orders of magnitude away from that.
+GUARD = 1e-9
+
+
+class Verdict(StrEnum):
+    """GO: a thrust history stays. NO_GO: none does. UNDECIDED: the bracket holds 0, or the solver failed."""
+
+    GO = "GO"
+    NO_GO = "NO_GO"
+    UNDECIDED = "UNDECIDED"
+
+
+@dataclass(frozen=True, slots=True)
+class Multiplier:
+    """Weight of one face's distance at one time (s) in the proof of a NO_GO.
+
+    For a norm limit (``speed``, ``hold``, ``rest``) ``pull`` is the vector p, |p| <= value, of
+    :mod:`safestart.exact.limits`; ``hold`` and ``rest`` are meant at the end, whatever their time.
+    """
+
+    time: float
+    face: str
+    value: float
+    pull: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """Multipliers that refute every end T = k dt with k from ``first`` to ``last``; times after T do not count."""
+
+    first: int
+    last: int
+    multipliers: tuple[Multiplier, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """Verdict and bracket of the signed margin m in metres (all face distances >= m at all times, at best).
+
+    ``lower`` is what the thrust history ``thrust`` (N, d), LVLH m/s^2, keeps at all times; ``upper`` what the
+    ``multipliers`` prove that no history exceeds. ``margin_m`` is the end of the bracket the verdict rests on:
+    ``lower`` for GO, ``upper`` for NO_GO, their middle when UNDECIDED (NaN without a bracket). A GO carries no
+    multipliers, a NO_GO no thrust. ``reason`` says why an answer is UNDECIDED, else it is empty.
+
+    For `synchronize` m is the best over T, ``thrust`` ends at the T it was found for, and ``parts`` stand for
+    ``multipliers``. The loop ends with the verdict, so the bracket may be wide.
+    """
+
+    verdict: Verdict
+    margin_m: float
+    lower: float
+    upper: float
+    thrust: Floats | None
+    multipliers: tuple[Multiplier, ...]
+    iterations: int
+    reason: str = ""
+    parts: tuple[Part, ...] = ()
+
+    @property
+    def gap(self) -> float:
+        """Width of the bracket in metres."""
+        return self.upper - self.lower
+
+
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """Weighted rows that bound a margin: faces at times (J,), then ``blocks``; ``constant`` and ``rows`` stack both.
+
+    ``weights`` has one entry for each stacked row; those on rows that hold m (faces, first rows of blocks) sum to 1.
+    """
+
+    times: Floats
+    faces: Ints
+    blocks: Blocks
+    constant: Floats
+    rows: Floats
+    weights: Floats
+
+    def until(self, latest: float) -> Evidence:
+        """The same with no time after ``latest`` (s): rounding may have put one there."""
+        blocks = replace(self.blocks, times=np.minimum(self.blocks.times, latest))
+        return replace(self, times=np.minimum(self.times, latest), blocks=blocks)
+
+    def multipliers(self, names: tuple[str, ...]) -> tuple[Multiplier, ...]:
+        """The weights above 0, by name; ``names`` are the faces'."""
+        count = len(self.faces)
+        plain = self.weights[:count]
+        kept = np.nonzero(plain > 0.0)[0]
+        out = [
+            Multiplier(time, names[face], value)
+            for time, face, value in zip(
+                self.times[kept].tolist(), self.faces[kept].tolist(), plain[kept].tolist(), strict=True
+            )
+        ]
+        if self.blocks.names:
+            vectors = self.weights[count:].reshape(len(self.blocks.names), -1).tolist()
+            for name, time, (value, *z) in zip(
+                self.blocks.names, self.blocks.times.tolist(), vectors, strict=True
+            ):
+                if value > 0.0:
+                    # The cone's dual adds z . y, a multiplier takes p . y away.
+                    out.append(Multiplier(time, name, value, tuple(-e for e in z)))
+        return tuple(out)

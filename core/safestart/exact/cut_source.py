@@ -1,0 +1,29 @@
+"""What a search asks of the thing it watches flights by: one question (``watch.py``) or a family of them."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from safestart.exact.motion import NodeTables
+from safestart.exact.question import Question
+from safestart.exact.watch import Cuts, Ints, Minima
+from safestart.model.scenario import Floats
+
+
+class Watched(Protocol):
+    """Faces (``normals`` (F, d), ``offsets`` (F,), ``names``) of one question, its rows, and the minima of a flight."""
+
+    question: Question
+    tables: NodeTables
+    normals: Floats
+    offsets: Floats
+    names: tuple[str, ...]
+
+    def cuts(self, times: Floats, faces: Ints) -> Cuts:
+        """Rows at pairs of time (J,) and face (J,)."""
+
+    def minima(self, state: Floats, thrust: Floats) -> Minima:
+        """Local minima and the all-times bound of a flight."""
+
+    def __hash__(self) -> int:
+        """By identity: what is kept for a watch is kept for this one."""

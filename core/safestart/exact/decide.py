@@ -1,0 +1,66 @@
+"""The exact answer: may this start stay in the corridor at all times of [0, T]? Yes with thrust, no with a proof.
+
+Cutting planes in time. The conic program is solved with few rows; the flight it proposes is watched at all times; where
+a face comes closer than the program knew, a row is added. The program's dual bounds the best margin from above, the
+watched flight from below: each round ends with a bracket, the loop with one narrower than the tolerance.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from safestart.errors import invalid
+from safestart.exact.answer import GUARD, TOLERANCE, Answer, Multiplier, Verdict
+from safestart.exact.question import Question
+from safestart.exact.search import Search
+from safestart.exact.synchronize import synchronize
+from safestart.exact.watch import watch_of
+from safestart.model.scenario import Floats, number
+
+__all__ = ["GUARD", "TOLERANCE", "Answer", "Multiplier", "Verdict", "decide"]
+
+
+def decide(
+    question: Question, state: Floats, *, tolerance: float = TOLERANCE, verdict_only: bool = False
+) -> Answer:
+    """Answer the question for one start ``state`` (2 d,): LVLH position (m) and velocity (m/s).
+
+    The bracket is narrowed to ``tolerance`` metres, further where 0 lies in it (to 2e-7 m). With ``verdict_only`` the
+    loop ends as soon as the verdict is proved: same verdict, wider bracket. Raises ``InvalidInput`` for a state of
+    another shape or not finite. A failure of the solver is UNDECIDED with its reason, never a GO.
+    """
+    state = np.asarray(state, dtype=np.float64)
+    if state.shape != (2 * question.dimensions,):
+        raise invalid("state", f"shape ({2 * question.dimensions},): position and velocity", state.shape)
+    if not np.isfinite(state).all() or float(np.abs(state).max()) > 1e6:
+        raise invalid("state", "finite numbers within 1e6", state)
+    number("tolerance", tolerance, 1e-6, 1e3)
+    if question.goal is not None:
+        return synchronize(watch_of(question), state, tolerance, verdict_only=verdict_only)
+    search = Search(watch_of(question), state)
+    if search.distance_now < -GUARD:
+        return _outside(search)
+    return _answer(search, search.narrow(tolerance, verdict_only=verdict_only))
+
+
+def _outside(search: Search) -> Answer:
+    """NO_GO at once for a start outside the corridor: the distance at t = 0 is what it is, whatever the thrust."""
+    question = search.watch.question
+    still = np.zeros((question.steps, question.dimensions))
+    worst = search.distance_now
+    lower = min(worst, search.watch.minima(search.state, still).lowest)
+    return Answer(Verdict.NO_GO, worst, lower, worst, None, (search.now,), 0)
+
+
+def _answer(search: Search, reason: str) -> Answer:
+    lower, upper, rounds = search.lower, search.upper, search.rounds
+    if lower > GUARD:
+        return Answer(Verdict.GO, lower, lower, upper, search.thrust, (), rounds)
+    proof = search.evidence.multipliers(search.watch.names) if search.evidence else ()
+    if upper < -GUARD:
+        return Answer(Verdict.NO_GO, upper, lower, upper, None, proof, rounds)
+    finite = math.isfinite(lower) and math.isfinite(upper)
+    middle = 0.5 * (lower + upper) if finite else math.nan
+    return Answer(Verdict.UNDECIDED, middle, lower, upper, search.thrust, proof, rounds, reason)

@@ -1,0 +1,65 @@
+"""Norm limits as rows over start and thrust: what :mod:`safestart.optim.conic` takes as blocks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from safestart.exact.limits import AT_END, limit_at
+from safestart.exact.motion import NodeTables, moved
+from safestart.exact.question import Question
+from safestart.model.scenario import Floats
+
+
+@dataclass(frozen=True, slots=True)
+class Blocks:
+    """Rows (limit, M x(t) - centre) of B limits at times (B,): offset + start . x0 + thrust . u, in metres.
+
+    ``offset`` (B, d + 1), ``start`` (B, d + 1, 2 d), ``thrust`` (B, d + 1, N d).
+    """
+
+    times: Floats
+    names: tuple[str, ...]
+    offset: Floats
+    start: Floats
+    thrust: Floats
+
+    def and_more(self, other: Blocks) -> Blocks:
+        """These and others of the same question."""
+        return Blocks(
+            np.concatenate([self.times, other.times]),
+            self.names + other.names,
+            np.concatenate([self.offset, other.offset]),
+            np.concatenate([self.start, other.start]),
+            np.concatenate([self.thrust, other.thrust]),
+        )
+
+
+def blocks(question: Question, tables: NodeTables, names: Sequence[str], times: Floats) -> Blocks:
+    """The limits ``names`` (B) at ``times`` (B,) in [0, T] seconds; ``tables`` are the question's."""
+    d, count, dt = question.dimensions, question.steps, question.dt
+    offset = np.zeros((len(times), d + 1))
+    start, thrust = np.zeros((len(times), d + 1, 2 * d)), np.zeros((len(times), d + 1, count * d))
+    for b, (name, time) in enumerate(zip(names, times.tolist(), strict=True)):
+        limit = limit_at(question, name, time)
+        offset[b] = limit.limit, *-limit.centre
+        last = min(int(time / dt), count - 1)
+        along, held = moved(question.scenario.target.mean_motion, time - last * dt, d)
+        along = limit.matrix @ along
+        start[b, 1:] = along @ tables.free[last]
+        thrust[b, 1:] = along @ tables.driven[last]
+        thrust[b, 1:, d * last : d * last + d] += limit.matrix @ held
+    return Blocks(times, tuple(names), offset, start, thrust)
+
+
+def end_blocks(question: Question, tables: NodeTables) -> tuple[Floats, Floats, Floats]:
+    """The limits at the end for every T = k dt, k = 0 .. N, stacked: offset (N+1, 2 d+2), and so start and thrust."""
+    count = question.steps + 1
+    made = blocks(question, tables, AT_END * count, np.repeat(question.dt * np.arange(count), len(AT_END)))
+    return (
+        made.offset.reshape(count, -1),
+        made.start.reshape(count, -1, made.start.shape[-1]),
+        made.thrust.reshape(count, -1, made.thrust.shape[-1]),
+    )

@@ -1,0 +1,184 @@
+"""Cutting planes in time: the rows of one answer, the best flight and the best proof so far."""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import numpy as np
+
+from safestart.exact.answer import GUARD, TOLERANCE, Evidence, Multiplier
+from safestart.exact.cut_source import Watched
+from safestart.exact.limits import AT_END, SPEED, limit_at
+from safestart.exact.norm_rows import blocks
+from safestart.exact.watch import Cuts, Ints
+from safestart.model.scenario import Floats
+from safestart.optim.conic import solve
+
+_FIRST_TIMES = 9
+_FINEST = 2e-7
+_ROUNDS = 40
+# What floats may lose of a distance, relative to the length a flight can cover: some hundred roundings.
+_ROUNDING = 1e-13
+# Rows without weight are dropped when farther from binding than this many brackets, in the first rounds only:
+# dropping for ever could cycle.
+_NO_WEIGHT, _FAR, _DROPPING_ROUNDS = 1e-7, 100.0, 12
+# Rows with some weight share one touch with a minimum this close (in steps). The first guess of a touch lies this part
+# of the way from the weight to the minimum; times closer than a millisecond are the same.
+_SOME_WEIGHT, _TOUCH_STEPS, _FIRST_GUESS, _SAME_S = 1e-4, 10.0, 0.6, 1e-3
+
+
+class Search:
+    """``lower`` and ``upper`` bracket the margin (m); ``thrust`` keeps ``lower``, ``evidence`` shows ``upper``.
+
+    ``distance_now`` is the smallest margin of the start itself, proved by the multiplier ``now``.
+    """
+
+    def __init__(self, watch: Watched, state: Floats) -> None:
+        self.watch, self.state = watch, state
+        self.lower, self.upper, self.rounds = -math.inf, math.inf, 0
+        self.thrust: Floats | None = None
+        question = watch.question
+        speed = float(np.abs(state[question.dimensions :]).sum())
+        push = question.scenario.chaser.max_acceleration * question.horizon
+        reach = float(np.abs(state[: question.dimensions]).sum()) + (speed + push) * question.horizon
+        self.rounding = _ROUNDING * reach
+        self.dips: dict[int, tuple[float, float]] = {}
+        self.evidence: Evidence | None = None
+        distances = watch.offsets - watch.normals @ state[: watch.question.dimensions]
+        nearest = int(np.argmin(distances))
+        self.distance_now, self.now = float(distances[nearest]), Multiplier(0.0, watch.names[nearest], 1.0)
+        # Of the rows at t = 0 the nearest face alone says all; what cannot come below the best it can be, cannot bind.
+        first, pushed = _first(watch)
+        distances = first.offset + first.start @ state
+        kept = distances - pushed < distances[nearest] + pushed[nearest]
+        kept[: len(watch.names)] = np.arange(len(watch.names)) == nearest
+        self.times, self.faces, self.rows = first.times[kept], first.faces[kept], first.thrust[kept]
+        self.constant = distances[kept]
+        self.blocks = blocks(question, watch.tables, (), np.empty(0))
+        if question.goal is not None:
+            self.rounding += _ROUNDING * question.goal.scale * (speed + push)
+            self._limit(AT_END, np.full(len(AT_END), question.horizon))
+        if question.speed_limit is not None:
+            self._limit_speed(first.times[:: len(watch.names)])
+
+    def _limit_speed(self, times: Floats) -> None:
+        """Rows for the speed at the first times, and how far below its limit the start is."""
+        limit = limit_at(self.watch.question, SPEED, 0.0)
+        left = limit.left(self.state)
+        self.rounding += _ROUNDING * limit.limit
+        self._limit((SPEED,) * len(times), times)
+        if left < self.distance_now:
+            y = limit.matrix @ self.state
+            pull = (1.0 - _ROUNDING) * y / max(math.sqrt(float(y @ y)), _ROUNDING)
+            self.distance_now = limit.limit - float(pull @ y)
+            self.now = Multiplier(0.0, SPEED, 1.0, tuple(pull.tolist()))
+
+    def _limit(self, names: tuple[str, ...], times: Floats) -> None:
+        self.blocks = self.blocks.and_more(blocks(self.watch.question, self.watch.tables, names, times))
+
+    def _stacked(self) -> tuple[Floats, Floats]:
+        """Constant and thrust of all rows, those of the blocks last."""
+        if not self.blocks.names:
+            return self.constant, self.rows
+        constant = self.blocks.offset + self.blocks.start @ self.state
+        rows = self.blocks.thrust.reshape(-1, self.rows.shape[1])
+        return np.concatenate([self.constant, constant.ravel()]), np.concatenate([self.rows, rows])
+
+    def narrow(self, tolerance: float, *, verdict_only: bool = False, share: float = 0.0) -> str:
+        """Rounds until the bracket is as narrow as asked for; why it is not, in case the verdict stays open.
+
+        ``share``: for a NO_GO a bracket narrower than this share of its margin will do.
+        """
+        fine = tolerance < TOLERANCE
+        for _ in range(_ROUNDS):
+            failed = self.round(fine)
+            if failed:
+                return failed
+            decided = self.lower > GUARD or self.upper < -GUARD
+            goal = max(tolerance, -share * self.upper) if decided else _FINEST
+            fine = goal < TOLERANCE
+            if self.upper - self.lower <= goal or (decided and verdict_only) or not self.cut(goal):
+                break
+        return "0 lies between the bounds"
+
+    def round(self, fine: bool = True) -> str:
+        """Solve with the rows so far and watch the flight; the reason if the solver failed, else empty."""
+        question = self.watch.question
+        self.rounds += 1
+        constant, rows = self._stacked()
+        a_max, norms = question.scenario.chaser.max_acceleration, len(self.blocks.names)
+        found = solve(constant, rows, a_max, question.dimensions, norms, fine=fine)
+        if found.thrust is None or found.weights is None:
+            return f"the solver stopped with {found.status} in round {self.rounds}"
+        self.flown, self.load = found.thrust, found.weights[: len(self.times)]
+        if found.bound + self.rounding < self.upper:
+            self.upper = found.bound + self.rounding
+            self.evidence = Evidence(self.times, self.faces, self.blocks, constant, rows, found.weights)
+        self.found = self.watch.minima(self.state, found.thrust)
+        if self.found.lowest - self.rounding > self.lower:
+            self.lower, self.thrust = self.found.lowest - self.rounding, found.thrust
+        return ""
+
+    def cut(self, goal: float) -> bool:
+        """Add the local minima that lie below what the program promised; False when there is none."""
+        low = self.found.values < self.upper - 0.25 * goal
+        times, faces = self.found.times[low], self.found.faces[low]
+        if not len(times):
+            return False
+        if self.watch.question.speed_limit is not None:
+            fast = faces == len(self.watch.names)
+            self._limit((SPEED,) * int(fast.sum()), times[fast])
+            times, faces = times[~fast], faces[~fast]
+        between, of = self._touches(times, faces)
+        if self.rounds <= _DROPPING_ROUNDS:
+            self._drop()
+        cuts = self.watch.cuts(np.concatenate([times, between]), np.concatenate([faces, of]))
+        self.times = np.concatenate([self.times, cuts.times])
+        self.faces = np.concatenate([self.faces, cuts.faces])
+        self.constant = np.concatenate([self.constant, cuts.offset + cuts.start @ self.state])
+        self.rows = np.concatenate([self.rows, cuts.thrust])
+        return True
+
+    def _drop(self) -> None:
+        """Let go of rows that carry no weight and are far from binding: the bound does not need them."""
+        distance = self.constant + self.rows @ self.flown.ravel()
+        near = distance < self.upper + _FAR * (self.upper - self.found.lowest)
+        kept = near | (self.load > _NO_WEIGHT)
+        self.times, self.faces = self.times[kept], self.faces[kept]
+        self.constant, self.rows = self.constant[kept], self.rows[kept]
+
+    def _touches(self, times: Floats, faces: Ints) -> tuple[Floats, Ints]:
+        """Where the best flight probably touches: a secant on (time of the weight, time of the flight's minimum).
+
+        Weight on one time makes the flight dip on the other side of the touch, at a distance smaller by a factor that
+        hardly changes: the dips would close in on the touch by about a half each round, the secant does so at once.
+        """
+        out_times, out_faces = [], []
+        reach = _TOUCH_STEPS * self.watch.question.dt
+        for time, face in zip(times.tolist(), faces.tolist(), strict=True):
+            share = (self.faces == face) & (np.abs(self.times - time) < reach) & (self.load > _SOME_WEIGHT)
+            total = float(self.load[share].sum())
+            if total == 0.0:
+                continue
+            carried = float(self.load[share] @ self.times[share]) / total
+            dip = time - carried
+            before = self.dips.get(face)
+            self.dips[face] = (carried, dip)
+            touch = carried + _FIRST_GUESS * dip
+            if before is not None and before[1] * dip < 0.0:
+                touch = carried + dip * (before[0] - carried) / (dip - before[1])
+            if min(abs(touch - time), abs(dip)) > _SAME_S and 0.0 < touch < self.watch.question.horizon:
+                out_times.append(touch)
+                out_faces.append(face)
+        return np.array(out_times), np.array(out_faces, dtype=np.int64)
+
+
+@lru_cache(maxsize=4)
+def _first(watch: Watched) -> tuple[Cuts, Floats]:
+    """Rows of all faces at some times, to begin with, and how far (m) thrust can move each of them."""
+    question = watch.question
+    times, faces = np.linspace(0.0, question.horizon, _FIRST_TIMES), np.arange(len(watch.names))
+    cuts = watch.cuts(np.repeat(times, len(faces)), np.tile(faces, len(times)))
+    pushed = np.square(cuts.thrust.reshape(len(cuts.times), -1, question.dimensions)).sum(axis=-1)
+    return cuts, question.scenario.chaser.max_acceleration * np.sqrt(pushed).sum(axis=-1)

@@ -1,0 +1,138 @@
+"""`synchronize`: the end T is any number of intervals, so every T must be refuted, or one found that succeeds.
+
+Branch and bound over T. The program of one T is solved; its multipliers bound the margin of every other T, too: the
+rows at times up to T keep their weights, the rows of the end move to the new end. What is not refuted so, the T with
+the highest bound first, is solved in turn. A few programs refute a hundred ends.
+"""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from functools import lru_cache
+from itertools import groupby
+
+import numpy as np
+
+from safestart.exact.answer import GUARD, Answer, Evidence, Part, Verdict
+from safestart.exact.limits import AT_END
+from safestart.exact.norm_rows import end_blocks
+from safestart.exact.question import Question
+from safestart.exact.search import Search
+from safestart.exact.watch import Watch, watch_of
+from safestart.model.scenario import Bools, Floats
+
+# Refuted ends are solved to a tenth of their margin: the verdict is sure, and the bound of the whole is one end's.
+_SHARE = 0.1
+
+
+def synchronize(watch: Watch, state: Floats, tolerance: float, *, verdict_only: bool = False) -> Answer:
+    """Answer `synchronize` for one start ``state`` (2 d,), as :func:`safestart.exact.decide.decide` does."""
+    ends = _Ends(watch, state)
+    reason = ""
+    while (steps := ends.most_hopeful()) is not None:
+        search = Search(watch.until(steps), state)
+        if search.distance_now < -GUARD:
+            parts = (Part(ends.first, ends.last, (search.now,)),)
+            now = search.distance_now
+            return Answer(Verdict.NO_GO, now, -math.inf, now, None, (), ends.rounds, parts=parts)
+        reason = search.narrow(tolerance, verdict_only=verdict_only, share=_SHARE)
+        ends.note(steps, search)
+        if ends.lower > GUARD:
+            break
+    return ends.answer(reason)
+
+
+@lru_cache(maxsize=4)
+def end_rows(question: Question) -> tuple[Floats, Floats, Floats]:
+    """The rows of the limits at every end, kept between calls."""
+    return end_blocks(question, watch_of(question).tables)
+
+
+class _Ends:
+    """What is known of each end T = k dt: ``upper`` (K + 1,) in metres, and whose multipliers show it."""
+
+    def __init__(self, watch: Watch, state: Floats) -> None:
+        question = watch.question
+        goal = question.goal
+        self.watch, self.state = watch, state
+        self.first, self.last = (goal.earliest if goal else 1), question.steps
+        # No margin exceeds the ball's radius.
+        self.upper = np.full(self.last + 1, goal.radius if goal else np.inf)
+        self.upper[: self.first] = -np.inf
+        self.solved = np.zeros(self.last + 1, dtype=bool)
+        self.source = np.full(self.last + 1, -1)
+        self.evidence: list[Evidence] = []
+        self.lower, self.rounds = -math.inf, 0
+        self.thrust: Floats | None = None
+
+    def most_hopeful(self) -> int | None:
+        """The end with the highest bound among those neither refuted nor solved; the latest of equals."""
+        open_ends = np.nonzero((self.upper >= -GUARD) & ~self.solved)[0]
+        if not len(open_ends):
+            return None
+        return int(open_ends[len(open_ends) - 1 - int(np.argmax(self.upper[open_ends][::-1]))])
+
+    def note(self, steps: int, search: Search) -> None:
+        """Take over the bracket of one end, and what its multipliers say of the others."""
+        self.solved[steps] = True
+        self.rounds += search.rounds
+        if search.lower > self.lower:
+            self.lower, self.thrust = search.lower, search.thrust
+        if search.evidence is None:
+            return
+        evidence = search.evidence.until(search.watch.question.latest)
+        bounds = self._carried(evidence) + search.rounding
+        better = bounds < self.upper
+        self.upper[better], self.source[better] = bounds[better], len(self.evidence)
+        self.evidence.append(evidence)
+
+    def _carried(self, evidence: Evidence) -> Floats:
+        """Bounds (K + 1,) on the margins of all ends by the multipliers of one, its end rows moved to theirs."""
+        question = self.watch.question
+        d, columns, faces = question.dimensions, self.last * question.dimensions, len(evidence.faces)
+        names, cone = evidence.blocks.names, question.dimensions + 1
+        at_end = np.array([name in AT_END for name in names], dtype=bool)
+        holds = np.concatenate([np.ones(faces), np.tile(np.r_[1.0, np.zeros(d)], len(names))])
+        times = np.concatenate([evidence.times, np.repeat(evidence.blocks.times, cone)])
+        path = np.concatenate([np.ones(faces, dtype=bool), np.repeat(~at_end, cone)])
+        path &= evidence.weights != 0.0
+        weights = np.where(self._before(times[path]), evidence.weights[path], 0.0)
+        rows = np.zeros((int(path.sum()), columns))
+        rows[:, : evidence.rows.shape[1]] = evidence.rows[path]
+        end = evidence.weights[faces:].reshape(-1, cone)[at_end].ravel()
+        offset, start, thrust = end_rows(question)
+        pull = weights @ rows + np.einsum("kbc,b->kc", thrust, end)
+        reach = np.sqrt(np.square(pull.reshape(self.last + 1, -1, d)).sum(axis=-1)).sum(axis=-1)
+        level = weights @ evidence.constant[path] + offset @ end + (start @ self.state) @ end
+        total = weights @ holds[path] + float(end[::cone].sum())
+        level += question.scenario.chaser.max_acceleration * reach
+        out: Floats = np.divide(level, total, out=np.full(self.last + 1, np.inf), where=total > 0.0)
+        return out
+
+    def _before(self, times: Floats) -> Bools:
+        """(K + 1, J): whether the times (J,) are not after the ends, exactly where floats cannot tell."""
+        dt = self.watch.question.dt
+        ends = dt * np.arange(self.last + 1)[:, None]
+        out = np.asarray(times <= ends)
+        for k, j in np.argwhere(np.abs(times - ends) < 1e-9 * (1.0 + ends)).tolist():
+            out[k, j] = Fraction(times[j]) <= Fraction(dt) * k
+        return out
+
+    def answer(self, reason: str) -> Answer:
+        """GO where an end succeeds, NO_GO where every end is refuted, else UNDECIDED."""
+        upper = float(self.upper.max())
+        if self.lower > GUARD:
+            return Answer(Verdict.GO, self.lower, self.lower, upper, self.thrust, (), self.rounds)
+        if upper < -GUARD:
+            return Answer(Verdict.NO_GO, upper, self.lower, upper, None, (), self.rounds, parts=self._parts())
+        finite = math.isfinite(self.lower) and math.isfinite(upper)
+        middle = 0.5 * (self.lower + upper) if finite else math.nan
+        return Answer(Verdict.UNDECIDED, middle, self.lower, upper, self.thrust, (), self.rounds, reason)
+
+    def _parts(self) -> tuple[Part, ...]:
+        names, out = self.watch.names, []
+        for source, group in groupby(range(self.first, self.last + 1), lambda k: int(self.source[k])):
+            ends = list(group)
+            out.append(Part(ends[0], ends[-1], self.evidence[source].multipliers(names)))
+        return tuple(out)

@@ -1,0 +1,55 @@
+"""The exact question that a request poses, and its answer in a sentence."""
+
+from __future__ import annotations
+
+from safestart.errors import InvalidInput, invalid
+from safestart.exact.answer import Answer, Verdict
+from safestart.exact.question import SPEED_SCALE, Goal, Question
+from safestart.processes.go_no_go.spec import GoNoGoInputs
+from safestart.processes.wire import DT_S
+
+_WIRE = {"keep_out": "keep_out_m", "hold": "hold_x_m, hold_y_m, hold_z_m", "speed_limit": "speed_limit_m_s"}
+
+
+def question_of(inputs: GoNoGoInputs, dimensions: int) -> Question:
+    """The question for planar or spatial starts; raises ``InvalidInput`` under the field's name on the wire."""
+    goal, span = None, inputs.horizon_s
+    if inputs.question == "synchronize":
+        y = inputs.corridor.r_h_m if inputs.hold_y_m is None else inputs.hold_y_m
+        hold = (inputs.hold_x_m, y, inputs.hold_z_m)[:dimensions]
+        goal, span = Goal(inputs.ball_radius_m, inputs.rest_speed_m_s, hold), inputs.within_s
+    steps = round(span / DT_S)
+    try:
+        return Question(
+            inputs.scenario(), DT_S, steps, dimensions, goal, inputs.speed_limit_m_s, inputs.keep_out_m
+        )
+    except InvalidInput as error:
+        field = str(error.field)
+        raise invalid(_WIRE.get(field, field), str(error.required), error.received) from None
+
+
+def sentence(question: Question, answer: Answer) -> str:
+    """The verdict in words."""
+    return _told(question, answer) + (
+        "; the hold plane implies the keep-out radius" if question.keep_out > 0.0 else ""
+    )
+
+
+def _told(question: Question, answer: Answer) -> str:
+    if answer.verdict is Verdict.UNDECIDED:
+        return f"undecided: {answer.reason}; margin between {answer.lower:.3g} and {answer.upper:.3g} m"
+    span, spare, short = question.horizon, f"{answer.lower:.2f} m", f"{-answer.upper:.2f} m"
+    fast = "" if question.speed_limit is None else f" at no more than {question.speed_limit:g} m/s"
+    if question.plain:
+        return (
+            f"a thrust history keeps {spare} to every face for {span:g} s"
+            if answer.verdict is Verdict.GO
+            else f"no thrust history stays for {span:g} s: each is at some time at least {short} outside a face"
+        )
+    scales = f" (1 m/s of the speed limit counts as {SPEED_SCALE:g} m)" if fast else ""
+    if answer.verdict is Verdict.GO and answer.thrust is not None:
+        flown = len(answer.thrust) * question.dt
+        done = "is at rest in the hold ball after" if question.goal is not None else "stays for"
+        return f"a thrust history{fast} {done} {flown:g} s, with {spare} to spare{scales}"
+    asked = "is at rest in the hold ball within" if question.goal is not None else "stays for"
+    return f"no thrust history{fast} {asked} {span:g} s: each misses a limit by at least {short}{scales}"

@@ -1,0 +1,87 @@
+"""What may be asked of one start beyond the closed form: the exact questions, as they appear on the wire."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from safestart.errors import invalid
+from safestart.model.scenario import MAX_RANGE
+from safestart.processes.go_no_go.uncertainty import HALF_WIDTHS, Widths
+from safestart.processes.wire import Horizon
+
+Method = Literal["closed_form", "exact", "auto"]
+Kind = Literal["stay", "synchronize"]
+
+
+class Asked(Widths):
+    """Method and exact question; all but the method is for exact and auto."""
+
+    method: Method = Field(
+        "closed_form",
+        description="closed_form: the paper's conditions, at once. exact: cone programs, proved either way. auto: the "
+        "same verdicts, by an atlas where there is one or where there are many planar starts at rest in LVLH.",
+    )
+    question: Kind = Field(
+        "stay",
+        description="stay: in the corridor at all times of horizon_s. synchronize: in addition at rest in the body "
+        "frame inside a ball around the hold point at the end, at some time up to within_s.",
+    )
+    horizon_s: Horizon = Field(60.0, description="How long to stay, s.")
+    within_s: Horizon = Field(200.0, description="Latest end of synchronize, s.")
+    hold_x_m: float = Field(0.0, ge=-MAX_RANGE, le=MAX_RANGE, description="Hold point, body-frame x, m.")
+    hold_y_m: float | None = Field(
+        None, ge=0, le=MAX_RANGE, description="Hold point, body-frame y, m; absent: the hold radius."
+    )
+    hold_z_m: float = Field(
+        0.0, ge=-MAX_RANGE, le=MAX_RANGE, description="Hold point, body-frame z, m; for spatial starts."
+    )
+    ball_radius_m: float = Field(0.5, ge=0.001, le=1000, description="Ball around the hold point, m.")
+    rest_speed_m_s: float = Field(
+        0.05, ge=1e-4, le=100, description="Largest speed in the body frame that counts as at rest, m/s."
+    )
+    speed_limit_m_s: float | None = Field(
+        None, ge=0.001, le=1000, description="Largest LVLH speed at all times, m/s; absent: none."
+    )
+    keep_out_m: float = Field(
+        0.0,
+        ge=0,
+        le=MAX_RANGE,
+        description="Keep-out radius around the target's centre, m; at most r_h_m, where the hold plane implies it.",
+    )
+    disturbance_m_s2: float = Field(
+        0.0,
+        ge=0,
+        le=1,
+        description="Bound on an unknown acceleration at all times, m/s^2 (stay): GO then holds against every such "
+        "disturbance, by a feedback whose margin and thrust are set aside; its proof is that of the plan.",
+    )
+    start_error_m: float = Field(
+        0.0, ge=0, le=1000, description="How far the start may be from where it is said to be, m (stay)."
+    )
+    start_error_m_s: float = Field(0.0, ge=0, le=10, description="The same of its velocity, m/s (stay).")
+    proofs: bool = Field(False, description="Return proof documents (exact, auto); at most 100 starts.")
+
+
+_NEUTRAL = {
+    "question": "stay",
+    "speed_limit_m_s": None,
+    "keep_out_m": 0.0,
+    "disturbance_m_s2": 0.0,
+    "start_error_m": 0.0,
+    "start_error_m_s": 0.0,
+    **dict.fromkeys(HALF_WIDTHS, 0.0),
+}
+
+
+def refuse_closed_form(asked: Asked) -> None:
+    """Raise ``InvalidInput`` for what the closed form cannot answer."""
+    for name, neutral in _NEUTRAL.items():
+        value = getattr(asked, name)
+        if value != neutral:
+            raise invalid(
+                "method",
+                f"exact or auto where {name} is given: the closed form does not know it",
+                asked.method,
+            )

@@ -1,0 +1,128 @@
+"""What a proof document states, read strictly: every number the double it is, as an exact rational.
+
+Part of the checker (:mod:`safestart.proofs.single`): it shares no code with what makes the proofs.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from flint import fmpq
+
+from safestart.proofs.strict import LARGEST, ProofRejected, number, part, vector
+from safestart.proofs.weights import Limits, Weight, limits_of, parts_of
+
+__all__ = ["SCHEMA", "ProofRejected", "Stated", "check_seal", "digest_of", "read"]
+
+SCHEMA = "safestart-proof/1"
+_MOST_STEPS = 400
+# Face: the signs of its normal, whose y (and only y) is scaled by the slope; y >= r_h, then +x, -x, +z, -z sides.
+_FACES = {
+    "hold_plane": (0, -1, 0),
+    "right": (1, -1, 0),
+    "left": (-1, -1, 0),
+    "top": (0, -1, 1),
+    "bottom": (0, -1, -1),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Stated:
+    """A document's statement in SI: question, start (2 d numbers), claim and the evidence for it.
+
+    ``faces`` maps a name to (normal, offset); ``thrust`` (k, d) for GO; for NO_GO ``parts`` (first, last, weights),
+    each against the ends first .. last (in steps), together against all ends asked for.
+    """
+
+    verdict: str
+    d: int
+    steps: int
+    dt: fmpq
+    n: fmpq
+    w: fmpq
+    a_max: fmpq
+    faces: dict[str, tuple[list[fmpq], fmpq]]
+    limits: Limits
+    start: list[fmpq]
+    claim: fmpq
+    thrust: list[list[fmpq]]
+    parts: list[tuple[int, int, list[Weight]]]
+
+
+def digest_of(document: Mapping[str, Any]) -> str:
+    """SHA-256 of the document without its ``digest``, as JSON with sorted keys and no spaces."""
+    rest = {key: value for key, value in document.items() if key != "digest"}
+    text = json.dumps(rest, sort_keys=True, separators=(",", ":"), allow_nan=False)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def check_seal(document: Any, schema: str) -> None:
+    """Raise :class:`ProofRejected` unless the document is an object of that schema and its digest is its own."""
+    if not isinstance(document, Mapping) or document.get("schema") != schema:
+        raise ProofRejected(f"schema: required a document of schema {schema}")
+    try:
+        digest = digest_of(document)
+    except (TypeError, ValueError, RecursionError) as error:
+        raise ProofRejected(f"document: required plain JSON ({error})") from None
+    if document.get("digest") != digest:
+        raise ProofRejected(f"digest: required {digest}, received {str(document.get('digest'))[:80]}")
+
+
+def read(document: Any) -> Stated:
+    """The statement of a document; raise :class:`ProofRejected` when it is malformed or its digest is another's."""
+    check_seal(document, SCHEMA)
+    question, start = part(document, "question", dict), part(document, "start", dict)
+    verdict = document.get("verdict")
+    kind = question.get("kind")
+    if kind not in ("stay", "synchronize") or verdict not in ("GO", "NO_GO"):
+        raise ProofRejected("kind, verdict: required stay or synchronize, and GO or NO_GO")
+    d, steps = part(question, "dimensions", int), part(question, "steps", int)
+    if d not in (2, 3) or not 1 <= steps <= _MOST_STEPS:
+        raise ProofRejected(f"dimensions, steps: required 2 or 3 and 1..{_MOST_STEPS}")
+    dt = number(question, "dt_s", 1e-6, 3600.0)
+    faces = _faces(part(question, "corridor", dict), d)
+    go, free = verdict == "GO", kind == "synchronize"
+    earliest = part(question, "earliest_step", int) if free else steps
+    if not 1 <= earliest <= steps:
+        raise ProofRejected(f"earliest_step: required 1..{steps}, received {earliest}")
+    limits = limits_of(question, d, free)
+    evidence = part(document, "thrust_m_s2" if go else "parts" if free else "multipliers", list)
+    parts: list[Any] = [] if go else evidence
+    if not go and not free:
+        parts = [{"first_step": steps, "last_step": steps, "multipliers": evidence}]
+    return Stated(
+        verdict=verdict,
+        d=d,
+        steps=steps,
+        dt=dt,
+        n=number(question, "mean_motion_rad_s", 0.0, 0.01),
+        w=number(question, "tumble_rate_rad_s", 0.0, 10.0),
+        a_max=number(question, "max_acceleration_m_s2", 0.0, 1e3),
+        faces=faces,
+        limits=limits,
+        start=vector(start.get("position_m"), "position_m", d)
+        + vector(start.get("velocity_m_s"), "velocity_m_s", d),
+        claim=number(document, "margin_m", -LARGEST),
+        thrust=_thrust(evidence, earliest, steps, d) if go else [],
+        parts=parts_of(parts, (earliest, steps), faces, limits, dt * steps),
+    )
+
+
+def _faces(shape: Any, d: int) -> dict[str, tuple[list[fmpq], fmpq]]:
+    hold = number(shape, "hold_radius_m", 0.0)
+    sides = {axis: (number(shape, f"c_{axis}", 0.0), number(shape, f"{axis}0_m", 0.0)) for axis in "xz"}
+    out = {}
+    for name, (x, y, z) in list(_FACES.items())[: 3 if d == 2 else 5]:
+        slope, width = sides["x"] if x else sides["z"] if z else (fmpq(1), fmpq(0))
+        out[name] = [fmpq(x), y * slope, fmpq(z)][:d], width - slope * hold
+    return out
+
+
+def _thrust(history: list[Any], earliest: int, steps: int, d: int) -> list[list[fmpq]]:
+    if not earliest <= len(history) <= steps:
+        raise ProofRejected(f"thrust_m_s2: required {earliest} to {steps} thrusts, received {len(history)}")
+    return [vector(entry, "thrust_m_s2", d) for entry in history]

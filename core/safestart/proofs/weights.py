@@ -1,0 +1,91 @@
+"""Norm limits and multipliers as a proof document states them; part of the checker."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from flint import fmpq
+
+from safestart.proofs.strict import ProofRejected, number, part, vector
+
+_MOST_MULTIPLIERS = 20_000
+AT_END = ("hold", "rest")
+
+
+@dataclass(frozen=True, slots=True)
+class Weight:
+    """One multiplier; ``pull``, |pull| <= value, for norm limits, ``time`` None where the end is meant."""
+
+    time: fmpq | None
+    face: str
+    value: fmpq
+    pull: list[fmpq]
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Norm limits: the ball of ``radius`` around ``hold`` and the speed ``rest`` in it; the speed ``most``.
+
+    ``rest_scale`` and ``scale`` (s) turn speeds into metres. None for what the question does not ask.
+    """
+
+    hold: list[fmpq] | None
+    radius: fmpq
+    rest_scale: fmpq
+    most: fmpq | None
+    scale: fmpq
+
+
+def limits_of(question: Any, d: int, free: bool) -> Limits:
+    """The norm limits of a question in ``d`` dimensions; ``free``: it has a goal, and T is free."""
+    keep_out = number({"keep_out_m": 0.0} | question, "keep_out_m", 0.0)
+    if keep_out > number(question["corridor"], "hold_radius_m", 0.0):
+        raise ProofRejected("keep_out_m: required at most hold_radius_m, where the hold plane implies it")
+    hold, radius, rest, most, scale = None, fmpq(1), fmpq(1), None, fmpq(1)
+    if free:
+        goal = part(question, "goal", dict)
+        hold = vector(goal.get("hold_m"), "hold_m", d)
+        radius, rest = number(goal, "radius_m", 1e-6), number(goal, "rest_m_s", 1e-6)
+    if question.get("speed_limit") is not None:
+        speed = part(question, "speed_limit", dict)
+        most, scale = number(speed, "most_m_s", 1e-6), number(speed, "scale_s", 1e-6)
+    return Limits(hold, radius, radius / rest, most, scale)
+
+
+def parts_of(
+    rows: list[Any], ends: tuple[int, int], faces: Mapping[str, Any], limits: Limits, horizon: fmpq
+) -> list[tuple[int, int, list[Weight]]]:
+    """The parts in turn, which together must cover the ends (first, last) without a hole."""
+    out, covered = [], ends[0]
+    for row in rows:
+        first, last = part(row, "first_step", int), part(row, "last_step", int)
+        if first != covered or not first <= last <= ends[1]:
+            raise ProofRejected(
+                f"parts: required the steps {ends[0]}..{ends[1]} in turn, received {first}..{last}"
+            )
+        out.append((first, last, _weights(part(row, "multipliers", list), faces, limits, horizon)))
+        covered = last + 1
+    if rows and covered != ends[1] + 1:
+        raise ProofRejected(f"parts: required all steps up to {ends[1]}, received up to {covered - 1}")
+    return out
+
+
+def _weights(rows: list[Any], faces: Mapping[str, Any], limits: Limits, horizon: fmpq) -> list[Weight]:
+    if not 1 <= len(rows) <= _MOST_MULTIPLIERS:
+        raise ProofRejected(f"multipliers: required 1..{_MOST_MULTIPLIERS}, received {len(rows)}")
+    norms = (AT_END if limits.hold is not None else ()) + (("speed",) if limits.most is not None else ())
+    d, out = len(faces["hold_plane"][0]), []
+    for row in rows:
+        face, value = row.get("face") if isinstance(row, Mapping) else None, number(row, "value", 0.0)
+        if not isinstance(face, str) or (face not in faces and face not in norms):
+            raise ProofRejected(f"multipliers: required a face of the question, received {str(row)[:90]}")
+        time = None if face in AT_END else number(row, "time_s", 0.0)
+        if time is not None and time > horizon:
+            raise ProofRejected(f"multipliers: required a time in [0, T], received {str(row)[:90]}")
+        pull = vector(row.get("pull"), "pull", d) if face in norms else []
+        if sum((e * e for e in pull), fmpq(0)) > value**2:
+            raise ProofRejected(f"|pull| <= value: received {str(row)[:120]}")
+        out.append(Weight(time, face, value, pull))
+    return out

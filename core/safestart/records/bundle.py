@@ -1,0 +1,178 @@
+"""One finished job as one file that opens without a server: a ZIP whose manifest holds the SHA-256 of every part.
+
+``manifest.json`` names format, job and files; the SHA-256 of the manifest itself, the seal, stands for the whole
+bundle: who has it from a trusted place can tell that nothing was altered.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import lzma
+import zipfile
+import zlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from hashlib import sha256
+from typing import Any
+
+from safestart.errors import InvalidInput
+from safestart.records.artifact import Artifact
+from safestart.records.bundle_page import page
+from safestart.records.bundle_parts import event_facts, job_facts, require_names, require_result
+from safestart.records.comparable import canonical, digest
+
+FORMAT, VERSION = "safestart-bundle", 1
+MOST_BYTES = 2 * 1024**3
+MANIFEST = "manifest.json"
+_FOLDER = "artifacts/"
+_EPOCH = (1980, 1, 1, 0, 0, 0)  # no time of packing: the same job gives the same bytes
+_REQUIRED = "a bundle as `safestart export` writes it"
+
+
+@dataclass(frozen=True, slots=True)
+class Bundle:
+    """A finished job: facts of its row, result document (None when it failed), events, artifacts."""
+
+    job: dict[str, Any]
+    result: dict[str, Any] | None
+    events: list[dict[str, Any]]
+    artifacts: tuple[Artifact, ...]
+
+
+def pack(bundle: Bundle) -> tuple[bytes, str]:
+    """The file and its seal."""
+    # In canonical order: the order of keys depends on where a document was stored.
+    job, result, events = (json.loads(canonical(part)) for part in (bundle.job, bundle.result, bundle.events))
+    files = {
+        "job.json": _text(job),
+        "events.json": _text(events),
+        "index.html": page(job, result, events, bundle.artifacts).encode(),
+        **{_FOLDER + item.name: item.data for item in bundle.artifacts},
+    }
+    if result is not None:
+        files["result.json"] = _text(result)
+    manifest = {
+        "format": FORMAT,
+        "version": VERSION,
+        "job": bundle.job["id"],
+        "result_sha256": None if bundle.result is None else digest(bundle.result),
+        "files": {
+            name: {"sha256": sha256(data).hexdigest(), "size": len(data)} for name, data in files.items()
+        },
+        "media_types": {item.name: item.media_type for item in bundle.artifacts},
+    }
+    files[MANIFEST] = _text(manifest)
+    target = io.BytesIO()
+    with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name in sorted(files):
+            archive.writestr(zipfile.ZipInfo(name, _EPOCH), files[name], zipfile.ZIP_DEFLATED)
+    return target.getvalue(), sha256(files[MANIFEST]).hexdigest()
+
+
+def unpack(data: bytes, seal: str | None = None) -> Bundle:
+    """Open a bundle; raises ``InvalidInput`` that names every part that is not as the manifest says.
+
+    With ``seal`` the manifest must have that SHA-256.
+    """
+    files = _read(data)
+    if MANIFEST not in files:
+        raise _refused("there is no manifest.json")
+    found = sha256(files[MANIFEST]).hexdigest()
+    if seal is not None and seal.lower() != found:
+        raise _refused(f"its seal is {found}, not {seal}")
+    manifest = _json(files, MANIFEST)
+    wrong = _differences(manifest, files)
+    if wrong:
+        raise _refused("; ".join(wrong))
+    job, events = _json(files, "job.json"), _json(files, "events.json")
+    result = _json(files, "result.json") if "result.json" in files else None
+    job_facts(job)
+    event_facts(events)
+    require_names(manifest["media_types"].items())
+    if result is not None:
+        require_result(result)
+    artifacts = tuple(
+        Artifact(name, media_type, files[_FOLDER + name])
+        for name, media_type in manifest["media_types"].items()
+    )
+    wrong = _contradictions(manifest, job, result, artifacts)
+    if wrong:
+        raise _refused("; ".join(wrong))
+    return Bundle(job, result, events, artifacts)
+
+
+def _read(data: bytes) -> dict[str, bytes]:
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            infos = archive.infolist()
+            if sum(info.file_size for info in infos) > MOST_BYTES:
+                raise _refused(f"it unpacks to more than {MOST_BYTES} bytes")
+            if len({info.filename for info in infos}) != len(infos):
+                raise _refused("a name occurs twice")
+            return {info.filename: archive.read(info) for info in infos}
+    except (
+        zipfile.BadZipFile,
+        zlib.error,
+        lzma.LZMAError,
+        OSError,
+        ValueError,
+        EOFError,
+        RuntimeError,
+    ) as error:
+        raise _refused(f"it cannot be unpacked ({error})") from None
+
+
+def _differences(manifest: Any, files: Mapping[str, bytes]) -> list[str]:
+    """What is not as the manifest says."""
+    try:
+        if (manifest["format"], manifest["version"]) != (FORMAT, VERSION):
+            return [f"format {manifest['format']!r} version {manifest['version']!r} is not known here"]
+        listed = {name: entry["sha256"] for name, entry in manifest["files"].items()}
+        artifacts = {_FOLDER + name for name, _ in manifest["media_types"].items()}
+    except (KeyError, TypeError, AttributeError):
+        return ["its manifest is incomplete"]
+    wrong = [
+        f"{name} is missing" for name in sorted({"job.json", "events.json", *listed, *artifacts} - set(files))
+    ]
+    wrong += [f"{name} is not in the manifest" for name in sorted(set(files) - set(listed) - {MANIFEST})]
+    for name in sorted(set(listed) & set(files)):
+        there = sha256(files[name]).hexdigest()
+        if there != listed[name]:
+            wrong.append(f"{name} was altered: SHA-256 {there}, the manifest says {listed[name]}")
+    return wrong
+
+
+def _contradictions(manifest: Any, job: Any, result: Any, artifacts: tuple[Artifact, ...]) -> list[str]:
+    """Parts that do not belong together, however well each fits the manifest."""
+    if job["id"] != manifest.get("job"):
+        return ["job.json is of another job"]
+    if (job["status"] == "successful") is (result is None):
+        return [f"a {job['status']} job {'without' if result is None else 'with'} a result"]
+    if result is None:
+        return []
+    if digest(result) != manifest.get("result_sha256"):
+        return ["result.json has another content hash than the manifest says"]
+    made = result.get("provenance", {}).get("artifacts")
+    if not isinstance(made, dict):
+        return []
+    wrong = {item.name for item in artifacts if made.get(item.name) != item.sha256} | (
+        set(made) - {item.name for item in artifacts}
+    )
+    return [f"artifact {name} is not the one that the result's provenance names" for name in sorted(wrong)]
+
+
+def _json(files: Mapping[str, bytes], name: str) -> Any:
+    try:
+        return json.loads(files[name])
+    except (ValueError, RecursionError):
+        raise _refused(f"{name} is no JSON") from None
+
+
+def _text(document: Any) -> bytes:
+    return canonical(document).encode()
+
+
+def _refused(what: str) -> InvalidInput:
+    detail = f"bundle: required {_REQUIRED}, received one that is not: {what}"
+    return InvalidInput(detail, field="bundle", required=_REQUIRED)

@@ -1,0 +1,142 @@
+"""What the documents inside a bundle must be: whoever seals one anew can write anything into them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from typing import Annotated, Any, Literal
+
+from pydantic import (
+    AwareDatetime,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    TypeAdapter,
+    ValidationError,
+)
+
+from safestart.errors import InvalidInput, invalid
+from safestart.model.validation import validation_error
+
+
+def _storable(value: Any) -> Any:
+    """Text that every database keeps: PostgreSQL refuses NUL, and half a surrogate pair is no text."""
+    if isinstance(value, str) and ("\0" in value or value != value.encode(errors="replace").decode()):
+        raise ValueError("text without NUL and lone surrogates")
+    return value
+
+
+def _json(value: Any) -> Any:
+    """A document that can be answered with again: no NaN, no infinity, no number or text beyond what JSON keeps."""
+    try:
+        text = json.dumps(value, ensure_ascii=False, allow_nan=False)
+        text.encode()
+        json.loads(text, parse_int=_whole)
+    except (ValueError, TypeError, RecursionError):
+        raise ValueError("JSON without NaN, infinity, lone surrogates and integers beyond 64 bits") from None
+    return value
+
+
+def _whole(digits: str) -> int:
+    if len(digits) > 20 or not -(2**63) <= int(digits) < 2**64:
+        raise ValueError(digits)
+    return int(digits)
+
+
+_Text = Annotated[str, BeforeValidator(_storable)]
+_Count = Annotated[int, Field(ge=0, lt=2**31, strict=True)]
+_Document = Annotated[dict[str, Any], BeforeValidator(_json)]
+
+
+class JobFacts(BaseModel):
+    """``job.json``: the row of an ended job."""
+
+    model_config = ConfigDict(extra="ignore", allow_inf_nan=False)
+
+    id: Annotated[str, Field(pattern=r"^[0-9A-Za-z-]{1,36}$")]
+    process_id: Annotated[_Text, Field(min_length=1, max_length=100)]
+    status: Literal["successful", "failed", "dismissed"]
+    inputs: _Document
+    instant: _Document | None
+    attempts: _Count
+    timeout_s: Annotated[float, Field(gt=0, strict=True)]
+    priority: Annotated[int, Field(ge=-(2**31), lt=2**31, strict=True)]
+    message: _Text
+    problem: _Document | None
+    versions: _Document | None
+    created_at: AwareDatetime
+    started_at: AwareDatetime | None
+    finished_at: AwareDatetime | None
+    updated_at: AwareDatetime
+
+
+class EventFacts(BaseModel):
+    """One entry of ``events.json``."""
+
+    at: AwareDatetime
+    kind: Literal["status", "progress", "log"]
+    data: _Document
+
+
+class ProcessFacts(BaseModel):
+    """What a result says of its process."""
+
+    id: _Text
+
+
+class ResultFacts(BaseModel):
+    """``result.json`` as far as this program reads it; the rest is kept as it came."""
+
+    schema_version: _Count = 1
+    process: ProcessFacts | None = None
+    inputs: dict[str, Any] = Field(default_factory=dict)
+    outputs: dict[str, Any]
+    provenance: dict[str, Any] = Field(default_factory=dict)
+
+
+class ArtifactFacts(BaseModel):
+    """Name and media type of a file. The name is no path: who unpacks a bundle writes where that leads."""
+
+    name: Annotated[_Text, Field(pattern=r"^[^/\\:]{1,255}$")]
+    media_type: Annotated[str, Field(pattern=r"^[\x20-\x7e]{1,255}$")]
+
+
+_EVENTS = TypeAdapter(list[EventFacts])
+
+
+def job_facts(job: Any) -> dict[str, Any]:
+    """The facts of a job, times as times; raises ``InvalidInput``."""
+    try:
+        return JobFacts.model_validate(job).model_dump()
+    except ValidationError as error:
+        raise validation_error(error, "bundle.job.") from None
+
+
+def event_facts(events: Any) -> list[dict[str, Any]]:
+    """The events, times as times; raises ``InvalidInput``."""
+    try:
+        return [event.model_dump() for event in _EVENTS.validate_python(events)]
+    except ValidationError as error:
+        raise validation_error(error, "bundle.events.") from None
+
+
+def require_result(result: Any) -> None:
+    """Raise ``InvalidInput`` for a result that cannot be kept or compared."""
+    try:
+        ResultFacts.model_validate(_json(result))
+    except ValidationError as error:
+        raise validation_error(error, "bundle.result.") from None
+    except ValueError as error:
+        raise invalid("bundle.result", str(error), result) from None
+
+
+def require_names(files: Iterable[tuple[Any, Any]]) -> None:
+    """Raise ``InvalidInput`` for names and media types of artifacts that no process gives."""
+    for name, media_type in files:
+        try:
+            ArtifactFacts(name=name, media_type=media_type)
+        except ValidationError as error:
+            raise validation_error(error, "bundle.artifacts.") from None
+        if name in (".", ".."):
+            raise InvalidInput(f"bundle.artifacts.name: required the name of a file, received {name!r}")

@@ -1,0 +1,45 @@
+"""What a running computation may say and must ask: progress done, and whether to stop."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from safestart.errors import Cancelled
+from safestart.runtime.cache import EMPTY, Shelf
+
+
+def _silent(done: float, total: float, message: str) -> None:
+    """Report to nobody."""
+
+
+def _never() -> bool:
+    return False
+
+
+@dataclass(frozen=True, slots=True)
+class Context:
+    """Passed to every process and engine.
+
+    ``report(done, total, message)`` receives real work units (cells, time steps); ``cancelled()`` is polled;
+    ``shelf`` may hold what was computed before. The default context is silent, never cancelled, with an empty shelf.
+    """
+
+    report: Callable[[float, float, str], None] = field(default=_silent)
+    cancelled: Callable[[], bool] = field(default=_never)
+    shelf: Shelf = EMPTY
+
+    def step(self, done: float, total: float, message: str = "") -> None:
+        """Report progress, and raise ``Cancelled`` if the job was dismissed."""
+        if self.cancelled():
+            raise Cancelled("the job was dismissed while it ran")
+        self.report(done, total, message)
+
+    def part(self, start: float, share: float, total: float, label: str) -> Context:
+        """Context of a sub-task that fills ``share`` units of ``total`` from ``start`` on."""
+
+        def report(done: float, of: float, message: str) -> None:
+            text = f"{label}: {message}" if message else label
+            self.report(start + share * (done / of if of > 0 else 1.0), total, text)
+
+        return Context(report, self.cancelled, self.shelf)

@@ -1,0 +1,141 @@
+"""Settings of every part: ``SAFESTART_*`` variables, or a TOML file named by ``SAFESTART_CONFIG``."""
+
+from __future__ import annotations
+
+import os
+from difflib import get_close_matches
+from functools import cache
+from pathlib import Path
+from typing import Any, Literal
+
+from platformdirs import user_config_path, user_data_path
+from pydantic import Field, ValidationError
+from pydantic_settings import (
+    BaseSettings,
+    PydanticBaseSettingsSource,
+    SettingsConfigDict,
+    TomlConfigSettingsSource,
+)
+
+from safestart.errors import invalid
+from safestart.model.validation import refusal
+from safestart.runtime.secret_file import with_password
+
+
+class Settings(BaseSettings):
+    """All settings, with their defaults; each is read from ``SAFESTART_<NAME>`` or the file."""
+
+    model_config = SettingsConfigDict(env_prefix="SAFESTART_", extra="forbid", frozen=True)
+
+    database_url: str = Field("", description="SQLAlchemy URL; empty: one SQLite file in the data directory.")
+    database_password_file: str = Field(
+        "", description="File that holds the password of a PostgreSQL URL without one."
+    )
+    host: str = Field("127.0.0.1", description="Address the service binds to.")
+    port: int = Field(8000, ge=0, le=65535, description="Port the service binds to.")
+    scheduler: str = Field("", description="Address of a Dask scheduler; empty: an embedded LocalCluster.")
+    processes: int = Field(
+        default_factory=lambda: os.cpu_count() or 1,
+        ge=1,
+        le=1024,
+        description="Task processes of the embedded cluster.",
+    )
+    lease_s: float = Field(20.0, ge=1, le=600, description="How long a claim holds without renewal, s.")
+    poll_s: float = Field(0.2, ge=0.02, le=60, description="How often the worker looks for work, s.")
+    job_timeout_s: float = Field(3600.0, ge=1, le=604800, description="Longest run of a job, s.")
+    max_attempts: int = Field(3, ge=1, le=100, description="Attempts after which a job counts as poison.")
+    silence_s: float = Field(
+        60.0,
+        ge=1,
+        le=3600,
+        description="A job that reports nothing and uses no processor for that long, s, starts again.",
+    )
+    keep_days: float = Field(
+        0.0, ge=0, le=36500, description="Days after which the worker deletes ended jobs; 0: they are kept."
+    )
+    log_format: Literal["text", "json"] = Field(
+        "text", description="Logs as text or as one JSON object a line."
+    )
+    max_body_bytes: int = Field(8_000_000, ge=1000, description="Largest request body the service reads.")
+    max_states: int = Field(100_000, ge=1, description="Most states in one go-no-go request.")
+    max_queued: int = Field(10_000, ge=1, description="Most jobs waiting at once.")
+    allowed_hosts: str = Field(
+        "",
+        description="Host names, separated by commas, under which the service may be asked for, besides localhost "
+        "and IP addresses.",
+    )
+    rate_per_s: float = Field(
+        1000.0, gt=0, description="Requests per second of one API key; bursts of 10 s' worth."
+    )
+    submit_rate_per_s: float = Field(
+        50.0, gt=0, description="Submissions and dismissals per second of one API key; bursts of 10 s' worth."
+    )
+    request_timeout_s: float = Field(
+        60.0, ge=1, le=3600, description="Longest time a request's body may take to arrive, s."
+    )
+
+    max_connections: int = Field(
+        800,
+        ge=2,
+        le=100_000,
+        description="Most open connections; one address other than this machine's own may hold half of them.",
+    )
+    max_followers: int = Field(
+        400,
+        ge=2,
+        le=100_000,
+        description="Most event streams and long polls at once; one API key may hold half of them.",
+    )
+
+    @classmethod
+    def settings_customise_sources(
+        cls,
+        settings_cls: type[BaseSettings],
+        init_settings: PydanticBaseSettingsSource,
+        env_settings: PydanticBaseSettingsSource,
+        dotenv_settings: PydanticBaseSettingsSource,
+        file_secret_settings: PydanticBaseSettingsSource,
+    ) -> tuple[PydanticBaseSettingsSource, ...]:
+        """Arguments first, then the environment, then the file."""
+        return init_settings, env_settings, _file(settings_cls)
+
+    def url(self) -> str:
+        """The database URL with its password; the default directory is made when it is not there."""
+        if self.database_url:
+            return with_password(self.database_url, self.database_password_file)
+        folder = user_data_path("safestart")
+        folder.mkdir(parents=True, exist_ok=True)
+        return f"sqlite:///{folder / 'safestart.sqlite3'}"
+
+
+def _file(kind: type[BaseSettings]) -> TomlConfigSettingsSource:
+    """The settings of the file; raises ``InvalidInput`` for one that is named and is not there, or is no TOML."""
+    named = os.environ.get("SAFESTART_CONFIG")
+    path = Path(named) if named else user_config_path("safestart") / "safestart.toml"
+    if named and not path.is_file():
+        raise invalid("SAFESTART_CONFIG", "the path of a TOML file", named)
+    try:
+        return TomlConfigSettingsSource(kind, toml_file=path)
+    except (OSError, ValueError) as error:  # what is not TOML or not UTF-8 is a ValueError
+        raise invalid(str(path), "a readable TOML file in UTF-8", str(error)) from None
+
+
+@cache
+def settings() -> Settings:
+    """The process-wide settings; raises ``InvalidInput`` that names the wrong setting."""
+    try:
+        return Settings()  # type: ignore[call-arg, unused-ignore]
+    except ValidationError as error:
+        raise refusal([_fit(report) for report in error.errors(include_url=False)], "settings.") from None
+
+
+def _fit(report: Any) -> dict[str, Any]:
+    """A report of pydantic's that says which names there are, and nothing of what a table or an array holds."""
+    fit = dict(report)
+    if fit["type"] == "extra_forbidden":
+        near = get_close_matches(str(fit["loc"][0]), Settings.model_fields, n=1)
+        like = f", such as {near[0]}" if near else ""
+        fit |= {"type": "value_error", "ctx": {"error": f"the name of a setting{like} (docs/settings.md)"}}
+    if isinstance(fit.get("input"), dict | list):  # a URL with its password may be in there
+        fit["input"] = type(fit["input"])
+    return fit

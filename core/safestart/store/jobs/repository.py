@@ -1,0 +1,127 @@
+"""The jobs: one repository for submission, reading, claims, events and workers."""
+
+from __future__ import annotations
+
+from base64 import urlsafe_b64decode, urlsafe_b64encode
+from dataclasses import fields
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import Row, func, select
+from sqlalchemy.orm import Session
+
+from safestart.errors import InvalidInput, invalid
+from safestart.store.dialect import after
+from safestart.store.jobs.conditions import conditions
+from safestart.store.jobs.events import EventLog
+from safestart.store.jobs.filters import EVERY, JobFilter
+from safestart.store.jobs.submissions import Submissions, find
+from safestart.store.models import JobRow, table
+from safestart.store.queue.claims import Claims
+from safestart.store.queue.places import Queue, runs
+from safestart.store.queue.presence import Presence, crew_of
+from safestart.store.queue.shards import Shards
+from safestart.store.queue.tally import tallies
+from safestart.store.records import Job, JobEntry, JobPage, JobStatus, Vitals
+
+MAX_PAGE = 1000
+_CURSOR = "before:"
+_ENTRY = tuple(table(JobRow).c[name] for name in ("seq", *(field.name for field in fields(JobEntry))))
+
+
+class JobRepository(Submissions, Claims, Shards, Queue, EventLog, Presence):
+    """Everything there is to do with jobs; safe to share between threads."""
+
+    def get(self, job_id: str) -> Job:
+        """The job; raises ``NotFound``."""
+        with self._database.session() as session:
+            return find(session, job_id).record()
+
+    def list(
+        self,
+        wanted: JobFilter = EVERY,
+        *,
+        limit: int = 50,
+        cursor: str | None = None,
+    ) -> JobPage:
+        """A page of the jobs that meet ``wanted``, newest first.
+
+        Jobs submitted while a client pages never shift its pages. Raises ``InvalidInput`` on a cursor that
+        did not come from here.
+        """
+        if not 1 <= limit <= MAX_PAGE:
+            raise invalid("limit", f"an integer in [1, {MAX_PAGE}]", limit)
+        query = select(*_ENTRY).where(*conditions(wanted)).order_by(JobRow.seq.desc()).limit(limit + 1)
+        if cursor is not None:
+            query = query.where(JobRow.seq < _decode(cursor))
+        with self._database.session() as session:
+            rows = session.execute(query).all()
+        more = len(rows) > limit
+        entries = tuple(_entry(row) for row in rows[:limit])
+        return JobPage(entries, _encode(rows[limit - 1].seq) if more else None)
+
+    def vitals(self) -> Vitals:
+        """What the metrics tell, in one look."""
+        with self._database.session() as session:
+            oldest = session.execute(
+                select(JobRow.created_at, after().label("now"))
+                .where(JobRow.status == JobStatus.ACCEPTED.value)
+                .order_by(JobRow.seq)
+                .limit(1)
+            ).one_or_none()
+            waited = 0.0 if oldest is None else max((oldest.now - oldest.created_at).total_seconds(), 0.0)
+            return Vitals(counts(session), crew_of(session), waited, tallies(session), runs(session))
+
+    def tallies(self) -> dict[str, int]:
+        """Counters of rare events, by name (see ``tally``)."""
+        with self._database.session() as session:
+            return tallies(session)
+
+    def counts(self) -> dict[str, int]:
+        """Number of jobs by status; every status is there."""
+        with self._database.session() as session:
+            return counts(session)
+
+    def waiting_since(self) -> datetime | None:
+        """When the oldest waiting job was submitted; None when none waits."""
+        query = (
+            select(JobRow.created_at)
+            .where(JobRow.status == JobStatus.ACCEPTED.value)
+            .order_by(JobRow.seq)
+            .limit(1)
+        )
+        with self._database.session() as session:
+            return session.scalar(query)
+
+
+def _entry(row: Row[Any]) -> JobEntry:
+    values = {field.name: getattr(row, field.name) for field in fields(JobEntry)}
+    return JobEntry(**values | {"status": JobStatus(row.status)})
+
+
+def counts(session: Session) -> dict[str, int]:
+    """Number of jobs by status, in this transaction."""
+    query = select(JobRow.status, func.count()).group_by(JobRow.status)
+    found = {status: number for status, number in session.execute(query)}
+    return {status.value: found.get(status.value, 0) for status in JobStatus}
+
+
+def _encode(seq: int) -> str:
+    return urlsafe_b64encode(f"{_CURSOR}{seq}".encode()).decode().rstrip("=")
+
+
+def _decode(cursor: str) -> int:
+    required = "the next_cursor of an earlier page"
+    try:
+        text = urlsafe_b64decode(cursor + "=" * (-len(cursor) % 4)).decode("ascii")
+    except ValueError:
+        raise invalid("cursor", required, cursor) from None
+    number = text.removeprefix(_CURSOR)
+    if number == text or not (number.isascii() and number.isdigit()) or len(number) > 18:
+        raise InvalidInput(
+            f"cursor: required {required}, received {cursor!r}",
+            field="cursor",
+            required=required,
+            received=cursor,
+        )
+    return int(number)

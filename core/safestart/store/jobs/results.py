@@ -1,0 +1,78 @@
+"""Results and artifacts of ended jobs."""
+
+from __future__ import annotations
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from safestart.errors import JobFailed, NotFound, ResultNotReady
+from safestart.records.artifact import Artifact
+from safestart.store.database import Database
+from safestart.store.jobs.submissions import find
+from safestart.store.models import ArtifactRow, JobRow, ResultRow
+from safestart.store.records import ArtifactInfo, JobStatus, StoredResult
+
+
+class ResultRepository:
+    """Reads what ended jobs left; all methods raise ``NotFound`` for an unknown job."""
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    def result(self, job_id: str) -> StoredResult:
+        """The result document.
+
+        Raises ``ResultNotReady`` while the job waits or runs, ``JobFailed`` with the reason when it failed
+        and ``NotFound`` when it was dismissed.
+        """
+        with self._database.session() as session:
+            _require_success(find(session, job_id))
+            row = session.get_one(ResultRow, job_id)
+            return StoredResult(row.job_id, row.schema_version, row.document, row.sha256, row.created_at)
+
+    def artifact(self, job_id: str, name: str) -> Artifact:
+        """One artifact with its bytes; raises as :meth:`result`, ``NotFound`` names those there are."""
+        with self._database.session() as session:
+            _require_success(find(session, job_id))
+            row = session.get(ArtifactRow, (job_id, name))
+            if row is None:
+                names = [info.name for info in _infos(session, job_id)]
+                there_are = ", ".join(names) or "none"
+                raise NotFound(
+                    f"job {job_id} has no artifact {name!r}; there are: {there_are}",
+                    field="name",
+                    required=f"one of {there_are}",
+                    received=name,
+                )
+            return Artifact(row.name, row.media_type, row.data)
+
+    def artifacts(self, job_id: str) -> tuple[ArtifactInfo, ...]:
+        """The artifacts of a job by name, without their bytes; empty until it is successful."""
+        with self._database.session() as session:
+            find(session, job_id)
+            return _infos(session, job_id)
+
+
+def _infos(session: Session, job_id: str) -> tuple[ArtifactInfo, ...]:
+    columns = (ArtifactRow.name, ArtifactRow.media_type, ArtifactRow.size, ArtifactRow.sha256)
+    query = select(*columns).where(ArtifactRow.job_id == job_id).order_by(ArtifactRow.name)
+    return tuple(ArtifactInfo(*row) for row in session.execute(query))
+
+
+def _require_success(row: JobRow) -> None:
+    status = JobStatus(row.status)
+    if status is JobStatus.SUCCESSFUL:
+        return
+    if not status.ended:
+        raise ResultNotReady(
+            f"job {row.id} is {status.value}; results are there when it is successful",
+            field="jobID",
+            required="a successful job",
+            received=status.value,
+        )
+    kind: type[NotFound]
+    if status is JobStatus.FAILED:
+        kind, detail = JobFailed, f"job {row.id} failed: {row.message}"
+    else:
+        kind, detail = NotFound, f"job {row.id} was dismissed, so it has no results"
+    raise kind(detail, field="jobID", required="a successful job", received=status.value)

@@ -1,0 +1,62 @@
+"""Finished shards of a job: written under its lease, read when the job is resumed and by who wants to see it grow."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from sqlalchemy import delete, insert, select
+
+from safestart.store.database import Database
+from safestart.store.dialect import after
+from safestart.store.models import ShardRow
+from safestart.store.queue.holding import change
+from safestart.store.records import Claim, Shard
+
+
+class Shards:
+    """Operations on the shards of jobs; they are deleted with the success of their job, whose result replaces them."""
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    def save_shard(
+        self, claim: Claim, number: int, content: str, document: dict[str, Any], data: bytes
+    ) -> None:
+        """Keep what shard ``number`` gave; ``content`` identifies what it depends on.
+
+        A finished shard is progress that a lost worker cannot take away, so attempts are counted from here again.
+        Raises ``LeaseLost``.
+        """
+        with self._database.session(write=True) as session:
+            change(session, claim, attempts=1)
+            session.execute(
+                delete(ShardRow).where(ShardRow.job_id == claim.job_id, ShardRow.number == number)
+            )
+            session.execute(
+                insert(ShardRow).values(
+                    job_id=claim.job_id,
+                    number=number,
+                    content=content,
+                    document=document,
+                    data=data,
+                    created_at=after(),
+                )
+            )
+
+    def shard_contents(self, job_id: str) -> dict[int, str]:
+        """Number and content of the finished shards."""
+        query = select(ShardRow.number, ShardRow.content).where(ShardRow.job_id == job_id)
+        with self._database.session() as session:
+            return {number: content for number, content in session.execute(query)}
+
+    def shards(self, job_id: str) -> tuple[Shard, ...]:
+        """The finished shards in order, with their bytes."""
+        query = select(ShardRow).where(ShardRow.job_id == job_id).order_by(ShardRow.number)
+        with self._database.session() as session:
+            return tuple(row.record() for row in session.scalars(query))
+
+    def shard_documents(self, job_id: str) -> tuple[dict[str, Any], ...]:
+        """The documents of the finished shards in order."""
+        query = select(ShardRow.document).where(ShardRow.job_id == job_id).order_by(ShardRow.number)
+        with self._database.session() as session:
+            return tuple(session.scalars(query))

@@ -1,0 +1,209 @@
+"""Who may pass: the Host header, the key, the role that a call needs, and how often.
+
+Called once per request before anything else looks at it, and asks no database.
+"""
+
+from __future__ import annotations
+
+import ipaddress
+import re
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from fastapi import Request
+from starlette._utils import get_route_path
+from starlette.types import Scope
+
+from safestart.errors import SafestartError, Unavailable
+from safestart.runtime.access import LOCAL, Caller, Role
+from safestart.runtime.settings import Settings
+from safestart_service.access.keyring import Keyring
+from safestart_service.access.rates import Buckets
+from safestart_service.errors import Forbidden, MalformedRequest, Misdirected, RateLimited, Unauthorized
+
+if TYPE_CHECKING:
+    from safestart.store.records import ApiKey
+
+Presented = tuple[bytes | None, bytes | None, bytes | None]
+"""Host, Authorization and X-API-Key of a request."""
+
+PUBLIC = frozenset({"/", "/conformance", "/dashboard", "/docs", "/healthz", "/openapi.json", "/readyz"})
+"""Answered without a key: what the service is, whether it is well, and pages that hold no data and ask for the key."""
+INSTANT = frozenset({"/go-no-go", "/go-no-go/proof", "/certificates"})
+"""Computed from the request alone: a POST there reads, and changes nothing."""
+MOST_FAILURES_PER_S = 5.0
+_LONGEST_KEY = 512
+_READING = ("GET", "HEAD", "OPTIONS")
+_HOST_PORT = re.compile(r"(\[[^\]]*\]|[^:]*)(:\d{0,5})?")
+REMEDY = "a key made with `safestart keys create`, as Authorization: Bearer KEY or X-API-Key: KEY"
+
+
+def needed_role(method: str, path: str) -> Role | None:
+    """The role that a call needs; None for what is public. What is not known to read needs ``submit``.
+
+    An execution that runs at once stores nothing; where it queues a job, :meth:`Access.require_submit` asks for more.
+    """
+    if path in INSTANT:
+        return Role.READ
+    if path in PUBLIC or path.startswith(("/static/", "/dashboard/")):
+        return None
+    if path == "/admin" or path.startswith("/admin/"):
+        return Role.ADMIN
+    return Role.READ if method in _READING or path.endswith("/execution") else Role.SUBMIT
+
+
+class Access:
+    """The gate of one application."""
+
+    def __init__(self, settings: Settings, keyring: Keyring) -> None:
+        self._keyring = keyring
+        names = {name.strip().lower() for name in settings.allowed_hosts.split(",")}
+        self._host_allowed = lru_cache(1024)(lambda host: _allowed(host, frozenset(names - {""})))
+        self._requests = Buckets(settings.rate_per_s)
+        self._submissions = Buckets(settings.submit_rate_per_s)
+        self._failures = Buckets(MOST_FAILURES_PER_S)
+
+    def refusal(self, scope: Scope, presented: Presented) -> SafestartError | None:
+        """Why this request may not pass; None when it may. Leaves the key in the scope for :func:`caller`."""
+        host, authorization, api_key = presented
+        if host and not self._host_allowed(host):
+            return _misdirected(host)
+        needed = needed_role(scope["method"], get_route_path(scope))
+        if needed is None:
+            return None
+        if not self._keyring.required:
+            return self._without_keys(scope, needed)
+        key = self._keyring.check(presented_key(authorization, api_key))
+        if key is None:
+            return self._unauthorized(scope)
+        scope["safestart.key"] = key
+        if not self._requests.take(key.id):
+            return _rate_limited("requests", self._requests.rate)
+        if needed is Role.READ:  # every key may
+            return None
+        if not key.role.allows(needed):
+            return _forbidden(key, needed)
+        return self._too_many(key) if needed is Role.SUBMIT else None
+
+    def require_submit(self, request: Request) -> None:
+        """Raise ``Forbidden`` or ``RateLimited`` unless the caller may queue a job."""
+        key: ApiKey | None = request.scope.get("safestart.key")
+        if key is None:  # open to this machine
+            return
+        if not key.role.allows(Role.SUBMIT):
+            raise _forbidden(key, Role.SUBMIT)
+        refused = self._too_many(key)
+        if refused is not None:
+            raise refused
+
+    def _too_many(self, key: ApiKey) -> SafestartError | None:
+        if self._submissions.take(key.id):
+            return None
+        return _rate_limited("submissions and dismissals", self._submissions.rate)
+
+    def _without_keys(self, scope: Scope, needed: Role) -> SafestartError | None:
+        """No key was ever made: open to whoever comes over loopback, except for administration."""
+        if not self._keyring.known and get_route_path(scope) not in INSTANT | {"/metrics"}:
+            return Unavailable("the API keys cannot be read from the database", required="the database")
+        # Both ends: a proxy on this machine may speak for anyone.
+        if not all(is_local(end[0]) for end in (scope.get("server"), scope.get("client")) if end):
+            return Unauthorized(
+                f"beyond this machine only a key is answered, and there is none; required {REMEDY}",
+                required=REMEDY,
+            )
+        if not LOCAL.role.allows(needed):
+            return Unauthorized(f"administration always needs a key; required {REMEDY}", required=REMEDY)
+        return None
+
+    def _unauthorized(self, scope: Scope) -> SafestartError:
+        client = scope.get("client")
+        if not self._failures.take(client[0] if client else ""):
+            return RateLimited(
+                f"too many requests without a valid key; required at most {MOST_FAILURES_PER_S:g} per second"
+            )
+        # One sentence for every reason: an answer does not say which keys exist.
+        return Unauthorized(
+            f"no key, or one that is unknown, expired or revoked; required {REMEDY}", required=REMEDY
+        )
+
+
+def presented_key(authorization: bytes | None, api_key: bytes | None) -> bytes:
+    """The key in the headers; empty when there is none."""
+    if authorization is None:
+        return (api_key or b"")[:_LONGEST_KEY]
+    scheme, _, rest = authorization[:_LONGEST_KEY].partition(b" ")
+    return rest.strip() if scheme.lower() == b"bearer" else b""
+
+
+def caller(request: Request) -> Caller:
+    """Who asks, for the audit log."""
+    scope = request.scope
+    client = scope.get("client")
+    address = client[0] if client else None
+    key: ApiKey | None = scope.get("safestart.key")
+    request_id = scope.get("safestart.request_id")
+    if key is None:
+        return Caller(None, LOCAL.name, LOCAL.role, address, request_id)
+    return Caller(key.id, key.name, key.role, address, request_id)
+
+
+def require_own(by: Caller, submitter: str | None) -> None:
+    """Raise ``Forbidden`` unless ``by`` submitted the job, is an administrator, or no keys are in use."""
+    if by.key_id is None or by.role is Role.ADMIN or by.key_id == submitter:
+        return
+    raise Forbidden(
+        "the job was submitted by another; required the key that submitted it, or one with role admin",
+        field="jobID",
+        required="the submitter's key, or role admin",
+    )
+
+
+@lru_cache(64)
+def is_local(address: str) -> bool:
+    """True for a loopback address, and for what is no address (a Unix socket, a client in this process)."""
+    try:
+        found = ipaddress.ip_address(address.partition("%")[0])
+    except ValueError:
+        return True
+    mapped = found.ipv4_mapped if isinstance(found, ipaddress.IPv6Address) else None
+    return (mapped or found).is_loopback
+
+
+def _allowed(host: bytes, names: frozenset[str]) -> bool:
+    """Addresses and localhost cannot be rebound by a foreign name server; names must be known."""
+    match = _HOST_PORT.fullmatch(host.decode("latin-1").lower())
+    if match is None:
+        return False
+    name = match[1]
+    if name in names or name == "localhost" or name.endswith(".localhost"):
+        return True
+    try:
+        ipaddress.ip_address(name.removeprefix("[").removesuffix("]"))
+    except ValueError:
+        return False
+    return True
+
+
+def _misdirected(host: bytes) -> SafestartError:
+    if b"," in host:
+        return MalformedRequest("Host: required once (RFC 9112)", field="Host", required="once")
+    required = "localhost, an IP address, or a name in the setting allowed_hosts"
+    shown = host[:100].decode("latin-1")
+    return Misdirected(
+        f"Host: required {required}, received {shown!r}", field="Host", required=required, received=shown
+    )
+
+
+def _forbidden(key: ApiKey, needed: Role) -> Forbidden:
+    return Forbidden(
+        f"key {key.id} has role {key.role.value}; required role {needed.value}",
+        required=f"role {needed.value}",
+        received=key.role.value,
+    )
+
+
+def _rate_limited(what: str, rate: float) -> RateLimited:
+    return RateLimited(
+        f"too many {what} with this key; required at most {rate:g} per second",
+        required=f"{rate:g} per second",
+    )

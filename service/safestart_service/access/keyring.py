@@ -1,0 +1,98 @@
+"""The keys in memory, so that checking one asks no database; read again every second.
+
+A key made, revoked or expired elsewhere counts here at most that much later; one revoked through this service, at once.
+While the database is away, what was read last goes on to count.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import secrets
+from collections.abc import AsyncIterator
+from concurrent.futures import Executor, ThreadPoolExecutor
+from contextlib import asynccontextmanager
+from hmac import compare_digest
+from time import monotonic
+from typing import TYPE_CHECKING
+
+from safestart.errors import SafestartError
+from safestart.runtime.access import key_digest
+
+if TYPE_CHECKING:
+    from safestart.store.access.keys import KeyRepository
+    from safestart.store.records import ApiKey
+
+REFRESH_S = 1.0
+# The last use of a key is noted about once a minute: a busy key must not write with every request.
+NOTE_S = 60.0
+
+log = logging.getLogger("safestart.service")
+
+
+class Keyring:
+    """Digests and records of all keys.
+
+    ``known`` is False until they were read once. ``required``: a key was made at some time, so that one is asked for,
+    even if none is in force any more.
+    """
+
+    def __init__(self, keys: KeyRepository) -> None:
+        self._keys = keys
+        self._held: dict[bytes, tuple[ApiKey | None, bytes]] = {}
+        self._decoy: tuple[ApiKey | None, bytes] = (None, secrets.token_bytes(32))
+        self._used: set[str] = set()
+        self._noted: dict[str, float] = {}
+        self.known = False
+        self.required = False
+
+    def check(self, presented: bytes) -> ApiKey | None:
+        """The key, if it is one and in force.
+
+        The same steps are taken whatever was presented: a digest, a look-up by the digest, and a comparison in
+        constant time, with a decoy where nothing was found. How long a look-up takes depends on the digest, which
+        says nothing about the key. Whether a key is in force is asked only of who presented the whole of it.
+        """
+        digest = key_digest(presented)
+        key, kept = self._held.get(digest, self._decoy)
+        if not compare_digest(digest, kept) or key is None or not key.usable:
+            return None
+        self._used.add(key.id)
+        return key
+
+    def load(self) -> None:
+        """Read the keys, and note which were used; raises ``Unavailable``."""
+        held: dict[bytes, tuple[ApiKey | None, bytes]] = {
+            digest: (key, digest) for key, digest in self._keys.digests()
+        }
+        self._held, self.required, self.known = held, bool(held), True
+        now = monotonic()
+        due = [key_id for key_id in list(self._used) if now - self._noted.get(key_id, -NOTE_S) >= NOTE_S]
+        if due:
+            self._keys.used(due)
+            self._used.difference_update(due)
+            self._noted.update(dict.fromkeys(due, now))
+
+    @asynccontextmanager
+    async def kept_fresh(self) -> AsyncIterator[None]:
+        """Read the keys now, and again and again until the end."""
+        # A thread of its own: however much there is to compute, a key revoked elsewhere is refused in time.
+        reader = ThreadPoolExecutor(1, "keyring")
+        await self._try_load(reader)
+        task = asyncio.create_task(self._keep(reader))
+        try:
+            yield
+        finally:
+            task.cancel()
+            reader.shutdown(wait=False)
+
+    async def _keep(self, reader: Executor) -> None:
+        while True:
+            await asyncio.sleep(REFRESH_S)
+            await self._try_load(reader)
+
+    async def _try_load(self, reader: Executor) -> None:
+        try:
+            await asyncio.get_running_loop().run_in_executor(reader, self.load)
+        except SafestartError as error:
+            log.warning("keys not read: %s", error.detail)

@@ -1,0 +1,121 @@
+"""Execution requests of OGC API - Processes 1.0: their models, the choice of mode, the selection of outputs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import cache
+from typing import Any, Literal
+
+import orjson
+from pydantic import Field, create_model
+
+from safestart.errors import InvalidInput, invalid
+from safestart.processes.base import ProcessSpec, WireModel
+from safestart.processes.go_no_go.spec import GoNoGoInputs
+from safestart.processes.registry import process
+from safestart.runtime.progress import Context
+from safestart_service.documents.describe import output_ids
+from safestart_service.documents.formats import ogc_values
+from safestart_service.http.body import parse_body
+
+_QUALIFIED = {"value", "mediaType", "encoding", "schema"}
+
+
+class OutputRequest(WireModel):
+    """How one output is wanted; values only."""
+
+    transmissionMode: Literal["value"] = "value"
+
+
+class ExecuteRequest(WireModel):
+    """What all execution requests share. Each process has its own subclass with typed ``inputs``."""
+
+    priority: int = Field(
+        0,
+        ge=-100,
+        le=100,
+        description="Of a queued job: higher is served first. Above 0 only with an admin key.",
+    )
+    outputs: dict[str, OutputRequest] | None = Field(
+        None, description="Outputs wanted; absent: all. A stored result always holds all of them."
+    )
+    response: Literal["document", "raw"] = Field(
+        "document", description="raw (the bare value) needs exactly one entry in outputs, and sync execution."
+    )
+
+
+@cache
+def execute_model(process_id: str) -> type[ExecuteRequest]:
+    """The execution request of one process."""
+    spec = process(process_id)
+    name = "Execute" + process_id.title().replace("-", "")
+    inputs: Any = (spec.inputs, Field(description="Inputs of the process."))
+    return create_model(
+        name, __base__=ExecuteRequest, __doc__=f"Execution request of {process_id}.", inputs=inputs
+    )
+
+
+def parse_request(process_id: str, body: bytes) -> ExecuteRequest:
+    """Validate a body; raises as :func:`parse_body`.
+
+    An input may come as a qualified value, ``{"value": ...}``, as the standard has it for objects; that is looked at
+    only where the body is not valid without.
+    """
+    model = execute_model(process_id)
+    try:
+        return parse_body(model, body)
+    except InvalidInput:
+        plain = _unqualified(body)
+        if plain is None:
+            raise
+        return parse_body(model, plain)
+
+
+def _unqualified(body: bytes) -> bytes | None:
+    """The body with bare values for qualified ones; None where there is none."""
+    try:
+        document = orjson.loads(body)
+        inputs = document["inputs"].items()
+    except (ValueError, TypeError, KeyError, AttributeError):
+        return None
+    bare = {name: value["value"] for name, value in inputs if _is_qualified(value)}
+    return orjson.dumps(document | {"inputs": document["inputs"] | bare}) if bare else None
+
+
+def _is_qualified(value: Any) -> bool:
+    return isinstance(value, dict) and "value" in value and set(value) <= _QUALIFIED
+
+
+def check_outputs(spec: ProcessSpec, request: ExecuteRequest, *, sync: bool) -> None:
+    """Raise ``InvalidInput`` for outputs the process has not, and for a raw response that cannot be given."""
+    known = output_ids(spec)
+    for name in request.outputs or ():
+        if name not in known:
+            raise invalid("outputs", f"names among {', '.join(known)}", name)
+    if request.response == "raw" and not (sync and request.outputs is not None and len(request.outputs) == 1):
+        raise invalid(
+            "response", "document, or raw with sync execution and exactly one entry in outputs", "raw"
+        )
+
+
+def check_states(inputs: WireModel, max_states: int) -> None:
+    """Raise ``InvalidInput`` beyond the number of states that this service is set to take."""
+    if isinstance(inputs, GoNoGoInputs) and len(inputs.states) > max_states:
+        raise invalid("states", f"at most {max_states} items", len(inputs.states))
+
+
+def run_now(spec: ProcessSpec, inputs: WireModel, context: Context) -> dict[str, Any]:
+    """Run a light process here; returns its output document."""
+    return spec.runner()(inputs, context).document
+
+
+def selected(document: dict[str, Any], request: ExecuteRequest) -> Any:
+    """The outputs asked for as the standard's results, or the bare value of a raw response."""
+    chosen = document if request.outputs is None else {name: document[name] for name in request.outputs}
+    return next(iter(chosen.values())) if request.response == "raw" else ogc_values(chosen)
+
+
+def prefers_async(headers: Iterable[str]) -> bool:
+    """True when a Prefer header (RFC 7240) asks for ``respond-async``."""
+    preferences = (preference.partition(";")[0] for header in headers for preference in header.split(","))
+    return any(preference.strip().lower() == "respond-async" for preference in preferences)

@@ -1,0 +1,161 @@
+"""The OpenAPI description: FastAPI's paths, with our models, problem responses and the processes' schemas."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fastapi import FastAPI
+from fastapi.openapi.utils import get_openapi
+from pydantic import BaseModel
+from pydantic.json_schema import models_json_schema
+
+from safestart.processes.registry import PROCESS_IDS, process
+from safestart.runtime.access import Role
+from safestart_service.access.gate import needed_role
+from safestart_service.documents import deprecation, schemas
+from safestart_service.documents.execution import execute_model
+from safestart_service.documents.instant import GoNoGoAnswer
+from safestart_service.documents.problems import MEDIA_TYPE, Problem
+
+REF = "#/components/schemas/"
+TAG = "For If-None-Match."
+ANSWERS: tuple[type[BaseModel], ...] = (
+    Problem,
+    GoNoGoAnswer,
+    schemas.Landing,
+    schemas.Conformance,
+    schemas.ProcessList,
+    schemas.ProcessDescription,
+    schemas.JobList,
+    schemas.JobDetail,
+    schemas.Partial,
+    schemas.Submitted,
+    schemas.ResultDocument,
+    schemas.Partial,
+    schemas.Health,
+    schemas.Readiness,
+    schemas.KeyList,
+    schemas.NewKeyDocument,
+    schemas.KeyDocument,
+    schemas.AuditList,
+)
+_WHY = {
+    304: "The caller has this content already (If-None-Match).",
+    400: "The body is not JSON.",
+    401: "Keys are in use, and none in force came with the request.",
+    403: "The key's role is not enough.",
+    404: "There is nothing of this name.",
+    406: "None of the media types in Accept is offered.",
+    408: "The body did not come in time.",
+    409: "The present state of the job does not allow it.",
+    413: "The body is too large.",
+    414: "The query is too long.",
+    415: "The body is not declared as JSON.",
+    421: "The Host header names another server.",
+    422: "An input is not what is required; the problem names it.",
+    429: "Too many requests or streams with this key, or too many jobs wait; Retry-After says when.",
+    500: "An unexpected error.",
+    503: "The database does not answer, or too many connections are open.",
+}
+
+
+def answer(model: type[BaseModel], text: str, **headers: str) -> dict[str, Any]:
+    """A JSON response of a route, for FastAPI's ``responses``."""
+    return content("application/json", {"$ref": REF + model.__name__}, text, **headers)
+
+
+def content(media_type: str, schema: dict[str, Any], text: str, **headers: str) -> dict[str, Any]:
+    """A response of any media type."""
+    found: dict[str, Any] = {"description": text, "content": {media_type: {"schema": schema}}}
+    if headers:
+        found["headers"] = {
+            name.replace("_", "-"): {"description": why, "schema": {"type": "string"}}
+            for name, why in headers.items()
+        }
+    return found
+
+
+def refusals(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """Problem responses of a route; every route can be refused for its query's length and can fail."""
+    found: dict[int | str, dict[str, Any]] = {}
+    for status in sorted({*statuses, 414, 500}):
+        if status == 304:
+            found[status] = {"description": _WHY[status]}
+        else:
+            found[status] = content(MEDIA_TYPE, {"$ref": REF + "Problem"}, _WHY[status])
+    return found
+
+
+def json_body(models: dict[str, type[BaseModel]], examples: dict[str, Any]) -> dict[str, Any]:
+    """``openapi_extra`` of a route that reads its body itself: any of the models, with named examples."""
+    references = [{"$ref": REF + model.__name__} for model in models.values()]
+    schema = references[0] if len(references) == 1 else {"anyOf": references}
+    named = {name: {"summary": name, "value": value} for name, value in examples.items()}
+    return {
+        "requestBody": {
+            "required": True,
+            "content": {"application/json": {"schema": schema, "examples": named}},
+        }
+    }
+
+
+_SECURITY_SCHEMES = {
+    "bearer": {"type": "http", "scheme": "bearer", "description": "An API key."},
+    "header": {"type": "apiKey", "in": "header", "name": "X-API-Key", "description": "An API key."},
+}
+_QUEUE_TEXT = " To queue a job: role `submit`."
+_ROLE_TEXT = "Needs a key with role `{role}` once keys are in use."
+
+
+def _add_access(document: dict[str, Any]) -> None:
+    """What the gate asks of each operation, and how it can refuse it."""
+    document["components"]["securitySchemes"] = _SECURITY_SCHEMES
+    for path, operations in document["paths"].items():
+        for method, operation in operations.items():
+            role = needed_role(method.upper(), path)
+            queues = path.endswith("/execution")
+            statuses = {421} | ({408} if "requestBody" in operation else set())
+            if role is None:
+                operation["security"] = []
+            else:
+                operation["security"] = [{name: []} for name in _SECURITY_SCHEMES]
+                statuses |= {401, 429} | ({403} if role is not Role.READ or queues else set())
+                text = operation.get("description", "")
+                needs = _ROLE_TEXT.format(role=role.value) + (_QUEUE_TEXT if queues else "")
+                operation["description"] = f"{text}\n\n{needs}".strip()
+            for status in statuses:
+                problem = content(MEDIA_TYPE, {"$ref": REF + "Problem"}, _WHY[status])
+                operation["responses"].setdefault(str(status), problem)
+            operation["responses"] = dict(sorted(operation["responses"].items()))
+
+
+def build(app: FastAPI) -> dict[str, Any]:
+    """The whole document; the caller keeps it."""
+    document = get_openapi(
+        title=app.title, version=app.version, description=app.description, routes=app.routes
+    )
+    specs = [process(name) for name in PROCESS_IDS]
+    inputs = [model for spec in specs for model in (spec.inputs, execute_model(spec.id))] + [
+        schemas.KeyRequest
+    ]
+    outputs = [*ANSWERS, *(spec.outputs for spec in specs)]
+    components: dict[str, Any] = document.setdefault("components", {}).setdefault("schemas", {})
+    for models, mode in ((inputs, "validation"), (outputs, "serialization")):
+        _, found = models_json_schema([(model, mode) for model in models], ref_template=REF + "{model}")
+        for name, schema in found["$defs"].items():
+            if components.setdefault(name, schema) != schema:
+                raise AssertionError(f"two different schemas are called {name}")
+    _add_access(document)
+    deprecation.mark(document)
+    return document
+
+
+def install(app: FastAPI) -> None:
+    """Make ``app.openapi()`` return our document, built once."""
+
+    def openapi() -> dict[str, Any]:
+        if app.openapi_schema is None:
+            app.openapi_schema = build(app)
+        return app.openapi_schema
+
+    app.openapi = openapi  # type: ignore[method-assign]

@@ -1,0 +1,284 @@
+"""Documents the service answers with, as models: they are what the OpenAPI description shows."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+from pydantic.json_schema import SkipJsonSchema
+
+from safestart.processes.base import WireModel
+from safestart.runtime.access import Role
+from safestart.store.records import JobStatus
+
+
+class Link(BaseModel):
+    """A link of an OGC API document."""
+
+    href: str
+    rel: str
+    type: str
+    title: str
+
+
+class Landing(BaseModel):
+    """The landing page."""
+
+    title: str
+    description: str
+    links: list[Link]
+
+
+class Conformance(BaseModel):
+    """Conformance classes that the service implements."""
+
+    conformsTo: list[str]
+
+
+class ProcessSummary(BaseModel):
+    """A process in the list."""
+
+    id: str
+    title: str
+    description: str
+    version: str
+    keywords: list[str]
+    jobControlOptions: list[Literal["sync-execute", "async-execute", "dismiss"]]
+    outputTransmission: list[Literal["value", "reference"]]
+    links: list[Link]
+    view_kinds: list[str] = Field(
+        alias="safestart:view_kinds", description="Kinds of the views that a page shows its outputs by."
+    )
+
+
+class ProcessList(BaseModel):
+    """All processes."""
+
+    processes: list[ProcessSummary]
+    links: list[Link]
+
+
+class InputDescription(BaseModel):
+    """One input: ``minOccurs`` is 0 when there is a default."""
+
+    title: str
+    description: str = ""
+    minOccurs: int
+    maxOccurs: int
+    json_schema: dict[str, Any] = Field(alias="schema")
+
+
+class OutputDescription(BaseModel):
+    """One output."""
+
+    title: str
+    description: str = ""
+    json_schema: dict[str, Any] = Field(alias="schema")
+
+
+class TableDescription(BaseModel):
+    """Lists side by side as a table, or maps over two axes."""
+
+    name: str
+    columns: list[str]
+    axes: list[str]
+
+
+class ViewDescription(BaseModel):
+    """A view of the outputs; what else it has depends on its kind."""
+
+    model_config = ConfigDict(extra="allow")
+
+    kind: str
+
+
+class EngineDescription(BaseModel):
+    """An engine as people meet it."""
+
+    name: str
+    title: str
+    colour: str = Field(description="The same in every picture, as #RRGGBB.")
+
+
+class ProcessDescription(ProcessSummary):
+    """A process with JSON schemas of its inputs and outputs."""
+
+    inputs: dict[str, InputDescription]
+    outputs: dict[str, OutputDescription]
+    example: dict[str, Any] = Field(description="Inputs to start from.")
+    tables: list[TableDescription] = Field(
+        alias="safestart:tables", description="Tables of the outputs that are no lists of objects."
+    )
+    views: list[ViewDescription] = Field(
+        alias="safestart:views", description="How a page shows the outputs, the most important first."
+    )
+    engines: list[EngineDescription] = Field(
+        alias="safestart:engines", description="What stands in the outputs by name; empty for most processes."
+    )
+
+
+# A field that may be absent and is never null: the default that stands for its absence is no part of the schema.
+_ABSENT: dict[str, Any] = {"json_schema_extra": lambda schema: schema.pop("default", None)}
+
+
+class StatusInfo(BaseModel):
+    """statusInfo of OGC API - Processes 1.0, and what users of queues ask for besides."""
+
+    jobID: str
+    processID: str
+    type: Literal["process"]
+    status: JobStatus
+    message: str
+    created: datetime
+    started: datetime | SkipJsonSchema[None] = Field(None, description="Absent until then.", **_ABSENT)
+    finished: datetime | SkipJsonSchema[None] = Field(None, description="Absent until then.", **_ABSENT)
+    updated: datetime
+    progress: int = Field(ge=0, le=100)
+    position: int | None = Field(description="Place in the queue, 1 = next; null unless the job waits.")
+    reason: str | None = Field(description="Why the job waits; null unless it does.")
+    starts_in_s: float | None = Field(
+        description="Estimated seconds until a waiting job starts (one job's status only)."
+    )
+    eta_s: float | None = Field(description="Estimated seconds until it ends.")
+    priority: int = Field(description="Higher is served first.")
+    attempts: int
+    submitter: str | None = Field(description="Id of the key it was submitted with; null without one.")
+    dismissal_requested: bool
+    problem: dict[str, Any] | None = Field(description="Problem document of a failed job.")
+    links: list[Link]
+
+
+class JobDetail(StatusInfo):
+    """statusInfo of one job, with its inputs."""
+
+    inputs: dict[str, Any]
+    instant: dict[str, Any] | None = Field(description="Scalars of the answer given at submission.")
+
+
+class Submitted(JobDetail):
+    """statusInfo of a new job; ``certificate`` is the instant answer of processes that have one."""
+
+    certificate: dict[str, Any] | None = None
+
+
+class JobList(BaseModel):
+    """A page of jobs, newest first."""
+
+    jobs: list[StatusInfo]
+    links: list[Link]
+
+
+class ShardsDone(BaseModel):
+    """Finished shards of a job, of how many."""
+
+    done: int
+    total: int
+
+
+class Partial(BaseModel):
+    """What the finished shards of a job say already."""
+
+    jobID: str
+    processID: str
+    status: JobStatus
+    shards: ShardsDone
+    outputs: dict[str, Any] | None = Field(
+        description="Summary of the finished shards; null before the first."
+    )
+    links: list[Link]
+
+
+class ArtifactLink(BaseModel):
+    """An artifact of a result."""
+
+    name: str
+    media_type: str
+    size: int
+    sha256: str
+    href: str
+
+
+class ResultDocument(BaseModel):
+    """The stored result of a job; ``outputs`` is the process's output document."""
+
+    jobID: str
+    schema_version: int
+    sha256: str = Field(description="SHA-256 over the canonical JSON of outputs.")
+    inputs: dict[str, Any]
+    outputs: dict[str, Any]
+    provenance: dict[str, Any]
+    artifacts: list[ArtifactLink]
+
+
+class Health(BaseModel):
+    """The process lives."""
+
+    status: Literal["ok"]
+    version: str
+
+
+class Readiness(BaseModel):
+    """The database and a cluster answer."""
+
+    status: Literal["ready"]
+    workers_alive: int
+    places: int = Field(description="Jobs that the workers can run at once.")
+    places_taken: int
+    jobs: dict[str, int]
+
+
+class KeyDocument(BaseModel):
+    """An API key without its secret."""
+
+    id: str = Field(description="Public part of the key: it names the key in lists and logs.")
+    name: str
+    role: Role
+    created: datetime
+    expires: datetime | None
+    revoked: datetime | None
+    last_used: datetime | None = Field(description="Noted about once a minute.")
+    usable: bool = Field(description="Neither revoked nor expired.")
+
+
+class KeyRequest(WireModel):
+    """A key to make."""
+
+    name: str = Field(
+        min_length=1, max_length=100, description="Who or what uses it.", examples=["ground segment"]
+    )
+    role: Role = Field(Role.READ, description="read; submit reads, too; admin does everything.")
+    days: float | None = Field(90.0, gt=0, le=3660, description="Days until it expires; null: never.")
+
+
+class NewKeyDocument(KeyDocument):
+    """A key that was just made."""
+
+    key: str = Field(description="The key itself; it is not kept and cannot be shown again.")
+
+
+class KeyList(BaseModel):
+    """All keys."""
+
+    keys: list[KeyDocument]
+
+
+class AuditDocument(BaseModel):
+    """Who did what to which job or key, and when."""
+
+    id: int
+    at: datetime
+    action: str
+    subject: str = Field(description="Id of a job or a key.")
+    key_id: str | None = Field(description="Null without a key.")
+    actor: str = Field(description="The key's name; local or cli without one.")
+    address: str | None
+    request_id: str | None
+    detail: dict[str, Any] | None
+
+
+class AuditList(BaseModel):
+    """A page of the audit log, newest first."""
+
+    entries: list[AuditDocument]
+    next_before: int | None

@@ -1,0 +1,175 @@
+"""The outermost layer, pure ASGI: request id, security headers, access, caps on body and query, the last-resort 500.
+
+It sits in front of every answer, the instant ones too, so it does no more per request than it must: headers are
+encoded once and read in one pass, and ``receive`` is wrapped only when a body is announced.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import itertools
+import logging
+import re
+import secrets
+
+from starlette.requests import ClientDisconnect
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from safestart.errors import SafestartError
+from safestart.runtime.logs import about
+from safestart_service.access.gate import Access, Presented
+from safestart_service.documents import problems
+from safestart_service.errors import BodyTooLarge, QueryTooLong, RequestTimeout
+
+MAX_QUERY_BYTES = 8192
+CSP = (
+    "default-src 'none'; style-src 'self'; img-src 'self'; base-uri 'none'; form-action 'none'; "
+    "frame-ancestors 'none'"
+)
+SECURITY_HEADERS: tuple[tuple[bytes, bytes], ...] = (
+    (b"content-security-policy", CSP.encode()),
+    (b"x-content-type-options", b"nosniff"),
+    (b"x-frame-options", b"DENY"),
+    (b"referrer-policy", b"no-referrer"),
+    (b"cross-origin-resource-policy", b"same-origin"),
+)
+_SAFE_ID = re.compile(rb"[A-Za-z0-9._-]{1,64}")
+
+log = logging.getLogger("safestart.service")
+
+
+class Limits:
+    """ASGI middleware around the whole application."""
+
+    def __init__(
+        self, app: ASGIApp, max_body_bytes: int, access: Access | None = None, timeout_s: float = 60.0
+    ) -> None:
+        self.app = app
+        self.max_body_bytes = max_body_bytes
+        self.access = access
+        self.timeout_s = timeout_s
+        self._prefix = secrets.token_hex(4).encode() + b"-"
+        self._numbers = itertools.count(1)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Serve one request."""
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+        if scope["method"] == "HEAD" and not scope["path"].endswith("/events"):
+            scope = {**scope, "method": "GET"}  # the server sends the head of the answer alone
+        request_id, length, chunked, presented = self._read_headers(scope)
+        scope["safestart.request_id"] = request_id.decode("ascii")
+        extra = (*SECURITY_HEADERS, (b"x-request-id", request_id))
+        started = False
+
+        async def send_with_headers(message: Message) -> None:
+            nonlocal started
+            if message["type"] == "http.response.start":
+                started = True
+                own = any(name == b"content-security-policy" for name, _ in message["headers"])
+                message["headers"].extend(extra[1:] if own else extra)
+            await send(message)
+
+        refusal = self._refusal(scope, length, presented)
+        if refusal is not None:
+            problem = problems.of_error(refusal, scope["path"], request_id.decode())
+            await _answer(send_with_headers, problem, problems.headers_of(refusal))
+            return
+        if chunked or length is not None:
+            receive = self._watched(receive)
+        try:
+            await self.app(scope, receive, send_with_headers)
+        except ClientDisconnect:
+            log.info("the caller left", extra=about(request=request_id.decode()))
+        except Exception:
+            log.exception("%s %s", scope["method"], scope["path"], extra=about(request=request_id.decode()))
+            if started:  # too late for a problem document: let the server cut the connection
+                raise
+            await _answer(send_with_headers, problems.unexpected(scope["path"], request_id.decode()))
+
+    def _read_headers(self, scope: Scope) -> tuple[bytes, bytes | None, bool, Presented]:
+        """Request id (the caller's if it is harmless), Content-Length, whether the body is chunked, host and key."""
+        request_id = length = host = authorization = api_key = None
+        chunked = False
+        for name, value in scope["headers"]:
+            if name == b"content-length":
+                length = value
+            elif name == b"transfer-encoding":
+                chunked = True
+            elif name == b"host":
+                host = (
+                    value if host is None else host + b"," + value
+                )  # twice: no name, so none that is allowed
+            elif name == b"authorization":
+                authorization = value
+            elif name == b"x-api-key":
+                api_key = value
+            elif name == b"x-request-id" and _SAFE_ID.fullmatch(value):
+                request_id = value
+        request_id = request_id or self._prefix + b"%x" % next(self._numbers)
+        return request_id, length, chunked, (host, authorization, api_key)
+
+    def _refusal(self, scope: Scope, length: bytes | None, presented: Presented) -> SafestartError | None:
+        if length is not None and (
+            not length.isdigit() or len(length) > 15 or int(length) > self.max_body_bytes
+        ):
+            return self._too_large(length.decode("latin-1"))
+        if len(scope["query_string"]) > MAX_QUERY_BYTES:
+            return QueryTooLong(
+                f"query: required at most {MAX_QUERY_BYTES} bytes, received {len(scope['query_string'])}",
+                field="query",
+                required=f"at most {MAX_QUERY_BYTES} bytes",
+                received=len(scope["query_string"]),
+            )
+        return None if self.access is None else self.access.refusal(scope, presented)
+
+    def _too_large(self, received: str) -> BodyTooLarge:
+        required = f"at most {self.max_body_bytes} bytes"
+        return BodyTooLarge(
+            f"body: required {required}, received {received[:40]}",
+            field="body",
+            required=required,
+            received=received,
+        )
+
+    def _watched(self, receive: Receive) -> Receive:
+        """Count what comes, as a chunked body announces no length, and stop reading beyond the cap or too late."""
+        total = 0
+        complete = False
+        deadline = asyncio.get_running_loop().time() + self.timeout_s
+
+        async def watching() -> Message:
+            nonlocal total, complete
+            if complete:
+                return await receive()
+            try:
+                async with asyncio.timeout_at(deadline):
+                    message = await receive()
+            except TimeoutError:
+                raise self._too_slow(total) from None
+            if message["type"] == "http.request":
+                total += len(message.get("body", b""))
+                complete = not message.get("more_body", False)
+                if total > self.max_body_bytes:
+                    raise self._too_large(f"{total} bytes or more")
+            return message
+
+        return watching
+
+    def _too_slow(self, total: int) -> RequestTimeout:
+        required = f"the whole body within {self.timeout_s:g} s"
+        return RequestTimeout(
+            f"body: required {required}, received {total} bytes",
+            field="body",
+            required=required,
+            received=total,
+        )
+
+
+async def _answer(send: Send, problem: dict[str, object], more: dict[str, str] | None = None) -> None:
+    body = problems.encode(problem)
+    headers = [(b"content-type", problems.MEDIA_TYPE.encode()), (b"content-length", b"%d" % len(body))]
+    headers += [(name.lower().encode(), value.encode()) for name, value in (more or {}).items()]
+    await send({"type": "http.response.start", "status": problem["status"], "headers": headers})
+    await send({"type": "http.response.body", "body": body})

@@ -1,0 +1,213 @@
+"""HTTP on the wire: uvicorn's protocol, with our words for what is no request, and limits on what one peer may take.
+
+:mod:`limits` sees a request once its head has been read. What is no HTTP, never comes to an end, is never read, or
+comes from too many at once, is met here.
+"""
+
+from __future__ import annotations
+
+import ipaddress
+import logging
+import secrets
+from asyncio import TimerHandle, Transport
+from enum import Enum, auto
+from http import HTTPStatus
+from typing import Any
+
+from safestart.errors import SafestartError
+from safestart.runtime.logs import about
+from safestart_service.access.gate import is_local
+from safestart_service.documents import problems
+from safestart_service.errors import HeadTooLarge, MalformedRequest, RequestTimeout, TooManyConnections
+from safestart_service.http.limits import SECURITY_HEADERS
+from safestart_service.http.places import Places
+from safestart_service.http.unread import Read
+
+HEAD_S = 20.0
+MAX_HEAD_BYTES = 131_072
+MOST_AHEAD = 100
+"""Requests that may wait on one connection for the answer to the first."""
+TURNED_AWAY_S = 1.0
+MOST_TURNED_AWAY = 64
+
+log = logging.getLogger("safestart.service")
+
+
+class Message(Enum):
+    """Where the bytes that come next belong."""
+
+    BETWEEN = auto()
+    HEAD = auto()
+    BODY = auto()
+
+
+class Protocol(Read):
+    """One connection. A head must come within :data:`HEAD_S` of the connection, or of the answer before it."""
+
+    _deadline: TimerHandle | None = None
+    _message = Message.BETWEEN
+    _parts = 0
+    _received = 0
+    _seated = False
+    _active: Any = None
+
+    def __init__(self, *args: Any, places: Places, **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self._places = places
+
+    def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
+        """Wait for the first head, if there is a place; otherwise say so to the first bytes, or soon."""
+        super().connection_made(transport)
+        self._holder = holder(self.client[0] if self.client else "")
+        self._seated = self._places.take(self._holder)
+        if self._seated:
+            self._wait()
+        elif len(self.connections) > self._places.taken + MOST_TURNED_AWAY:
+            self._turn_away()
+        else:  # closing before what was sent is read would take our words back
+            self._deadline = self.loop.call_later(TURNED_AWAY_S, self._turn_away)
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Wait no longer, and leave the place to another."""
+        self._wait_no_longer()
+        if self._seated:
+            self._seated = False
+            self._places.leave(self._holder)
+        super().connection_lost(exc)
+        self._abandon()
+
+    def on_message_begin(self) -> None:
+        """A head begins."""
+        if len(self.pipeline) >= MOST_AHEAD:  # uvicorn takes it for no HTTP, and closes
+            raise ValueError(f"{MOST_AHEAD} requests wait already")
+        super().on_message_begin()
+        self._message = Message.HEAD
+        self._parts += 1
+
+    def on_headers_complete(self) -> None:
+        """The head is whole."""
+        self._wait_no_longer()
+        super().on_headers_complete()
+        self._message = Message.BODY
+        self._parts += 1
+        self.headers = []  # trailers go here, and nowhere: they are no part of the head, which was judged
+
+    def on_body(self, body: bytes) -> None:
+        """A part of the body."""
+        self._parts += 1
+        super().on_body(body)
+
+    def on_message_complete(self) -> None:
+        """Nothing more of this request."""
+        self._message = Message.BETWEEN
+        self._parts += 1
+        super().on_message_complete()
+
+    def on_response_complete(self) -> None:
+        """Wait for the next head, unless it is there."""
+        super().on_response_complete()
+        if self.cycle.response_complete:
+            self._wait()
+
+    def data_received(self, data: bytes) -> None:
+        """Count what ends no head and is no body: long headers, trailers, chunk extensions.
+
+        The piece in which a head begins or ends is not counted; it is not longer than one read.
+        """
+        if not self._seated:
+            self._turn_away()
+            return
+        before = self._parts
+        super().data_received(data)
+        if self._parts != before:
+            self._received = 0
+        elif self._message is not Message.BETWEEN:
+            self._received += len(data)
+            if self._received > MAX_HEAD_BYTES:
+                required = f"at most {MAX_HEAD_BYTES} bytes"
+                self._refuse(
+                    HeadTooLarge(
+                        f"request line and headers: required {required}", field="headers", required=required
+                    )
+                )
+
+    def send_400_response(self, msg: str) -> None:  # noqa: ARG002
+        """What is no HTTP; called by uvicorn, whose own words are plain text."""
+        self._refuse(
+            MalformedRequest("the request is not HTTP/1.1 (RFC 9112)", required="HTTP/1.1 or HTTP/1.0")
+        )
+
+    def _wait(self) -> None:
+        self._wait_no_longer()
+        self._deadline = self.loop.call_later(HEAD_S, self._too_slow)
+
+    def _wait_no_longer(self) -> None:
+        if self._deadline is not None:
+            self._deadline.cancel()
+            self._deadline = None
+
+    def _too_slow(self) -> None:
+        if self._message is not Message.HEAD:  # nothing was asked, so nothing is answered
+            self.transport.close()
+            return
+        required = f"request line and headers within {HEAD_S:g} s"
+        self._refuse(RequestTimeout(f"headers: required {required}", field="headers", required=required))
+
+    def _turn_away(self) -> None:
+        required = f"at most {self._places.most} connections at once, {self._places.share} from one address"
+        self._refuse(TooManyConnections(f"no place is left; required {required}", required=required))
+
+    def _refuse(self, error: SafestartError) -> None:
+        """Answer and close; where another answer is due or under way on this connection, only close."""
+        if self.transport.is_closing():
+            return
+        if self._may_answer():
+            request_id = secrets.token_hex(8)
+            log.info("refused: %s", error.detail, extra=about(request=request_id))
+            self.transport.write(_answer(error, request_id))
+        self._abandon()
+        self.transport.close()
+
+    def _start_asgi_task(self, cycle: Any, app: Any) -> None:
+        self._active = cycle
+        super()._start_asgi_task(cycle, app)
+
+    def _abandon(self) -> None:
+        """Tell whoever answers now that nobody listens; uvicorn tells only the request that came last."""
+        if self._active is not None and not self._active.response_complete:
+            self._active.disconnected = True
+            self._active.message_event.set()
+
+    def _may_answer(self) -> bool:
+        """True when whoever asked last will take the next answer for the answer to that."""
+        cycle: Any = self.cycle
+        if self._message is Message.BODY:
+            return not (cycle.response_started or self.pipeline)
+        return cycle is None or bool(cycle.response_complete)
+
+
+def holder(address: str) -> str | None:
+    """Whose a connection is: an IPv4 address or an IPv6 network; None on this machine, where proxies speak for many."""
+    if is_local(address):
+        return None
+    found = ipaddress.ip_address(address.partition("%")[0])
+    if (
+        isinstance(found, ipaddress.IPv6Address) and found.ipv4_mapped is None
+    ):  # one customer has 2^64 of them
+        return str(ipaddress.IPv6Network((int(found) >> 64 << 64, 64)))
+    return address
+
+
+def _answer(error: SafestartError, request_id: str) -> bytes:
+    body = problems.encode(problems.of_error(error, "", request_id))
+    headers = {
+        "content-type": problems.MEDIA_TYPE,
+        "content-length": str(len(body)),
+        "x-request-id": request_id,
+        **{name.lower(): value for name, value in problems.headers_of(error).items()},
+        "connection": "close",
+    }
+    lines = [f"HTTP/1.1 {error.status} {HTTPStatus(error.status).phrase}".encode()]
+    lines += [f"{name}: {value}".encode() for name, value in headers.items()]
+    lines += [name + b": " + value for name, value in SECURITY_HEADERS]
+    return b"\r\n".join([*lines, b"", body])

@@ -1,0 +1,90 @@
+"""Pages: shells rendered on the server, drawn by small scripts of ours that use the public API, nothing from elsewhere.
+
+A page holds no data of the store, so that it can be given to anyone: what it shows, its script asks for, with a key
+where keys are required.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fastapi import Request
+from fastapi.responses import HTMLResponse, Response
+from starlette.exceptions import HTTPException
+
+from safestart_service.http.answers import entity_tag, not_modified
+from safestart_service.pages.openapi_operations import api_operations
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+_HERE = Path(__file__).parent
+_TYPES = {".css": "text/css", ".svg": "image/svg+xml", ".js": "text/javascript"}
+_PLOTLY = "plotly.min.js"
+# The three style attributes that plotly.js writes as text, by hash; everything else it styles through the DOM.
+_PLOTLY_STYLES = (
+    "'sha256-ji27qzEtxXZW+7dun6UwjHXJ18e6WAin1VvNtkzIE/o='",
+    "'sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU='",
+    "'sha256-AR/cKIZjWPcPmBUPDA6oti9XBiTbJvz0Cro2J1VzzS8='",
+)
+CSP = (
+    "default-src 'none'; script-src 'self'; connect-src 'self'; img-src 'self' data: blob:; "
+    f"style-src 'self' 'unsafe-hashes' {' '.join(_PLOTLY_STYLES)}; "
+    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
+
+
+@cache
+def _environment() -> Environment:
+    # Imported with the first page: the API starts without.
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    return Environment(
+        loader=FileSystemLoader(_HERE / "templates"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+
+
+def page(template: str, **values: Any) -> HTMLResponse:
+    """A page; ``here`` is its path, ``root`` the mount path, ``script`` its module, ``plots`` whether it draws."""
+    text = _environment().get_template(template).render(**values)
+    return HTMLResponse(text, headers={"Cache-Control": "no-store", "Content-Security-Policy": CSP})
+
+
+def docs(description: dict[str, Any], root: str) -> Response:
+    """The API description as a page."""
+    groups = api_operations(description)
+    return page("docs.html", root=root, here="/docs", info=description["info"], groups=groups)
+
+
+@cache
+def _static_file(name: str) -> tuple[bytes, str, str]:
+    """Bytes, media type and entity tag of one of our files, or of plotly.js."""
+    from hashlib import sha256
+
+    path = files("plotly") / "package_data" / name if name == _PLOTLY else _HERE / "static" / name
+    data = path.read_bytes()
+    return data, _TYPES[Path(name).suffix], entity_tag(sha256(data).hexdigest())
+
+
+@cache
+def _names() -> frozenset[str]:
+    here = _HERE / "static"
+    found = (path.relative_to(here).as_posix() for path in here.rglob("*") if path.suffix in _TYPES)
+    return frozenset(found) | {_PLOTLY}
+
+
+def static(request: Request, name: str) -> Response:
+    """A script, style sheet or picture of the pages."""
+    if name not in _names():
+        raise HTTPException(404)
+    data, media_type, tag = _static_file(name)
+    # Asked for anew each time, answered by 304: after an upgrade no page runs an old script.
+    headers = {"Cache-Control": "no-cache", "ETag": tag}
+    return not_modified(request, tag) or Response(data, media_type=media_type, headers=headers)

@@ -1,0 +1,355 @@
+"""Bundles, backups and retention, on every backend."""
+
+from __future__ import annotations
+
+import io
+import json
+import sqlite3
+import zipfile
+from base64 import b64encode
+from contextlib import closing
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+import pytest
+from sqlalchemy import inspect
+from typer.testing import CliRunner
+
+from safestart.cli import build
+from safestart.cli.records import age
+from safestart.errors import Conflict, InvalidInput, SafestartError
+from safestart.records.artifact import Artifact
+from safestart.records.bundle import pack, unpack
+from safestart.runtime.access import Role
+from safestart.store.access.keys import KeyRepository
+from safestart.store.backup import backup, restore
+from safestart.store.cache import Cache
+from safestart.store.database import Database
+from safestart.store.jobs import retention
+from safestart.store.jobs.repository import JobRepository
+from safestart.store.jobs.results import ResultRepository
+from safestart.store.jobs.retention import Retention
+from safestart.store.models import ArtifactRow, Base, ResultRow
+from safestart.store.transfer import Transfer
+from tests.contract.access.key_holders import BY
+from tests.contract.api.service_client import SMALL
+from tests.contract.store.store_backends import BACKENDS, fresh_url
+
+
+def done(database: Database, execution: Any, inputs: dict[str, Any] | None = None) -> str:
+    """A finished job as a worker leaves it."""
+    jobs = JobRepository(database)
+    job = jobs.submit("benchmark", inputs or SMALL, timeout_s=60.0, submitter="somebody")
+    claim = jobs.claim("worker", 30.0)
+    assert claim is not None
+    jobs.progress(claim, 50.0, "half", 1.0)
+    jobs.succeed(claim, execution.document, execution.artifacts, {"python": "3"})
+    return job.id
+
+
+def rewritten(data: bytes, name: str, content: bytes | None) -> bytes:
+    """The archive with one member replaced, added or (None) removed."""
+    target = io.BytesIO()
+    with zipfile.ZipFile(io.BytesIO(data)) as old, zipfile.ZipFile(target, "w") as new:
+        for item in old.namelist():
+            if item != name:
+                new.writestr(item, old.read(item))
+        if content is not None:
+            new.writestr(name, content)
+    return target.getvalue()
+
+
+# --- bundles ---
+
+
+def test_a_job_goes_through_a_bundle_into_another_database(
+    database: Database, execution: Any, tmp_path: Path
+) -> None:
+    job = done(database, execution)
+    data, seal = pack(Transfer(database).read(job))
+    assert pack(Transfer(database).read(job)) == (data, seal), "the same job gives the same bytes"
+    assert b"somebody" not in zipfile.ZipFile(io.BytesIO(data)).read("job.json")
+    other = Database(f"sqlite:///{tmp_path / 'other.sqlite3'}")
+    other.migrate()
+    assert Transfer(other).add(unpack(data, seal)) is True
+    assert Transfer(other).add(unpack(data, seal)) is False, "a second time changes nothing"
+    before, after = ResultRepository(database), ResultRepository(other)
+    assert after.result(job).document == before.result(job).document
+    assert after.result(job).sha256 == before.result(job).sha256
+    assert after.artifacts(job) == before.artifacts(job)
+    for info in before.artifacts(job):
+        assert after.artifact(job, info.name).data == before.artifact(job, info.name).data
+    there, here = JobRepository(other).get(job), JobRepository(database).get(job)
+    assert (there.status, there.inputs, there.finished_at) == (here.status, here.inputs, here.finished_at)
+    old, new = JobRepository(database).events(job), JobRepository(other).events(job)
+    assert [(event.kind, event.data, event.at) for event in new] == [(e.kind, e.data, e.at) for e in old]
+    assert pack(Transfer(other).read(job)) == (data, seal)
+    other.close()
+
+
+def test_a_bundle_opens_without_a_server(database: Database, execution: Any) -> None:
+    data, _ = pack(Transfer(database).read(done(database, execution)))
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        page = archive.read("index.html").decode()
+        names = set(archive.namelist())
+    assert "<script" not in page
+    assert "http" not in page.replace("http-equiv", "")
+    style = page.partition("<style>")[2].partition("</style>")[0]
+    allowed = b64encode(sha256(style.encode()).digest()).decode()
+    assert f"default-src 'none'; img-src 'self' file:; style-src 'sha256-{allowed}'" in page
+    assert page.index("<th>engine</th>") < page.index("<th>area_m2</th>"), "what a row is about comes first"
+    assert page.index("<img") < page.index("<h2>Outputs</h2>"), "what is seen at a glance comes first"
+    for item in execution.artifacts:
+        assert f'href="artifacts/{item.name}"' in page
+        assert f"artifacts/{item.name}" in names
+    assert "analytical" in page
+
+
+def test_the_page_of_a_bundle_runs_nothing_that_a_job_says(database: Database, execution: Any) -> None:
+    bundle = Transfer(database).read(done(database, execution))
+    evil = "<script>alert(1)</script>"
+    bundle.job["message"] = evil
+    bundle.job["inputs"] = {evil: [{evil: evil}]}
+    page = zipfile.ZipFile(io.BytesIO(pack(bundle)[0])).read("index.html").decode()
+    assert "<script" not in page
+    assert "&lt;script&gt;" in page
+
+
+def test_every_altered_bundle_is_refused_with_what_differs(database: Database, execution: Any) -> None:
+    data, seal = pack(Transfer(database).read(done(database, execution)))
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        parts = {name: archive.read(name) for name in archive.namelist()}
+    assert len(parts) >= 6
+    for name, content in parts.items():
+        if name == "manifest.json":
+            continue
+        with pytest.raises(InvalidInput, match=f"{name} was altered"):
+            unpack(rewritten(data, name, content[:-1] + bytes([content[-1] ^ 1])))
+        with pytest.raises(InvalidInput, match=f"{name} is missing"):
+            unpack(rewritten(data, name, None))
+    with pytest.raises(InvalidInput, match=r"extra\.txt is not in the manifest"):
+        unpack(rewritten(data, "extra.txt", b"x"))
+    with pytest.raises(InvalidInput, match=r"no manifest\.json"):
+        unpack(rewritten(data, "manifest.json", None))
+    for wrong in (data[: len(data) // 2], b"", b"PK rubbish"):
+        with pytest.raises(InvalidInput, match="cannot be unpacked"):
+            unpack(wrong)
+    with pytest.raises(InvalidInput, match="its seal is"):
+        unpack(data, "0" * 64)
+    assert unpack(data, seal.upper()).job["id"]
+
+
+def test_a_bundle_that_was_altered_and_sealed_again_is_told_by_its_seal_or_its_contradictions(
+    database: Database, execution: Any
+) -> None:
+    bundle = Transfer(database).read(done(database, execution))
+    _, seal = pack(bundle)
+    assert bundle.result is not None
+    name = bundle.artifacts[0].name
+    forged = [
+        Artifact(a.name, a.media_type, b"forged" if a.name == name else a.data) for a in bundle.artifacts
+    ]
+    data, other = pack(type(bundle)(bundle.job, bundle.result, bundle.events, tuple(forged)))
+    assert other != seal
+    with pytest.raises(InvalidInput, match=f"artifact {name} is not the one"):
+        unpack(data)
+    result = json.loads(json.dumps(bundle.result))
+    result["outputs"]["rows"][0]["area_m2"] = 1.0
+    data, other = pack(type(bundle)(bundle.job, result, bundle.events, bundle.artifacts))
+    with pytest.raises(InvalidInput, match="its seal is"):
+        unpack(data, seal)
+    with pytest.raises(Conflict, match="has another result"):
+        Transfer(database).add(unpack(data, other))
+
+
+def test_a_job_that_has_not_ended_is_not_exported(database: Database) -> None:
+    job = JobRepository(database).submit("benchmark", SMALL, timeout_s=60.0)
+    with pytest.raises(Conflict, match="is accepted; required a job that has ended"):
+        Transfer(database).read(job.id)
+    JobRepository(database).dismiss(job.id)
+    bundle = unpack(pack(Transfer(database).read(job.id))[0])
+    assert (bundle.job["status"], bundle.result) == ("dismissed", None)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("status", "running"),
+        ("status", "x"),
+        ("id", ""),
+        ("inputs", []),
+        ("created_at", "2026-01-01"),
+        ("id", None),
+    ],
+)
+def test_a_bundle_with_impossible_facts_is_refused(
+    database: Database, execution: Any, name: str, value: Any
+) -> None:
+    bundle = Transfer(database).read(done(database, execution))
+    bundle.job[name] = value
+    with pytest.raises(InvalidInput, match="bundle"):
+        Transfer(database).add(bundle)
+
+
+def test_what_was_altered_in_the_database_is_not_passed_on(database: Database, execution: Any) -> None:
+    job = done(database, execution)
+    with database.session(write=True) as session:
+        row = session.get_one(ResultRow, job)
+        row.document = row.document | {"outputs": row.document["outputs"] | {"corridor_cells": 1}}
+    with pytest.raises(Conflict, match="the result does not have the SHA-256 on record"):
+        Transfer(database).read(job)
+    name = execution.artifacts[0].name
+    other = done(database, execution)
+    with database.session(write=True) as session:
+        session.get_one(ArtifactRow, (other, name)).data = b"forged"
+    with pytest.raises(Conflict, match=f"artifact {name} does not have"):
+        Transfer(database).read(other)
+
+
+# --- backup, retention ---
+
+
+def test_a_backup_restores_into_every_kind_of_database(
+    database: Database, execution: Any, tmp_path: Path
+) -> None:
+    job = done(database, execution)
+    waiting = JobRepository(database).submit("benchmark", SMALL, timeout_s=60.0).id
+    file = tmp_path / "copy.sqlite3"
+    assert backup(database, file) == 2
+    assert [path.name for path in tmp_path.glob("copy*")] == ["copy.sqlite3"]
+    with pytest.raises(InvalidInput, match="required a file that is not there yet"):
+        backup(database, file)
+    with pytest.raises(Conflict, match="required an empty one"):
+        restore(database, file)
+    for backend in ("sqlite", "postgresql"):
+        if backend == "postgresql" and database.file is not None and BACKENDS[1].marks[0].args[0]:
+            continue  # no server
+        folder = tmp_path / backend
+        folder.mkdir()
+        other = Database(fresh_url(backend, folder))
+        assert restore(other, file) == 2
+        jobs, results = JobRepository(other), ResultRepository(other)
+        assert jobs.get(job) == JobRepository(database).get(job)
+        assert jobs.events(job) == JobRepository(database).events(job)
+        assert results.result(job) == ResultRepository(database).result(job)
+        assert pack(Transfer(other).read(job)) == pack(Transfer(database).read(job))
+        claim = jobs.claim("worker", 30.0)
+        assert claim is not None
+        assert claim.job_id == waiting
+        assert jobs.submit("benchmark", SMALL, timeout_s=60.0).id not in (job, waiting)
+        assert jobs.tallies() == JobRepository(database).tallies()
+        other.close()
+
+
+def test_a_backup_copies_every_table_that_there_is(database: Database) -> None:
+    with database.session() as session:
+        there = set(inspect(session.connection()).get_table_names()) - {"alembic_version"}
+    assert there == set(Base.metadata.tables)
+
+
+def test_a_backup_replaces_the_cache_and_mixes_with_nobodys_record(
+    url: str, execution: Any, tmp_path: Path
+) -> None:
+    source = Database(f"sqlite:///{tmp_path / 'source.sqlite3'}")
+    source.migrate()
+    done(source, execution)
+    Cache(source).keep("k", b"old")
+    file = tmp_path / "copy.sqlite3"
+    backup(source, file)
+    source.close()
+    target = Database(url)
+    target.migrate()
+    Cache(target).keep("other", b"of a service that runs already")
+    assert restore(target, file) == 1
+    assert (Cache(target).find("k"), Cache(target).find("other")) == (b"old", None)
+    target.close()
+    keyed = Database(f"sqlite:///{tmp_path / 'keyed.sqlite3'}")
+    keyed.migrate()
+    KeyRepository(keyed).create("me", Role.ADMIN, None, BY)
+    with pytest.raises(Conflict, match=r"1 rows of (api_keys|audit); required an empty one"):
+        restore(keyed, file)
+    assert JobRepository(keyed).list().jobs == ()
+    keyed.close()
+
+
+def test_a_backup_to_where_nothing_can_be_written_is_refused(database: Database, tmp_path: Path) -> None:
+    with pytest.raises(InvalidInput, match="required a path that can be written"):
+        backup(database, tmp_path / ("x" * 300))
+
+
+def test_what_is_no_backup_is_refused(database: Database, tmp_path: Path) -> None:
+    (tmp_path / "x").write_text("no database " * 100)
+    with closing(sqlite3.connect(tmp_path / "foreign")) as connection:
+        connection.execute("CREATE TABLE jobs (x)")
+    for wrong in (tmp_path / "x", tmp_path / "nothing", tmp_path / "foreign"):
+        with pytest.raises(SafestartError, match=r"required a backup|could not be copied"):
+            restore(database, wrong)
+
+
+def test_only_what_ended_long_ago_is_purged(database: Database, execution: Any) -> None:
+    jobs, kept = JobRepository(database), Retention(database)
+    old = done(database, execution)
+    running = jobs.submit("benchmark", SMALL, timeout_s=60.0).id
+    assert jobs.claim("worker", 30.0) is not None
+    waiting = jobs.submit("benchmark", SMALL, timeout_s=60.0).id
+    assert kept.older(3600.0) == kept.purge(3600.0) == 0
+    assert kept.older(-1.0) == kept.purge(-1.0) == 1
+    assert {job.id for job in jobs.list().jobs} == {running, waiting}
+    assert jobs.events(old) == ()
+    assert kept.purge(-1.0) == 0
+
+
+def test_others_write_while_much_is_purged(
+    url: str, database: Database, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    jobs, other = JobRepository(database), JobRepository(Database(url))
+    old = [jobs.dismiss(jobs.submit("benchmark", SMALL, timeout_s=60.0).id).id for _ in range(25)]
+    new: list[str] = []
+    monkeypatch.setattr(
+        retention, "sleep", lambda _: new.append(other.submit("benchmark", SMALL, timeout_s=60.0).id)
+    )
+    assert Retention(database).purge(-1.0) == len(old)
+    assert {job.id for job in jobs.list().jobs} == set(new) != set()
+
+
+@pytest.mark.parametrize(("text", "seconds"), [("30d", 2592000), ("1.5h", 5400), ("90 min", 5400), ("0s", 0)])
+def test_ages(text: str, seconds: float) -> None:
+    assert age(text) == seconds
+
+
+@pytest.mark.parametrize("text", ["", "d", "-1d", "30", "1e9d", "1 year"])
+def test_ages_that_are_none(text: str) -> None:
+    with pytest.raises(InvalidInput, match="--older-than"):
+        age(text)
+
+
+def test_the_commands(execution: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    url = f"sqlite:///{tmp_path / 'store.sqlite3'}"
+    database = Database(url)
+    database.migrate()
+    job = done(database, execution)
+    database.close()
+
+    def run(*arguments: str, code: int = 0) -> str:
+        ended = CliRunner().invoke(build(), arguments)
+        if isinstance(ended.exception, SafestartError):
+            assert code == 2
+            return ended.exception.detail
+        assert ended.exit_code == code, ended.output
+        return ended.output
+
+    said = run("export", job, "--output", "b.zip", "--database-url", url)
+    seal = said.split("seal ")[1].split()[0]
+    other = f"sqlite:///{tmp_path / 'other.sqlite3'}"
+    assert "imported" in run("import", "b.zip", "--seal", seal, "--database-url", other)
+    assert "its seal is" in run("import", "b.zip", "--seal", "00", "--database-url", other, code=2)
+    assert '"verdict": "identical"' in run("replay", "b.zip", "--json")
+    assert "1 jobs" in run("backup", "c.sqlite3", "--database-url", url)
+    nowhere = f"sqlite:///{tmp_path / 'mistyped.sqlite3'}"
+    for command in (("backup", "d.sqlite3"), ("purge", "--older-than", "0s"), ("export", job)):
+        said = run(*command, "--database-url", nowhere, code=2)
+        assert "required a database that is there" in said, command
+    assert not list(tmp_path.glob("mistyped*"))
+    assert "1 jobs would be deleted" in run("purge", "--older-than", "0s", "--dry-run", "--database-url", url)

@@ -1,0 +1,233 @@
+"""One peer that takes all it can get of a real server: connections, memory, threads. The others are answered."""
+
+from __future__ import annotations
+
+import json
+import socket
+from contextlib import ExitStack
+from functools import partial
+from types import SimpleNamespace
+
+import httpx
+import pytest
+from fastapi import Request
+
+from safestart.errors import InvalidInput
+from safestart_service.access.callers import Callers
+from safestart_service.http.open_files import make_room
+from safestart_service.http.places import Places
+from safestart_service.http.unread import Read
+from safestart_service.http.wire import MAX_HEAD_BYTES, MOST_AHEAD, holder
+from tests.contract.api.service_client import HEAVY, POINT, assert_problem, service
+from tests.contract.server.raw_http import HOST, PLACES, STREAMS, problem_in, said
+from tests.waiting import PATIENCE_S, until
+
+ASKED = b"GET /nothing HTTP/1.1\r\n" + HOST + b"\r\n"
+CHUNKED = b"POST /nothing HTTP/1.1\r\n" + HOST + b"Transfer-Encoding: chunked\r\n"
+WAITING = (
+    b"POST /certificates HTTP/1.1\r\n" + HOST + b"Content-Type: application/json\r\nContent-Length: 9\r\n"
+)
+
+
+def well(address) -> bool:
+    """Health is answered, by a connection of its own."""
+    return said(address, b"GET /healthz HTTP/1.0\r\n\r\n").startswith(b"HTTP/1.1 200 ")
+
+
+def taken(address, held: ExitStack) -> tuple[int, bytes]:
+    """How many connections are let in until one is turned away, and what that one is told."""
+    for number in range(PLACES + 1):
+        connection = held.enter_context(socket.create_connection(address, timeout=PATIENCE_S))
+        connection.sendall(WAITING + b"Expect: 100-continue\r\n\r\n")
+        told = connection.recv(65536)
+        if not told.startswith(b"HTTP/1.1 100 "):
+            while data := connection.recv(65536):
+                told += data
+            return number, told
+    raise AssertionError("nobody was turned away")
+
+
+def test_a_full_house(address):
+    """Every place is used, who comes next is told so, and a place that is left is taken again."""
+
+    def full() -> bytes | None:
+        with ExitStack() as held:
+            number, told = taken(address, held)
+        return told if number == PLACES else None
+
+    for _ in range(2):
+        told = until(full, f"{PLACES} places")
+        problem = problem_in(told, 503)
+        assert problem["type"].endswith("too-many-connections")
+        assert str(PLACES) in problem["required"]
+        assert b"\r\nretry-after: " in told
+    until(lambda: well(address), "an answer once the house is empty")
+
+
+def test_who_says_nothing_is_turned_away_too(address):
+    with ExitStack() as held:
+        until(lambda: taken(address, held)[1], "a full house")
+        assert problem_in(said(address), 503)
+    until(lambda: well(address), "an answer once the house is empty")
+
+
+def test_answers_that_nobody_reads(address):
+    """They hold their places for a while, not for ever."""
+    asked = (b"GET /static/plotly.min.js HTTP/1.1\r\n" + HOST + b"\r\n") * 3
+    with ExitStack() as held:
+        for _ in range(PLACES):
+            connection = held.enter_context(socket.socket())
+            connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+            connection.connect(address)
+            connection.sendall(asked)
+        until(lambda: well(address), "a place that an unread answer had")
+
+
+def test_who_reads_slowly_is_waited_for():
+    waiting, later, cut = [9, 5, 5], [], []
+    reader = Read.__new__(Read)
+    reader.flow = SimpleNamespace(pause_writing=lambda: None)
+    reader.loop = SimpleNamespace(call_later=lambda _, look: later.append(look))
+    reader.transport = SimpleNamespace(
+        get_write_buffer_size=lambda: waiting[len(later)], abort=lambda: cut.append(True)
+    )
+    reader.pause_writing()
+    later[0]()
+    assert (len(later), cut) == (2, []), "something was taken: look again"
+    waiting.append(5)
+    later[1]()
+    assert (len(later), cut) == (2, [True])
+
+
+def test_trailers_are_no_headers(address):
+    told = said(address, CHUNKED + b"Connection: close\r\n\r\n0\r\nX-Request-ID: from-a-trailer\r\n\r\n")
+    assert told.startswith(b"HTTP/1.1 404 ")
+    assert b"from-a-trailer" not in told
+
+
+@pytest.mark.parametrize("name", ["0\r\nX-A: ", "2;"])
+def test_what_is_neither_head_nor_body_ends(address, name):
+    """Trailers and chunk extensions without end, on a request that waits for its body."""
+    pieces = (WAITING.replace(b"Content-Length: 9", b"Transfer-Encoding: chunked"), b"\r\n", name.encode())
+    found = said(address, *pieces, *[b"a" * 65_536] * (MAX_HEAD_BYTES // 65_536 * 32))
+    if found:  # what we had still to send when it closed may cost us the answer
+        problem_in(found, 431)
+
+
+def test_one_answer_to_one_request(address):
+    """What goes wrong behind an early answer must not look like the answer to the next request."""
+    with socket.create_connection(address, timeout=PATIENCE_S) as connection:
+        connection.sendall(CHUNKED + b"\r\n2\r\n{}\r\n")
+        found = connection.recv(65536)
+        while not found.endswith(b"}"):
+            found += connection.recv(65536)
+        assert found.startswith(b"HTTP/1.1 404 ")
+        connection.sendall(b"ZZ\r\n")
+        assert connection.recv(65536) == b""
+
+
+def test_requests_in_a_row(address):
+    last = ASKED.replace(b"Host", b"Connection: close\r\nHost")
+    assert said(address, ASKED * (MOST_AHEAD - 1) + last).count(b"HTTP/1.1 404 ") == MOST_AHEAD
+    assert said(address, ASKED * (100 * MOST_AHEAD)).count(b"HTTP/1.1 404 ") <= MOST_AHEAD + 1
+
+
+def test_so_many_follow_and_no_more(address):
+    """Also who leaves with a request still behind the stream gives the place back."""
+    with httpx.Client(base_url=f"http://{address[0]}:{address[1]}", timeout=PATIENCE_S) as client:
+        job = client.post("/processes/benchmark/execution", json=HEAVY).json()["jobID"]
+        follow = f"GET /jobs/{job}/events HTTP/1.1\r\n".encode() + HOST + b"\r\n"
+
+        def follows(held: ExitStack) -> bool:
+            with ExitStack() as own:
+                connection = own.enter_context(socket.create_connection(address, timeout=PATIENCE_S))
+                connection.sendall(follow + ASKED)
+                if connection.recv(12) != b"HTTP/1.1 200":
+                    return False
+                held.enter_context(own.pop_all())
+            return True
+
+        for _ in range(2):
+            with ExitStack() as held:
+                for _ in range(STREAMS):
+                    until(partial(follows, held), "a place for a stream")
+                assert not follows(held)
+                for path in (f"/jobs/{job}/events", f"/jobs/{job}?wait=20"):
+                    refused = client.get(path)
+                    assert refused.status_code == 429
+                    assert int(refused.headers["retry-after"]) > 0
+                    assert json.loads(refused.text)["type"].endswith("rate-limited")
+                assert client.get(f"/jobs/{job}").status_code == 200
+        client.delete(f"/jobs/{job}")
+
+
+def test_the_line_of_those_who_compute_has_an_end(tmp_path):
+    """It is full while nothing is computed any more; the closed form needs no line."""
+    with service(tmp_path) as client:
+        found = client.app.state.services
+        found.computing = Callers("answers are being computed", 2)
+        ask = {**POINT, "x_m": 5, "y_m": 40}
+        calls = (
+            partial(client.get, "/go-no-go", params={**ask, "method": "exact"}),
+            partial(client.get, "/go-no-go/proof", params=ask),
+            partial(client.post, "/go-no-go", json={**POINT, "states": [{"x_m": 5, "y_m": 40}]}),
+            partial(client.post, "/certificates", json=POINT),
+            partial(client.post, "/processes/certificate/execution", json={"inputs": POINT}),
+        )
+        for call in calls:
+            assert call().status_code == 200
+            assert found.computing.now == 0
+            with ExitStack() as held:
+                for _ in range(2):
+                    held.enter_context(found.computing.place(Request({"type": "http"})))
+                refused = call()
+            assert int(refused.headers["retry-after"]) > 0
+            assert "at most 2 at once" in assert_problem(refused, 429)["detail"]
+        assert client.get("/go-no-go", params=ask).status_code == 200
+
+
+def test_one_name_has_half_of_the_places():
+    places = Places(5)
+    assert [places.take("a") for _ in range(3)] == [True, True, False]
+    assert [places.take(None) for _ in range(4)] == [True, True, True, False]
+    places.leave("a")
+    assert [places.take("b"), places.take("a")] == [True, False]
+    for name in ("a", "b", None, None, None):
+        places.leave(name)
+    assert (places.taken, places._by) == (0, {})
+
+
+@pytest.mark.parametrize(
+    ("address", "name"),
+    [
+        ("127.0.0.1", None),
+        ("::1", None),
+        ("", None),
+        ("192.0.2.7", "192.0.2.7"),
+        ("::ffff:192.0.2.7", "::ffff:192.0.2.7"),
+        ("2001:db8:1:2:3::4", "2001:db8:1:2::/64"),
+        ("2001:db8:1:2:ffff::", "2001:db8:1:2::/64"),
+        ("fe80::1%eth0", "fe80::/64"),
+    ],
+)
+def test_whose_a_connection_is(address, name):
+    assert holder(address) == name
+
+
+def test_no_more_connections_than_files(monkeypatch):
+    resource = pytest.importorskip("resource")
+    set_to: list[tuple[int, int]] = []
+    monkeypatch.setattr(resource, "getrlimit", lambda _: (256, 2048))
+
+    def change(_: int, limits: tuple[int, int]) -> None:
+        if limits[0] > limits[1]:
+            raise ValueError
+        set_to.append(limits)
+
+    monkeypatch.setattr(resource, "setrlimit", change)
+    make_room(10)
+    assert set_to == []
+    make_room(800)
+    assert set_to == [(1024, 2048)]
+    with pytest.raises(InvalidInput, match="max_connections: required at most 1824"):
+        make_room(2000)

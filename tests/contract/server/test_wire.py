@@ -1,0 +1,80 @@
+"""Bytes on the wire that are no proper request: a real server answers by a problem document, in time, and goes on."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+
+from tests.contract.server.raw_http import HOST, problem_in, said
+
+POST = b"POST /certificates HTTP/1.1\r\n" + HOST + b"Content-Type: application/json\r\n"
+NO_HTTP = {
+    "noise": b"\x16\x03\x01\x02\x00\x01\x00\r\n\r\n",
+    "no slash": b"GET jobs HTTP/1.1\r\n" + HOST + b"\r\n",
+    "space in path": b"GET /health z HTTP/1.1\r\n" + HOST + b"\r\n",
+    "raw UTF-8 in path": "GET /jobs/é HTTP/1.1\r\n\r\n".encode(),
+    "unknown method": b"B@D / HTTP/1.1\r\n" + HOST + b"\r\n",
+    "unknown version": b"GET / HTTP/9.9\r\n" + HOST + b"\r\n",
+    "HTTP/2 preface": b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n",
+    "CONNECT": b"CONNECT example:443 HTTP/1.1\r\n" + HOST + b"\r\n",
+    "bare LF": b"GET / HTTP/1.1\nHost: localhost\n\n",
+    "header without colon": b"GET / HTTP/1.1\r\n" + HOST + b"banana\r\n\r\n",
+    "NUL in header": b"GET / HTTP/1.1\r\n" + HOST + b"X-A: \x00\r\n\r\n",
+    "folded header": b"GET / HTTP/1.1\r\n" + HOST + b"X-A: 1\r\n 2\r\n\r\n",
+    "negative length": POST + b"Content-Length: -1\r\n\r\n",
+    "two lengths": POST + b"Content-Length: 2\r\nContent-Length: 5\r\n\r\n{}",
+    "length and chunks": POST
+    + b"Content-Length: 4\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\nGET / HTTP/1.1\r\n\r\n",
+    "bad chunk": POST + b"Transfer-Encoding: chunked\r\n\r\nZZ\r\n{}\r\n0\r\n\r\n",
+    "endless path": b"GET /" + b"a" * 70_000 + b" HTTP/1.1\r\n" + HOST + b"\r\n",
+}
+
+
+@pytest.mark.parametrize("name", NO_HTTP)
+def test_what_is_no_http(address, name):
+    assert problem_in(said(address, NO_HTTP[name]), 400)["type"].endswith("malformed-request")
+    assert said(address, b"GET /healthz HTTP/1.0\r\n\r\n").startswith(b"HTTP/1.1 200 ")
+
+
+def test_a_head_that_does_not_end_in_time(address):
+    problem = problem_in(said(address, b"GET /healthz HTTP/1.1\r\nX-A: 1\r\n"), 408)
+    assert problem["field"] == "headers"
+
+
+def test_nothing_asked_nothing_answered(address):
+    """A connection is not held open for nothing, neither a new one nor one that was answered."""
+    asked = b"GET /healthz HTTP/1.1\r\n" + HOST + b"\r\n"
+    silences: list[tuple[bytes, ...]] = [(b"",), (b"\r\n\r\n",), (asked, b""), (asked, b"\r\n\r\n")]
+    with ThreadPoolExecutor() as pool:
+        found = list(pool.map(lambda pieces: said(address, *pieces), silences))
+    assert found[:2] == [b"", b""]
+    for answer in found[2:]:
+        assert answer.startswith(b"HTTP/1.1 200 ")
+        assert answer.count(b"HTTP/1.1 ") == 1
+
+
+def test_a_head_without_end(address):
+    """It is cut off, although it comes fast; what we had still to send when it closed may cost us the answer."""
+    found = said(address, b"GET /healthz HTTP/1.1\r\nX-A: ", *[b"a" * 65_536] * 64)
+    if found:
+        assert problem_in(found, 431)["field"] == "headers"
+
+
+def test_no_answer_takes_the_place_of_another(address):
+    """Noise behind a request that is not answered yet: the answer to the noise must not be taken for the first one."""
+    found = said(address, b"GET /healthz HTTP/1.1\r\n" + HOST + b"\r\n\x00\x01\r\n\r\n")
+    assert found == b"" or found.startswith(b"HTTP/1.1 200 ")
+
+
+def test_ordinary_heads_of_every_age(address):
+    """HTTP/1.0, no Host, an upgrade that is not offered, many headers, requests in a row on one connection."""
+    many = b"".join(b"X-%d: 1\r\n" % i for i in range(1000))
+    upgrade = b"Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Key: AAAA\r\nSec-WebSocket-Version: 13\r\n"
+    heads = [b"GET /healthz HTTP/1.1\r\n" + more + b"\r\n" for more in (b"", HOST, many, upgrade)]
+    with ThreadPoolExecutor() as pool:
+        for answer in pool.map(lambda head: said(address, head), heads):
+            assert answer.startswith(b"HTTP/1.1 200 ")
+    asked = b"GET /healthz HTTP/1.1\r\n" + HOST
+    three = (asked + b"\r\n") * 2 + asked + b"Connection: close\r\n\r\n"
+    assert said(address, three).count(b"HTTP/1.1 200 ") == 3

@@ -1,0 +1,103 @@
+"""The store, on every backend: events, workers, shards."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from safestart.errors import (
+    LeaseLost,
+)
+from safestart.store.database import Database
+from safestart.store.jobs.repository import JobRepository
+from safestart.store.records import JobStatus
+from tests.contract.store.store_backends import pass_time
+from tests.contract.store.store_jobs import claimed, lapse, submit
+from tests.waiting import PATIENCE_S
+
+
+def test_events_tell_the_story_in_order_and_are_read_in_parts(jobs: JobRepository) -> None:
+    job, other = submit(jobs), submit(jobs)
+    claim = claimed(jobs)
+    jobs.progress(claim, 40.0, "sampling", 3.5)
+    jobs.log(claim, "hello")
+    jobs.succeed(claim, {}, (), {})
+    events = jobs.events(job.id)
+    assert [(event.kind, event.data) for event in events] == [
+        ("status", {"status": "accepted"}),
+        ("status", {"status": "running", "attempt": 1}),
+        ("progress", {"progress": 40.0, "message": "sampling", "eta_s": 3.5}),
+        ("log", {"message": "hello"}),
+        ("status", {"status": "successful"}),
+    ]
+    assert [event.id for event in events] == sorted(event.id for event in events)
+    assert all(event.at.tzinfo is not None for event in events)
+    assert jobs.events(job.id, after_id=events[2].id) == events[3:]
+    assert jobs.events(job.id, limit=2) == events[:2]
+    assert [event.data for event in jobs.events(other.id)] == [{"status": "accepted"}]
+
+
+def test_progress_is_in_the_row(jobs: JobRepository) -> None:
+    job = submit(jobs)
+    jobs.progress(claimed(jobs), 40.0, "sampling", 3.5)
+    now = jobs.get(job.id)
+    assert (now.progress, now.message, now.eta_s) == (40.0, "sampling", 3.5)
+
+
+def test_workers_count_while_they_beat(database: Database, jobs: JobRepository) -> None:
+    assert jobs.workers_alive() == 0
+    jobs.heartbeat("one", 2, 0)
+    jobs.heartbeat("one", 2, 1)
+    jobs.heartbeat("two", 4, 0)
+    assert jobs.workers_alive() == 2
+    pass_time(database, PATIENCE_S)
+    jobs.heartbeat("two", 4, 0)
+    assert jobs.workers_alive(within_s=PATIENCE_S) == 1
+    jobs.farewell("two")
+    assert jobs.workers_alive(within_s=2 * PATIENCE_S) == 1
+
+
+def test_finished_shards_are_kept_in_order_and_go_with_the_success(jobs: JobRepository) -> None:
+    job = submit(jobs)
+    claim = claimed(jobs)
+    jobs.save_shard(claim, 2, "c2", {"n": 2}, b"two")
+    jobs.save_shard(claim, 0, "c0", {"n": 0}, b"")
+    jobs.save_shard(claim, 2, "c2", {"n": 22}, b"again")
+    assert jobs.shard_contents(job.id) == {0: "c0", 2: "c2"}
+    assert jobs.shard_documents(job.id) == ({"n": 0}, {"n": 22})
+    assert [(shard.number, shard.data) for shard in jobs.shards(job.id)] == [(0, b""), (2, b"again")]
+    jobs.succeed(claim, {"outputs": {}}, (), {})
+    assert jobs.shards(job.id) == ()
+
+
+def test_a_worker_that_lost_its_lease_adds_no_shard(database: Database, jobs: JobRepository) -> None:
+    job = submit(jobs)
+    late = claimed(jobs)
+    jobs.save_shard(late, 0, "c", {}, b"")
+    lapse(database)
+    claimed(jobs)
+    with pytest.raises(LeaseLost):
+        jobs.save_shard(late, 1, "c", {}, b"")
+    assert jobs.shard_contents(job.id) == {0: "c"}, "what was finished in time is there for the next worker"
+
+
+def test_attempts_count_from_the_last_finished_shard(database: Database, jobs: JobRepository) -> None:
+    job = submit(jobs)
+    for _ in range(2):
+        claim = claimed(jobs, max_attempts=2)
+        lapse(database)
+    claim = replace(claim)
+    with pytest.raises(LeaseLost):
+        jobs.save_shard(replace(claim, token=claim.token - 1), 0, "c", {}, b"")
+    jobs.save_shard(claim, 0, "c", {}, b"")
+    assert claimed(jobs, max_attempts=2).attempt == 2
+    assert jobs.get(job.id).status is JobStatus.RUNNING
+
+
+def test_shards_of_a_job_that_failed_stay(jobs: JobRepository) -> None:
+    job = submit(jobs)
+    claim = claimed(jobs)
+    jobs.save_shard(claim, 0, "c", {"n": 1}, b"")
+    jobs.fail(claim, {"detail": "no"})
+    assert jobs.shard_documents(job.id) == ({"n": 1},)

@@ -1,0 +1,34 @@
+"""Region metrics against counts by hand."""
+
+import numpy as np
+import pytest
+
+from safestart.model.metrics import ConfusionMatrix, iou, violation
+
+A = np.array([[True, True, False, False]])
+B = np.array([[True, False, True, False]])
+NONE = np.zeros((1, 4), dtype=bool)
+
+
+def test_overlaps() -> None:
+    assert iou(A, B) == pytest.approx(1 / 3)
+    assert violation(A, B) == pytest.approx(1 / 2)
+    assert iou(NONE, NONE) is None
+    assert violation(NONE, B) is None
+    assert iou(A, NONE) == 0.0
+
+
+def test_paper_confusion_matrix() -> None:
+    """Paper 000, Table 3: TP 122, FP 30, FN 12, TN 336 give 0.80, 0.91, 0.92, 0.85, 0.80."""
+    matrix = ConfusionMatrix(122, 30, 12, 336)
+    assert matrix.precision == pytest.approx(0.80, abs=0.005)
+    assert matrix.recall == pytest.approx(0.91, abs=0.005)
+    assert matrix.accuracy == pytest.approx(0.92, abs=0.005)
+    assert matrix.f1 == pytest.approx(0.85, abs=0.005)
+    assert matrix.mcc == pytest.approx(0.80, abs=0.005)
+
+
+def test_counts_only_the_domain() -> None:
+    domain = np.array([[True, True, True, False]])
+    assert ConfusionMatrix.of(A, B, domain) == ConfusionMatrix(1, 1, 1, 0)
+    assert ConfusionMatrix.of(NONE, NONE, domain).document()["precision"] is None

@@ -1,0 +1,103 @@
+"""Settings: where they come from, and what is said of wrong ones."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from safestart.errors import InvalidInput
+from safestart.runtime.settings import Settings, settings
+
+
+@pytest.fixture(autouse=True)
+def alone(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """No settings of this machine, none of another test."""
+    for name in [name for name in os.environ if name.upper().startswith("SAFESTART_")]:
+        monkeypatch.delenv(name)
+    settings.cache_clear()
+    monkeypatch.setattr("safestart.runtime.settings.user_config_path", lambda _: Path("/nonexistent"))
+    yield
+    settings.cache_clear()
+
+
+@pytest.fixture
+def file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The settings file, empty at first."""
+    path = tmp_path / "some.toml"
+    path.write_text("")
+    monkeypatch.setenv("SAFESTART_CONFIG", str(path))
+    return path
+
+
+def test_arguments_come_before_the_environment_before_the_file(
+    file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file.write_text("port = 1\nlease_s = 30\npoll_s = 0.5\n")
+    monkeypatch.setenv("SAFESTART_PORT", "2")
+    monkeypatch.setenv("SAFESTART_LEASE_S", "40")
+    found = Settings(port=3)
+    assert (found.port, found.lease_s, found.poll_s, found.max_attempts) == (3, 40.0, 0.5, 3)
+    assert settings() is settings()
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "required"),
+    [
+        ("port", "x", "an integer"),
+        ("port", "", "an integer"),
+        ("port", "70000", "a number <= 65535"),
+        ("lease_s", "nan", "a number"),
+        ("rate_per_s", "0", "a number > 0"),
+        ("log_format", "xml", "one of 'text' or 'json'"),
+        ("max_queued", "1e4", "an integer"),
+        ("keep_days", "-1", "a number >= 0"),
+    ],
+)
+def test_a_wrong_variable_is_named_with_what_was_required_and_what_came(
+    name: str, value: str, required: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(f"SAFESTART_{name.upper()}", value)
+    with pytest.raises(InvalidInput) as caught:
+        settings()
+    assert caught.value.detail.startswith(f"settings.{name}: required {required}")
+    assert f"received {value!r}" in caught.value.detail
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (b"prot = 9", "settings.prot: required the name of a setting, such as port"),
+        (b"[safestart]\nport = 9", "settings.safestart: required the name of a setting"),
+        (b"port = = 9", r"required a readable TOML file in UTF-8, received 'Invalid value \(at line 1"),
+        (b"host = '\xff'", "required a readable TOML file in UTF-8"),
+        (b"port = [9]", "settings.port: required an integer"),
+    ],
+)
+def test_a_wrong_file_is_refused_with_the_reason(file: Path, content: bytes, said: str) -> None:
+    file.write_bytes(content)
+    with pytest.raises(InvalidInput, match=said):
+        settings()
+
+
+@pytest.mark.parametrize("place", ["database_url", "database"])
+def test_a_url_in_the_wrong_place_shows_no_password(file: Path, place: str) -> None:
+    file.write_text(f"[{place}]\nurl = 'postgresql://user:hunter2@host/name'\n")
+    with pytest.raises(InvalidInput, match=f"settings.{place}: required") as caught:
+        settings()
+    assert "hunter2" not in caught.value.detail
+
+
+@pytest.mark.parametrize("named", ["nothing.toml", "."])
+def test_a_named_file_that_is_not_there_is_refused(
+    named: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SAFESTART_CONFIG", str(tmp_path / named))
+    with pytest.raises(InvalidInput, match="SAFESTART_CONFIG: required the path of a TOML file"):
+        settings()
+
+
+def test_without_any_file_there_are_the_defaults() -> None:
+    assert settings().port == 8000

@@ -1,0 +1,106 @@
+"""A Dask cluster to work on: an embedded one of local processes, or an existing one by its address."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import AsyncIterator
+from contextlib import AsyncExitStack, asynccontextmanager
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import dask
+from distributed import Client, LocalCluster, Security
+from distributed.system import MEMORY_LIMIT
+
+from safestart.errors import InvalidInput
+from safestart_worker.cluster.cluster import Cluster
+from safestart_worker.cluster.credentials import configured, refused, throwaway
+
+CONNECT_TIMEOUT_S = 10.0
+_MEMORY_SHARE = 0.9
+_ONE_THREAD = {
+    name: "1" for name in ("NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS")
+}
+
+
+@asynccontextmanager
+async def open_cluster(
+    scheduler: str, processes: int, max_attempts: int, owner: str
+) -> AsyncIterator[Cluster]:
+    """Connect to ``scheduler``, or start an embedded cluster when it is empty; closed at the end."""
+    async with AsyncExitStack() as stack:
+        folder = stack.enter_context(_private_folder())
+        with dask.config.set({**_config(max_attempts), "temporary-directory": folder}):
+            security = configured(scheduler) if scheduler else throwaway()
+            local = None if scheduler else await stack.enter_async_context(_embedded(processes, security))
+            try:
+                client = await stack.enter_async_context(
+                    Client(
+                        scheduler if local is None else await _short_cut(local),
+                        security=security,
+                        asynchronous=True,
+                        timeout=CONNECT_TIMEOUT_S,
+                        set_as_default=False,
+                    )
+                )
+            except (OSError, TimeoutError) as error:
+                raise refused(scheduler, error) from error
+            except ValueError as error:
+                raise InvalidInput(
+                    f"scheduler: required an address such as tcp://host:8786, received {scheduler!r}",
+                    field="scheduler",
+                    required="an address such as tcp://host:8786",
+                    received=scheduler,
+                ) from error
+            cluster = Cluster(client, owner, local)
+            stack.push_async_callback(cluster.close)
+            yield cluster
+
+
+def _private_folder() -> TemporaryDirectory[str]:
+    """Dask imports from where its processes keep their files, and others may write to the place it takes by itself."""
+    return TemporaryDirectory(
+        prefix="safestart-", dir=dask.config.get("temporary-directory", None), ignore_cleanup_errors=True
+    )
+
+
+def _embedded(processes: int, security: Security) -> LocalCluster:
+    """Processes of one thread each on the loopback interface, without dashboard, for who has the certificate."""
+    return LocalCluster(
+        n_workers=processes,
+        threads_per_worker=1,
+        processes=True,
+        host="127.0.0.1",
+        security=security,
+        # Dask always opens a port for its pages: a free one, not the well-known one, and without pages (_config).
+        dashboard_address=None,
+        scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
+        memory_limit=int(_MEMORY_SHARE * MEMORY_LIMIT / max(processes, 1)),
+        # Dask warns of every process that is ended on purpose; what matters of it our own lines say.
+        silence_logs=logging.ERROR,
+        asynchronous=True,
+    )
+
+
+async def _short_cut(cluster: LocalCluster) -> str:
+    """Address of the scheduler within this process: half of all messages are between it and us, and need no TLS."""
+    await cluster.scheduler.listen("inproc://", allow_offload=False)
+    address: str = cluster.scheduler.listeners[-1].contact_address
+    return address
+
+
+def _config(max_attempts: int) -> dict[str, Any]:
+    return {
+        # Dask counts deaths beyond the first allowed ones; we count attempts.
+        "distributed.scheduler.allowed-failures": max_attempts - 1,
+        # Dask gives a lost process up for ever when its successor is not there after 15 s, which on a loaded machine
+        # it is not; we wait for it, and give up ourselves when jobs have waited in vain (see signs).
+        "distributed.deploy.lost-worker-timeout": "1000 hours",
+        # Events are for progress only: the database keeps what is worth keeping.
+        "distributed.admin.low-level-log-length": 1000,
+        # Read before the process imports NumPy or Numba.
+        "distributed.nanny.pre-spawn-environ": {**_ONE_THREAD, "MALLOC_TRIM_THRESHOLD_": "65536"},
+        "distributed.scheduler.http.routes": [],
+        "distributed.worker.http.routes": [],
+        "distributed.comm.timeouts.connect": f"{CONNECT_TIMEOUT_S:g}s",
+    }

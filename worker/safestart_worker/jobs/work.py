@@ -1,0 +1,140 @@
+"""A claimed job as work on the cluster; here the usual kind, one task. The other kind is in ``shards``."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Awaitable, Callable, Sequence
+from typing import Any, Protocol, TypeVar, cast
+
+from distributed import Future, KilledWorker
+
+from safestart.runtime.logs import about
+from safestart.store.records import Claim
+from safestart_worker.cluster.cluster import Cluster
+from safestart_worker.cluster.task import Outcome, run_job
+from safestart_worker.jobs.track import Track
+
+log = logging.getLogger("safestart.worker")
+Answer = TypeVar("Answer")
+
+
+class Journal:
+    """What is known of a running job: progress, deaths of its process, notes for its events, lines for the log."""
+
+    def __init__(self, job_id: str) -> None:
+        self.job_id = job_id
+        self.track = Track()
+        self.notes: list[str] = []
+        self.deaths = 0
+
+    def say(self, text: str, level: int = logging.INFO) -> None:
+        """Log one line about the job."""
+        log.log(level, "%s", text, extra=about(job=self.job_id))
+
+
+class Work(Protocol):
+    """What a shepherd sees through; ``outcome`` is the asyncio task that runs :meth:`run`.
+
+    ``whole``: one task is the job, so that the death of its process costs the job an attempt.
+    """
+
+    whole: bool
+
+    async def run(self) -> Outcome:
+        """Run to the outcome; Dask's and the store's errors pass through."""
+        ...
+
+    def on_report(self, data: dict[str, Any]) -> None:
+        """Take in a report of one of the tasks."""
+        ...
+
+    def awaited(self) -> Sequence[Future[Any]]:
+        """The tasks that :meth:`run` waits for now; none while it waits for something else."""
+        ...
+
+    async def stop(self, outcome: asyncio.Task[Outcome]) -> None:
+        """End the computation; returns when it no longer computes."""
+        ...
+
+    async def leave(self, outcome: asyncio.Task[Outcome]) -> None:
+        """End it as far as that goes in a short time: somebody else will run the job."""
+        ...
+
+    def forget(self) -> None:
+        """Let go of every task, so that :meth:`run` ends by itself.
+
+        Never by cancelling it: Dask's client gathers results for all that wait in one coroutine, and whoever is
+        cancelled while waiting there takes it down for everybody.
+        """
+        ...
+
+
+async def spared(
+    future: Future[Answer], again: Callable[[int], Future[Answer]], starts: Callable[[], int], most: int
+) -> Answer:
+    """Result of a task, submitted ``again`` where Dask gives it up for deaths that were not its own.
+
+    Dask blames the death of a process on all tasks that it was to run, those that only waited there too. The task's own
+    are the ``starts`` that came to no end, of which ``most`` are made. One that takes its process down before it can
+    report a start has ``most`` submissions.
+    """
+    for submissions in range(1, most + 1):
+        try:
+            # The client is asynchronous, and so is its result; Dask's annotations know only the other kind.
+            return await cast(Awaitable[Answer], future.result())
+        except KilledWorker:
+            if submissions == most or starts() >= most:
+                raise
+            future = again(submissions)
+    raise AssertionError("a task is submitted at least once")
+
+
+class Whole:
+    """A job that is one task."""
+
+    whole = True
+
+    def __init__(self, claim: Claim, key: str, cluster: Cluster, journal: Journal, most: int) -> None:
+        self._claim, self._cluster, self._key, self._journal, self._most = claim, cluster, key, journal, most
+        self._starts = 0
+        self._future = self._submit(key)
+
+    async def run(self) -> Outcome:
+        """Wait for the task."""
+        return await spared(
+            self._future, lambda n: self._submit(f"{self._key}-again-{n}"), lambda: self._starts, self._most
+        )
+
+    def _submit(self, key: str) -> Future[Outcome]:
+        inputs = (self._claim.process_id, self._claim.inputs)
+        self._future = self._cluster.submit(run_job, *inputs, key=key, job=self._key)
+        return self._future
+
+    def on_report(self, data: dict[str, Any]) -> None:
+        """Follow the progress; a second start means that the first process was lost."""
+        journal = self._journal
+        if data["kind"] == "started":
+            self._starts += 1
+            if self._starts > 1:
+                journal.track.restart()
+                journal.deaths += 1
+            journal.say(f"runs in process {data['pid']} at {data['address']}")
+        else:
+            journal.track.update(data["done"], data["total"], data["elapsed_s"], data["message"])
+
+    def awaited(self) -> Sequence[Future[Any]]:
+        """The task."""
+        return [self._future]
+
+    async def stop(self, outcome: asyncio.Task[Outcome]) -> None:
+        """End the task."""
+        await self._cluster.stop(self._key, [self._future], outcome)
+
+    async def leave(self, outcome: asyncio.Task[Outcome]) -> None:
+        """End the task if the cluster stays."""
+        await self._cluster.leave(self._key, [self._future], outcome)
+
+    def forget(self) -> None:
+        """Let go of the task."""
+        self._future.release()
