@@ -83,7 +83,7 @@ def solve_space(
 ) -> SpaceTube:
     """Solve both games with the same settings; the normal one has nodes enough to take 4 times as many per axis.
 
-    Raises ``InvalidInput`` as :func:`~safestart.collision_avoidance.tube.solve_tube`, and for a game that is not in space.
+    Raises ``InvalidInput`` as :func:`~safestart.collision_avoidance.tube.solve_tube` does, and for a game in the plane.
     """
     settings, context = settings or TubeSettings(), context or Context()
     plane = solve_tube(game.restricted(0, 2), horizon_s, settings, context.part(0.0, 0.95, 1.0, "plane"))

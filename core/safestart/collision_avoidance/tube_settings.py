@@ -29,8 +29,9 @@ class TubeSettings:
     ``accuracy`` names the scheme as hj-reachability does. ``shape`` counts the nodes of positions and of velocities.
     ``half`` are explicit half widths (position m, velocity m/s), None to size the box by :func:`make_lattice`;
     ``speed_m_s`` is then the largest speed per axis (None: chosen). Values at ``kept`` times to go, 0 and the horizon
-    among them, are kept. ``together`` and ``fuel_price``: see :meth:`~safestart.collision_avoidance.game.Game.motion`; ``join``
-    cuts the values off at the certified bounds (avoid game only; a fuel price leaves the upper one).
+    among them, are kept. :meth:`~safestart.collision_avoidance.game.Game.motion` explains ``together`` and
+    ``fuel_price``; ``join`` cuts the values off at the certified bounds (avoid game only; a fuel price
+    leaves the upper one).
     """
 
     accuracy: str = "very_high"

@@ -68,7 +68,7 @@ def _packages() -> tuple[tuple[str, str], ...]:
 @cache
 def source() -> str:
     """SHA-256 of the source of this package, as it was when it was first asked for."""
-    return source_digest(Path(__file__).resolve().parent)
+    return source_digest(Path(__file__).resolve().parents[1])
 
 
 def source_digest(package: Path) -> str:

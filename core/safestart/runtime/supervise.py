@@ -1,6 +1,6 @@
 """Keep child commands running: start them, start one again that dies, stop all of them together.
 
-Each command runs under a guard (:mod:`safestart.runtime.orphan_guard`), a small process that reads from a pipe this process
+Each command runs under :mod:`safestart.runtime.orphan_guard`, a small process that reads from a pipe this process
 holds open: when this process goes away, however it does, the pipe closes and the guard ends its command.
 """
 
@@ -30,7 +30,7 @@ GRACE_S = 10.0
 _TICK_S = 0.1
 # How our command line ends on wrong settings and the like: a new start would end the same way.
 _USAGE_ERROR = 2
-_GUARD = Path(__file__).with_name("guard.py")
+_GUARD = Path(__file__).with_name("orphan_guard.py")
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,7 +26,7 @@ from safestart.simulation.worlds import World
 
 @dataclass(slots=True)
 class Flown:
-    """One flight: as :class:`safestart.simulation.compiled_loop.Flights`, with the times, states and commands of its nodes.
+    """One flight of :mod:`safestart.simulation.compiled_loop`, with the times, states and commands of its nodes.
 
     ``fallbacks``: steps at which the controller found no admissible command. ``replans``: sequences made after the
     first. ``verdict``: the exact answer for the start, where the controller asked for it.

@@ -14,7 +14,6 @@ from pathlib import Path
 from sqlalchemy import Connection, Table, func, insert, select, text
 
 from safestart.errors import Conflict, InvalidInput, Unavailable
-from safestart.store.access import models as access_models
 from safestart.store.database import Database
 from safestart.store.models import Base
 

@@ -21,7 +21,7 @@ from safestart_service.pages.openapi_operations import api_operations
 if TYPE_CHECKING:
     from jinja2 import Environment
 
-_HERE = Path(__file__).parent
+_HERE = Path(__file__).parents[1]
 _TYPES = {".css": "text/css", ".svg": "image/svg+xml", ".js": "text/javascript"}
 _PLOTLY = "plotly.min.js"
 # The three style attributes that plotly.js writes as text, by hash; everything else it styles through the DOM.

@@ -1,8 +1,9 @@
 """What Player 1 does: evade by the value function, burn an escape mode, follow the PD law, or coast.
 
 The gradient of a value on a grid does not tell left from right near a head-on course: the two ways out are worth
-the same there and differ by less than a cell. ``certified`` therefore flies the best constant sum u + d whenever it is
-proved to keep the distance (:func:`~safestart.collision_avoidance.bounds.certified.witness`), and the gradient elsewhere.
+the same there and differ by less than a cell. ``certified`` therefore flies the best constant sum u + d whenever
+:func:`~safestart.collision_avoidance.bounds.certified.witness` proves that it keeps the distance, and the gradient
+elsewhere.
 """
 
 from __future__ import annotations

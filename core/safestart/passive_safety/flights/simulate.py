@@ -1,8 +1,8 @@
 """Exact flights of single starts in the linear motion: the independent side of every proof, and of every search.
 
-Modes 1 and 2 by their eigenvectors, the drift by its closed form; the crossing by bisection. No sets and no tables of
-:mod:`safestart.passive_safety.reach.flow` are used. A first entry shorter than the scan step (0.1 min) would be missed, so
-these are simulations, not proofs. Of a nonlinear system they fly the linearisation.
+Modes 1 and 2 by their eigenvectors, the drift by its closed form; the crossing by bisection. They use no sets
+and no tables of :mod:`safestart.passive_safety.reach.flow`. A first entry shorter than the scan step (0.1 min) would
+be missed, so these are simulations, not proofs. Of a nonlinear system they fly the linearisation.
 """
 
 from __future__ import annotations

@@ -1,0 +1,1 @@
+"""All starts at rest of one operating point, between two proved polygons."""

@@ -1,0 +1,1 @@
+"""``safestart reproduce``: the papers' tables and figures, ours beside theirs."""

@@ -1,0 +1,1 @@
+"""Answers to the safe-start question that need no grid and no iteration."""

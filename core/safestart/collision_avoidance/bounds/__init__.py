@@ -1,0 +1,1 @@
+"""Bounds of the avoid game's value, certified without a grid."""

@@ -1,0 +1,1 @@
+"""Closed-loop encounters of two satellites: pilots, adversaries, supervisor."""

@@ -1,0 +1,1 @@
+"""What must hold at every time of a flight."""

@@ -1,0 +1,1 @@
+"""The frozen parts of every question, in SI units, and the comparison of regions on one grid."""

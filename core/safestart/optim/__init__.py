@@ -1,0 +1,1 @@
+"""Optimisation shared by exact answers and controllers: cone programs and projections."""

@@ -1,0 +1,1 @@
+"""Figures printed in the papers, to be shown beside ours."""

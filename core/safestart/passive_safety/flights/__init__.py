@@ -1,0 +1,1 @@
+"""Simulated flights of the switched rendezvous: counter-examples, and the independent side of every proof."""

@@ -1,0 +1,1 @@
+"""The checker of proof documents. It shares no code with the provers."""

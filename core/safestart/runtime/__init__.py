@@ -1,0 +1,1 @@
+"""What every process of the operating system needs: settings, logs, progress, caches, warm-up, supervision."""

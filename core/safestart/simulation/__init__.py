@@ -1,0 +1,1 @@
+"""Closed-loop flights: a controller in a plant, watched at all times."""

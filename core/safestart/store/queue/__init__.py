@@ -1,0 +1,1 @@
+"""The queue: turns, claims under leases, workers, shards."""

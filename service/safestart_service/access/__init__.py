@@ -1,0 +1,1 @@
+"""Who may pass: keys, roles, rates, and places in costly calls."""

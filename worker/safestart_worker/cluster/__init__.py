@@ -1,0 +1,1 @@
+"""The Dask cluster that jobs run on, and what runs in its task processes."""

@@ -1,0 +1,1 @@
+"""Claimed jobs on their way through the cluster."""
