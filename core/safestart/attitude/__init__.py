@@ -1,1 +1,1 @@
-"""How the target turns."""
+"""How the target turns: ``attitude`` is the interface, every other file is one way; ``body_frame`` is the planar case."""

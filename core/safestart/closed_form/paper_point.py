@@ -67,7 +67,7 @@ def prepare(
             strict=True,
         )
     )
-    return Prepared(scenario, corridor.faces, range_limit(scenario, rest), 2.0 * a_max, rows)
+    return Prepared(scenario, corridor.names, range_limit(scenario, rest), 2.0 * a_max, rows)
 
 
 def certify_point(prepared: Prepared, x: float, y: float, z: float) -> PointCertificate | None:

@@ -1,4 +1,4 @@
-"""What every picture shares: headless figures, a colour-blind-safe palette, the corridor, PNG and NPZ bytes."""
+"""What every picture shares: headless figures, the corridor, PNG and NPZ bytes."""
 
 from __future__ import annotations
 
@@ -15,12 +15,8 @@ from numpy.typing import NDArray
 
 from safestart.model.scenario import CorridorShape
 from safestart.processes.base import Artifact
-from safestart.processes.benchmark.spec import ENGINES
 
 mpl.use("Agg")
-
-PALETTE = {engine.name: engine.colour for engine in ENGINES}
-LABELS = {engine.name: engine.title for engine in ENGINES}
 
 NPZ = "application/x-npz"
 

@@ -121,15 +121,6 @@ class Comparison:
 View = Findings | Facts | Rows | Matrices | Overlay | Flights | Comparison
 
 
-@dataclass(frozen=True, slots=True)
-class Engine:
-    """An engine as people meet it: its name on the wire, its title, its colour in every picture."""
-
-    name: str
-    title: str
-    colour: str
-
-
 def kinds(views: Iterable[View]) -> list[str]:
     """Kinds of views, each once, in their order."""
     return list(dict.fromkeys(view.kind for view in views))

@@ -50,7 +50,7 @@ def summary(spec: ProcessSpec, base: str) -> dict[str, Any]:
 
 def description(spec: ProcessSpec, base: str) -> dict[str, Any]:
     """Full description of a process."""
-    return {**summary(spec, base), **_interface(spec), **_looks(spec)}
+    return {**summary(spec, base), **_interface(spec), **_looks(spec), **spec.extensions}
 
 
 def _looks(spec: ProcessSpec) -> dict[str, Any]:
@@ -58,7 +58,6 @@ def _looks(spec: ProcessSpec) -> dict[str, Any]:
     return {
         "safestart:tables": [asdict(table) for table in spec.tables],
         "safestart:views": views.documents(spec.views),
-        "safestart:engines": [asdict(engine) for engine in spec.engines],
     }
 
 

@@ -93,12 +93,17 @@ class ViewDescription(BaseModel):
     kind: str
 
 
-class EngineDescription(BaseModel):
-    """An engine as people meet it."""
+# A field that may be absent and is never null: the default that stands for its absence is no part of the schema.
+_ABSENT: dict[str, Any] = {"json_schema_extra": lambda schema: schema.pop("default", None)}
 
-    name: str
+
+class EngineDescription(BaseModel):
+    """An engine of the benchmark, as pages show it."""
+
+    name: str = Field(description="What inputs, rows and arrays call it.")
     title: str
-    colour: str = Field(description="The same in every picture, as #RRGGBB.")
+    colour: str = Field(description="#RRGGBB, legible on light and on dark.")
+    summary: str
 
 
 class ProcessDescription(ProcessSummary):
@@ -113,13 +118,12 @@ class ProcessDescription(ProcessSummary):
     views: list[ViewDescription] = Field(
         alias="safestart:views", description="How a page shows the outputs, the most important first."
     )
-    engines: list[EngineDescription] = Field(
-        alias="safestart:engines", description="What stands in the outputs by name; empty for most processes."
+    engines: list[EngineDescription] | SkipJsonSchema[None] = Field(
+        None,
+        alias="safestart:engines",
+        description="The engines that it compares, in the order of their runs; absent for other processes.",
+        **_ABSENT,
     )
-
-
-# A field that may be absent and is never null: the default that stands for its absence is no part of the schema.
-_ABSENT: dict[str, Any] = {"json_schema_extra": lambda schema: schema.pop("default", None)}
 
 
 class StatusInfo(BaseModel):

@@ -126,7 +126,7 @@ async def execute(
 def _submit(
     found: Services,
     spec: ProcessSpec,
-    asked: ExecuteRequest | Any,
+    asked: ExecuteRequest,
     key: str | None,
     base: str,
     wants_async: bool,

@@ -6,8 +6,8 @@ from typing import Annotated, Any, Literal, get_args
 
 from pydantic import Field, model_validator
 
+from safestart.engines.hj.options import HamiltonJacobiInput
 from safestart.processes.base import ProcessSpec, WireModel
-from safestart.processes.benchmark.spec import HamiltonJacobiInput
 from safestart.processes.views import Column, Facts, Rows
 from safestart.processes.wire import DISTINCT, DT_S, LONGEST_S, GridInput, Horizon, ScenarioInput
 

@@ -97,10 +97,10 @@ SPEC = ProcessSpec(
     inputs=SafeAbortMapInputs,
     outputs=SafeAbortMapOutputs,
     sharding=Sharding(
-        "safestart.processes.safe_abort_map.parts:split",
+        "safestart.processes.safe_abort_map.study:split",
         "safestart.processes.safe_abort_map.run:shard",
         "safestart.processes.safe_abort_map.run:merge",
-        "safestart.processes.safe_abort_map.parts:summary",
+        "safestart.processes.safe_abort_map.study:summary",
     ),
     tables=(Table("starts", ("x_m", "y_m", "safe_abort_until_min", "all_proved_until_min")),),
     views=(

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 
+from safestart.model.scenario import Floats
 from safestart.processes.base import Artifact
 from safestart.processes.plotting import draw_corridor, figure, png
 from safestart.processes.sweep.spec import SweepInputs
 
-if TYPE_CHECKING:
-    from safestart.processes.sweep.merge import Path
-
+Path = tuple[dict[str, Any], Floats, Floats]
+"""A worst case with the times (T,) and body-frame positions (T, 2) of its flight."""
 NAMES = {
     "closed_form": "closed form",
     "exact": "exact",

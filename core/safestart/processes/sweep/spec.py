@@ -243,7 +243,7 @@ SPEC = ProcessSpec(
         split=f"{HERE}.split:split",
         shard=f"{HERE}.shard:shard",
         merge=f"{HERE}.merge:merge",
-        summary=f"{HERE}.aggregate:summary",
+        summary=f"{HERE}.study:summary",
     ),
     views=(
         Matrices(

@@ -78,10 +78,10 @@ SPEC = ProcessSpec(
     inputs=TradeStudyInputs,
     outputs=TradeStudyOutputs,
     sharding=Sharding(
-        split=f"{_HERE}.split:split",
+        split=f"{_HERE}.study:split",
         shard=f"{_HERE}.run:shard",
         merge=f"{_HERE}.run:merge",
-        summary=f"{_HERE}.split:summary",
+        summary=f"{_HERE}.study:summary",
     ),
     views=(
         Facts(

@@ -19,6 +19,6 @@ export const viewsOf = (spec, kind) => spec["safestart:views"].filter((view) => 
 
 /** Titles and colours by name: `title(name)` is the name itself where there is none. */
 export function names(spec) {
-  const engines = new Map(spec["safestart:engines"].map((engine) => [engine.name, engine]));
+  const engines = new Map((spec["safestart:engines"] ?? []).map((engine) => [engine.name, engine]));
   return { title: (name) => engines.get(name)?.title ?? name, colour: (name) => engines.get(name)?.colour };
 }
