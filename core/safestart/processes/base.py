@@ -12,6 +12,7 @@ from safestart.model.validation import validation_error
 from safestart.model.wire_model import WireModel as WireModel
 from safestart.processes.output import ProcessOutput as ProcessOutput
 from safestart.processes.sharding import Sharding, load
+from safestart.processes.views import View
 from safestart.records.artifact import Artifact as Artifact
 from safestart.runtime.progress import Context
 
@@ -42,6 +43,7 @@ class ProcessSpec:
     max(1, |value|); on the same ones it is the same bit for bit.
     ``instant`` names a function (inputs) -> document that the service answers with at submission.
     ``tables`` are those of the outputs that are no lists of objects; these are tables by themselves.
+    ``views`` say how a page shows the outputs, the most important first.
     ``extensions`` are further members of its description, each called ``safestart:...``.
     """
 
@@ -58,6 +60,7 @@ class ProcessSpec:
     replay_tolerance: float = 1e-9
     keywords: tuple[str, ...] = ()
     tables: tuple[Table, ...] = ()
+    views: tuple[View, ...] = ()
     extensions: dict[str, Any] = field(default_factory=dict)
     example: dict[str, Any] = field(default_factory=dict)
 

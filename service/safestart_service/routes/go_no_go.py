@@ -9,6 +9,7 @@ from fastapi.responses import Response
 
 from safestart.errors import NotFound
 from safestart.processes.go_no_go.spec import SPEC, GoNoGoInputs, GoNoGoOutputs
+from safestart.runtime.progress import Context
 from safestart_service.documents.execution import check_states, run_now
 from safestart_service.documents.instant import GoNoGoAnswer, GoNoGoQuery, flat_answer
 from safestart_service.documents.openapi import answer, content, json_body, refusals
@@ -23,7 +24,7 @@ async def _answer(request: Request, query: GoNoGoQuery) -> Response:
     # The closed form takes microseconds; a cone program would hold up every other request.
     if query.method == "closed_form":
         return Json(flat_answer(query))
-    document = await computed(request, flat_answer, query, services(request).context)
+    document = await computed(request, lambda context: flat_answer(query, context))
     if document["verdict"] != "UNDECIDED":
         document["proof_url"] = f"/go-no-go/proof?{request.url.query}"
     return Json(document)
@@ -32,7 +33,7 @@ async def _answer(request: Request, query: GoNoGoQuery) -> Response:
 async def _proof(request: Request, query: GoNoGoQuery) -> Response:
     asked = query.model_copy(update={"method": "exact" if query.method == "closed_form" else query.method})
     asked = asked.model_copy(update={"proofs": True})
-    document = await computed(request, flat_answer, asked, services(request).context)
+    document = await computed(request, lambda context: flat_answer(asked, context))
     if document["proof"] is None:
         raise NotFound(
             f"there is no proof: {document['reason']}",
@@ -89,9 +90,9 @@ async def go_no_go_many(request: Request) -> Response:
     body = await read_body(request)
     found = services(request)
 
-    def respond() -> Response:
+    def respond(context: Context) -> Response:
         inputs = parse_body(GoNoGoInputs, body)
         check_states(inputs, found.settings.max_states)
-        return Json(run_now(SPEC, inputs, found.context))
+        return Json(run_now(SPEC, inputs, context))
 
     return await computed(request, respond)

@@ -9,6 +9,7 @@ from pydantic import Field, create_model, model_validator
 from safestart.engines.registry import ENGINES
 from safestart.model.scenario import Rest, SetKind
 from safestart.processes.base import ProcessSpec, WireModel
+from safestart.processes.views import Column, Comparison, Facts, Matrices, Overlay, Rows
 from safestart.processes.wire import DISTINCT, Confusion, GridInput, Horizon, ScenarioInput, Seed
 
 if TYPE_CHECKING:
@@ -108,6 +109,23 @@ class BenchmarkOutputs(WireModel):
     notes: list[str]
 
 
+_ENGINE_COLUMNS = (
+    Column("engine", "engine"),
+    Column("code", "code"),
+    Column("cells", "cells"),
+    Column("area [m²]", "area_m2"),
+    Column("IoU with exact", "iou_vs_exact"),
+    Column("IoU with HJ", "iou_vs_hj"),
+    Column("area / HJ", "area_ratio_vs_hj"),
+    Column("outside exact", "violation_vs_exact"),
+    Column("run [s]", "run_s"),
+    Column("compile [s]", "compile_s"),
+    Column("faster than HJ", "speedup_vs_hj"),
+    Column("paper: IoU with HJ", "published.iou_vs_hj"),
+    Column("paper: area / HJ", "published.area_ratio"),
+    Column("paper: run [s]", "published.run_s"),
+)
+
 SPEC = ProcessSpec(
     id="benchmark",
     title="Certificate against the reachability engines",
@@ -120,6 +138,46 @@ SPEC = ProcessSpec(
     run="safestart.processes.benchmark.run:run",
     instant="safestart.processes.certificate.run:answer",
     keywords=("reachability", "Hamilton-Jacobi", "Monte Carlo", "IoU"),
+    views=(
+        Facts(
+            (
+                Column("Corridor cells", "corridor_cells"),
+                Column("Area of a cell [m²]", "cell_area_m2"),
+                Column("Certified region contained from [s]", "containment_horizon_s"),
+            )
+        ),
+        Rows("Engines", "rows", _ENGINE_COLUMNS),
+        Matrices(
+            "The certificate against each engine",
+            "Rows: the certificate's word. Columns: in the engine's set or not. Membership in a set is no verdict: an "
+            "outer set holds starts that nothing can fly. Intervals: Wilson, 95 %.",
+            path="rows.*.confusion",
+            names=("engine",),
+            heading="{0}",
+            claims=("certified", "not certified"),
+            facts=("in the set", "not in it"),
+            cells=(
+                "certified, in the set",
+                "certified, not in it",
+                "in the set, not certified",
+                "in neither",
+            ),
+            omit=("analytical",),
+        ),
+        Overlay("Agreement on the map", "maps.npz", table="rows", by="engine", certain="analytical"),
+        Comparison(
+            table="rows",
+            by="engine",
+            measures=(
+                Column("area [m²]", "area_m2"),
+                Column("IoU with exact", "iou_vs_exact"),
+                Column("IoU with Hamilton-Jacobi", "iou_vs_hj"),
+                Column("share outside exact", "violation_vs_exact"),
+                Column("run [s]", "run_s"),
+            ),
+            logarithmic=("run_s",),
+        ),
+    ),
     extensions={"safestart:engines": [spec.document() for spec in ENGINES.values()]},
     example={
         "omega_t_deg_s": 3,

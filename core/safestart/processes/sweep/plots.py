@@ -50,8 +50,8 @@ def _matrix(panel: Axes, cell: Mapping[str, Any]) -> None:
             panel.text(k + 0.5, 1.5 - i, f"{counts[i, k]:,}", ha="center", va="center", fontsize=12)
     panel.set_xlim(0, 2)
     panel.set_ylim(0, 2)
-    panel.set_xticks([0.5, 1.5], ["safe", "lost"])
-    panel.set_yticks([1.5, 0.5], ["GO", "no GO"])
+    panel.set_xticks([0.5, 1.5], ["stayed", "left"])
+    panel.set_yticks([1.5, 0.5], ["certified", "not\ncertified"])
     panel.tick_params(length=0)
     rates = [("precision", cell["precision"]), ("recall", cell["recall"])]
     panel.set_xlabel(

@@ -1,5 +1,6 @@
-// What every page shares: elements, figures in words, the states empty, loading and failed, the key dialog.
+// What every page shares: elements, tables, the states empty, loading and failed, the key dialog.
 
+import { figure } from "../logic/words.js";
 import { Problem, hasKey, useKey } from "./api.js";
 
 /** An element with attributes and children; text stays text. */
@@ -16,37 +17,20 @@ export function el(tag, attributes = {}, ...children) {
 
 export const $ = (id) => document.getElementById(id);
 
-export function figure(value, digits = 4) {
-  if (value === null || value === undefined) return "–";
-  if (typeof value === "boolean") return value ? "yes" : "no";
-  if (typeof value !== "number") return String(value);
-  if (Number.isInteger(value) && Math.abs(value) < 1e6) return String(value);
-  return String(Number(value.toPrecision(digits)));
-}
-
-export function duration(seconds) {
-  if (seconds === null || seconds === undefined) return "–";
-  if (seconds < 10) return `${seconds.toFixed(1)} s`;
-  if (seconds < 90) return `${Math.round(seconds)} s`;
-  if (seconds < 5400) return `${Math.round(seconds / 60)} min`;
-  return `${(seconds / 3600).toFixed(1)} h`;
-}
-
-export const moment = (text) => (text ? new Date(text).toISOString().slice(0, 19).replace("T", " ") + " UTC" : "–");
-
 /** Put a failure where the content would stand, with the way out of it. */
 export function fail(place, error, again) {
   if (error.name === "AbortError") return;
   const known = error instanceof Problem;
+  const asks = document.getElementById("key");
   // Somebody may be typing a key there: a second refusal must not wipe it out.
-  if (known && error.status === 401 && place.querySelector("#key")) return;
+  if (known && error.status === 401 && asks && place.contains(asks)) return;
   const box = el("div", { class: "problem", role: "alert" });
   box.append(el("h2", {}, known ? error.document.title ?? "Refused" : "This page has a fault"));
   box.append(el("p", {}, error.message));
-  if (known && error.document.required) {
+  if (known && error.document.required && !error.message.includes(error.document.required)) {
     box.append(el("p", { class: "note" }, `Required: ${error.document.required}. Received: ${error.document.received}.`));
   }
-  if (known && error.status === 401) box.append(keyForm());
+  if (known && error.status === 401) box.append(asks ? el("p", { class: "note" }, "The key is asked for elsewhere on this page.") : keyForm());
   else if (again) box.append(el("button", { type: "button", onclick: again }, "Try again"));
   place.replaceChildren(box);
   if (!known) console.error(error);
@@ -69,10 +53,26 @@ function keyForm() {
   return form;
 }
 
-export const status = (job) => {
-  const stopping = job.dismissal_requested && job.status === "running";
-  return el("span", { class: `status ${job.status}` }, stopping ? "stopping" : job.status);
-};
+/** A word in a frame, and what it is about: that a job ended says nothing of the verdict it came to. */
+export const badge = (about, word, kind) => el("span", { class: `badge ${about}` }, el("span", { class: "about" }, about), " ", el("b", { class: about === "job" ? `status ${kind}` : `outcome ${kind}` }, word));
+
+export const status = (job) => badge("job", job.dismissal_requested && job.status === "running" ? "stopping" : job.status, job.status);
+
+/** A link to a file of the API, fetched with the key. */
+export function download(call, href, name, text) {
+  const anchor = el("a", { href, download: name }, text);
+  anchor.addEventListener("click", async (event) => {
+    event.preventDefault();
+    try {
+      save(name, await (await call(href)).blob());
+    } catch (error) {
+      const place = el("div");
+      anchor.after(place);
+      fail(place, error);
+    }
+  });
+  return anchor;
+}
 
 export const definition = (name, value) => el("div", {}, el("dt", {}, name), el("dd", {}, value));
 
@@ -82,28 +82,16 @@ export function table(rows, columns, label) {
   const body = rows.map((row) => el("tr", {}, ...columns.map(([, of]) => {
     const value = of(row);
     if (value instanceof Node) return el("td", {}, value);
-    return el("td", { class: typeof value === "number" ? "number" : null }, figure(value));
+    const text = figure(value);
+    return el("td", { class: typeof value === "number" ? "number" : text.length > 40 ? "text" : null }, text);
   })));
   return el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": label },
     el("table", {}, el("thead", {}, head), el("tbody", {}, ...body)));
 }
 
-export function save(name, text, type = "text/csv") {
-  const url = URL.createObjectURL(new Blob([text], { type }));
+/** Give a text (CSV) or a blob to the user as a file. */
+export function save(name, content) {
+  const url = URL.createObjectURL(content instanceof Blob ? content : new Blob([content], { type: "text/csv" }));
   el("a", { href: url, download: name }).click();
   setTimeout(() => URL.revokeObjectURL(url), 1000);
-}
-
-export const csv = (rows) => rows.map((row) => row.map((cell) => {
-  const text = cell === null || cell === undefined ? "" : String(cell);
-  return /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
-}).join(",")).join("\n") + "\n";
-
-/** Run `work` when things have been quiet for `wait` ms; only the last call counts. */
-export function settle(work, wait) {
-  let timer;
-  return (...given) => {
-    clearTimeout(timer);
-    timer = setTimeout(() => work(...given), wait);
-  };
 }

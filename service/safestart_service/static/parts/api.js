@@ -25,10 +25,11 @@ export async function call(path, options = {}) {
   if (key) headers.set("Authorization", `Bearer ${key}`);
   if (options.json !== undefined) headers.set("Content-Type", "application/json");
   const body = options.json === undefined ? undefined : JSON.stringify(options.json);
+  const url = path.startsWith("http") || (root && path.startsWith(`${root}/`)) ? path : root + path;
   let response;
   try {
     // Without stored credentials: a refusal is told on the page, and no browser dialog asks for a password.
-    response = await fetch(path.startsWith("http") ? path : root + path, { ...options, headers, body, credentials: "omit" });
+    response = await fetch(url, { ...options, headers, body, credentials: "omit" });
   } catch (error) {
     if (error.name === "AbortError") throw error;
     throw new Problem(0, { title: "No answer", detail: "the service does not answer; is it running?" });

@@ -1,5 +1,6 @@
 // A form from a JSON schema: what a process's description says is all it needs to know.
 
+import { bounds, filled, numbers, parsed, resolve } from "../logic/schema.js";
 import { el } from "./page.js";
 
 /** `{ node, value() }` of one schema; `value()` gives undefined where nothing was entered. */
@@ -15,22 +16,6 @@ export function field(schema, whole, name, path, given) {
   return json(schema, name, path, fallback);
 }
 
-function resolve(schema, whole) {
-  let found = schema;
-  for (let k = 0; k < 9; k++) {
-    if (found.$ref) found = { ...at(whole, found.$ref), ...found, $ref: undefined };
-    else if (found.allOf?.length === 1) found = { ...found.allOf[0], ...found, allOf: undefined };
-    else if (found.anyOf) {
-      const some = found.anyOf.filter((one) => one.type !== "null");
-      if (some.length !== 1) return found;
-      found = { ...some[0], ...found, anyOf: undefined, optional: true };
-    } else break;
-  }
-  return found;
-}
-
-const at = (whole, reference) => reference.slice(2).split("/").reduce((part, key) => part[key], whole);
-
 function group(schema, whole, name, path, given) {
   const parts = Object.entries(schema.properties).map(([key, inner]) => {
     const required = schema.required?.includes(key);
@@ -41,7 +26,7 @@ function group(schema, whole, name, path, given) {
   const node = el("fieldset", {}, name ? el("legend", {}, name) : null, ...parts.map(([, part]) => part.node));
   return {
     node,
-    value: () => Object.fromEntries(parts.map(([key, part]) => [key, part.value()]).filter(([, value]) => value !== undefined)),
+    value: () => filled(parts.map(([key, part]) => [key, part.value()]), path !== "" && !given),
   };
 }
 
@@ -52,16 +37,6 @@ function dial(schema, name, path, control, more) {
   const said = [schema.description, bounds(schema)].filter(Boolean).join(" ");
   if (said) control.setAttribute("aria-describedby", `${id}-said`);
   return el("div", { class: "dial" }, el("label", { for: id }, name), control, more ?? null, said ? el("p", { class: "note", id: `${id}-said` }, said) : null);
-}
-
-function bounds({ minimum, maximum, exclusiveMinimum, maxItems, multipleOf }) {
-  const said = [];
-  if (exclusiveMinimum !== undefined) said.push(`> ${exclusiveMinimum}`);
-  if (minimum !== undefined) said.push(`≥ ${minimum}`);
-  if (maximum !== undefined) said.push(`≤ ${maximum}`);
-  if (multipleOf !== undefined) said.push(`a multiple of ${multipleOf}`);
-  if (maxItems !== undefined) said.push(`at most ${maxItems}`);
-  return said.length ? `(${said.join(", ")})` : "";
 }
 
 function number(schema, name, path, given) {
@@ -105,9 +80,7 @@ function list(schema, whole, name, path, given) {
   if (items.type === "number" || items.type === "integer") {
     const control = el("input", { type: "text", inputmode: "text" });
     control.value = (given ?? []).join(", ");
-    const value = () => (control.value.trim() === "" ? undefined
-      : control.value.split(",").map((part) => (part.trim() !== "" && Number.isFinite(Number(part)) ? Number(part) : part.trim())));
-    return { node: dial({ ...schema, description: `${schema.description ?? ""} Numbers, separated by commas.` }, name, path, control), value };
+    return { node: dial({ ...schema, description: `${schema.description ?? ""} Numbers, separated by commas.` }, name, path, control), value: () => numbers(control.value) };
   }
   return json(schema, name, path, given);
 }
@@ -115,15 +88,7 @@ function list(schema, whole, name, path, given) {
 function json(schema, name, path, given) {
   const control = el("textarea", { rows: 4, spellcheck: "false" });
   if (given !== undefined && given !== null) control.value = JSON.stringify(given, null, 1);
-  const value = () => {
-    if (control.value.trim() === "") return undefined;
-    try {
-      return JSON.parse(control.value);
-    } catch {
-      return control.value;
-    }
-  };
-  return { node: dial({ ...schema, description: `${schema.description ?? ""} JSON.` }, name, path, control), value };
+  return { node: dial({ ...schema, description: `${schema.description ?? ""} JSON.` }, name, path, control), value: () => parsed(control.value) };
 }
 
 /** Mark the field that a problem names; true when there is one. */

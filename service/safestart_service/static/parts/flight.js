@@ -1,7 +1,8 @@
 // One flight: its curves, its clock, and what the map shows of it at the clock's time.
 
-import { COLOURS, draw, theme } from "./chart.js";
-import { $, figure } from "./page.js";
+import { figure } from "../logic/words.js";
+import { draw, theme } from "./chart.js";
+import { $ } from "./page.js";
 
 const FACES = ["#0072B2", "#D55E00", "#CC79A7", "#E69F00", "#56B4E9"];
 const SPEED = 6; // seconds of flight per second of animation
@@ -16,20 +17,24 @@ export class Flight {
     $("clock").addEventListener("input", () => { this.stop(); this.show(Number($("clock").value)); });
   }
 
-  clear() {
+  /** Withdraw the flight; `text` says why there is none. */
+  clear(text = "") {
     this.stop();
     this.data = null;
-    $("play").disabled = $("clock").disabled = true;
-    $("flown").textContent = "";
+    $("play").disabled = $("clock").disabled = $("frame").disabled = true;
+    $("flown").textContent = text;
+    $("time").textContent = "";
+    $("flight").classList.toggle("empty-flight", true);
   }
 
-  load(data) {
+  /** Show a flight at its end; `text` says what is flown. */
+  load(data, text) {
     this.stop();
     this.data = data;
     $("clock").max = data.time_s.length - 1;
-    $("play").disabled = $("clock").disabled = false;
-    $("flown").textContent = `${data.verdict === "GO" ? "The proof's thrust history" : "The best attempt"}: closest to ${data.closest_face}, `
-      + `${figure(data.closest_m, 3)} m at ${figure(data.closest_s, 3)} s; delta-v ${figure(data.delta_v_m_s, 3)} m/s.`;
+    $("play").disabled = $("clock").disabled = $("frame").disabled = false;
+    $("flown").textContent = text;
+    $("flight").classList.toggle("empty-flight", false);
     this.curves();
     this.show(data.time_s.length - 1, false);
   }
@@ -40,17 +45,17 @@ export class Flight {
   }
 
   traces(frame, start) {
-    const { ink } = theme();
+    const { ink, certified, lost } = theme();
     if (!this.data) {
       return start ? [{ name: "start", x: [start[0]], y: [start[1]], mode: "markers", marker: { size: 11, color: ink, symbol: "x" }, hoverinfo: "name", showlegend: false }] : [];
     }
     const all = frame === "lvlh" ? this.data.lvlh_m : this.data.body_m;
     const path = all.slice(0, this.step + 1), now = path[path.length - 1];
-    const lost = this.data.distance_m[this.step].some((distance) => distance < 0);
+    const left = this.data.distance_m[this.step].some((distance) => distance < 0);
     return [
       { name: "flight", x: path.map((p) => p[0]), y: path.map((p) => p[1]), mode: "lines", line: { color: ink, width: 2.5 }, hoverinfo: "skip" },
       { name: "start", x: [all[0][0]], y: [all[0][1]], mode: "markers", marker: { size: 11, color: ink, symbol: "x" }, hoverinfo: "name", showlegend: false },
-      { name: "chaser", x: [now[0]], y: [now[1]], mode: "markers", marker: { size: 13, color: lost ? COLOURS.hamilton_jacobi : COLOURS.analytical, line: { color: ink, width: 2 } }, hoverinfo: "name", showlegend: false },
+      { name: "chaser", x: [now[0]], y: [now[1]], mode: "markers", marker: { size: 13, color: left ? lost : certified, line: { color: ink, width: 2 } }, hoverinfo: "name", showlegend: false },
     ];
   }
 
