@@ -1,1 +1,1 @@
-"""How the target turns: ``attitude`` is the interface, every other file is one way; ``body_frame`` is the planar case."""
+"""How the target turns: ``attitude`` is the interface, ``spin`` the steady one, ``body_frame`` its planar formulas."""
