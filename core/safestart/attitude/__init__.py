@@ -1,1 +1,1 @@
-"""How the target turns: ``attitude`` is the interface, ``body_frame`` the planar case, every other file one way."""
+"""How the target turns: ``attitude`` is the interface, ``spin`` the steady one, ``body_frame`` its planar formulas."""

@@ -41,6 +41,7 @@ def fly_watched(flight: Watched, controller: Controller, steps: int, dt: float, 
     times, states = [flight.time], [flight.state.copy()]
     commands: list[Command] = []
     held: list[Floats] = []
+    kicks = np.zeros((steps, 3))
     delta_v = peak = 0.0
     controller.begin(states[0])
     for k in range(steps):
@@ -57,13 +58,16 @@ def fly_watched(flight: Watched, controller: Controller, steps: int, dt: float, 
         if impulse is not None:
             impulse = errors.delivered(k, impulse, 1.0)
             delta_v += math.sqrt(float(impulse @ impulse))
+            kicks[k] = impulse
         push = errors.push(k, states[-1], thrust)
         flight.fly(thrust if push is None else thrust + push, impulse)
         commands.append(command)
         held.append(thrust)
         times.append(flight.time)
         states.append(flight.state.copy())
-    path = Path(np.array(times), np.array(states), np.array(held).reshape(-1, 3), tuple(commands))
+    thrusts = np.array(held).reshape(-1, 3)
+    impulses = kicks[: len(commands) if kicks.any() else 0]
+    path = Path(np.array(times), np.array(states), thrusts, tuple(commands), impulses)
     fallbacks = sum(not command.feasible for command in commands)
     return Record(
         np.array([flight.margin]),

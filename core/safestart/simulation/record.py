@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -20,13 +20,15 @@ class Path:
     """One flight at the T times at which it was written down, and its K control intervals.
 
     ``times`` (T,) s; ``states`` (T, 6) LVLH, m and m/s; ``thrust`` (K, 3) m/s^2 as delivered, each held over an
-    interval; ``commands`` (K): what the controller asked for, empty where that is not kept.
+    interval; ``commands`` (K): what the controller asked for, empty where that is not kept; ``impulses`` (K, 3) m/s as
+    delivered, each at the start of an interval, empty where there was none.
     """
 
     times: Floats
     states: Floats
     thrust: Floats
     commands: tuple[Command, ...] = ()
+    impulses: Floats = field(default_factory=lambda: np.empty((0, 3)))
 
     def seen_from(self, attitude: Attitude) -> Floats:
         """States (T, 6) in the body frame."""

@@ -11,6 +11,7 @@ from safestart.attitude.spin import Spin
 from safestart.constraints.corridor import corridor_of, faces_about_z, faces_at, polyhedron
 from safestart.control.controller import Command
 from safestart.dynamics.cwh import Cwh, system_matrix
+from safestart.dynamics.two_body import Orbit, TwoBody
 from safestart.errors import InvalidInput
 from safestart.model.scenario import CorridorShape, Floats
 from safestart.simulation.loop import fly, fly_watched
@@ -220,3 +221,18 @@ def test_a_push_from_outside_moves_the_chaser_and_costs_nothing() -> None:
     still, blown = (fly(plant, [], Damper(0.1), START, 5, 2.0, errors) for errors in (Exact(), Wind()))
     assert blown.delta_v[0] > still.delta_v[0] > 0.0
     np.testing.assert_allclose(blown.paths[0].states[-1, 3:], START[3:], atol=1e-12)
+
+
+def test_impulses_change_the_velocity_at_once_and_are_written_down() -> None:
+    kick, plant = np.array([0.1, -0.2, 0.3]), Plant(TwoBody(Orbit.of(1.1e-3)), Spin(0.0))
+    commands = [Command(np.zeros(3)), Command(np.zeros(3), impulse=kick), Command(np.zeros(3))]
+    path = fly(plant, [], Given(commands), START, 3, 2.0).paths[0]
+    near = fly(Plant(Cwh(1.1e-3), Spin(0.0)), [], Given(commands), START, 3, 2.0)
+    np.testing.assert_allclose(path.impulses, [[0.0] * 3, kick, [0.0] * 3])
+    np.testing.assert_allclose(path.states[2, 3:] - path.states[1, 3:], kick, atol=0.01)
+    np.testing.assert_allclose(path.states, near.paths[0].states, atol=1e-5)
+    assert near.delta_v[0] == pytest.approx(np.linalg.norm(kick))
+    assert near.peak[0] == 0.0
+    assert len(fly(plant, [], Given(commands), START, 1, 2.0).paths[0].impulses) == 0
+    weak = Drawn(truth_of(minimum_impulse=0.5), np.empty((0, 9)))
+    assert fly(plant, [], Given(commands), START, 3, 2.0, weak).delta_v[0] == 0.0
