@@ -23,9 +23,9 @@ from safestart.model.scenario import Floats
 class Prediction:
     """States at the N nodes t_k = k dt, k < N, and within each interval; times count from ``begin`` (s).
 
-    ``free`` (N, 2 d, 2 d) and ``driven`` (N, 2 d, N d): x(t_k) = free_k x0 + driven_k u. ``along`` (K, 2 d, (S+1) 2 d)
-    and ``held`` (K, d, (S+1) 2 d): states at S+1 equally spaced times of an interval from its first state and its
-    thrust, K = N, or 1 for a ``steady`` motion, whose intervals are all alike.
+    ``free`` (N, 2 d, 2 d) and ``driven`` (N, 2 d, N d): x(t_k) = free_k x0 + driven_k u. ``along`` (2 d, (S+1) 2 d) and
+    ``held`` (d, (S+1) 2 d): states at S+1 equally spaced times of an interval from its first state and its thrust.
+    They serve for every interval of a ``steady`` motion; otherwise each interval has its own, (N, ...).
     """
 
     motion: RelativeMotion
@@ -45,17 +45,15 @@ class Prediction:
     @property
     def dimensions(self) -> int:
         """d."""
-        return int(self.held.shape[1])
+        return int(self.held.shape[-2])
 
     def until(self, steps: int) -> Prediction:
         """The first ``steps`` intervals alone: views."""
-        return replace(
-            self,
-            free=self.free[:steps],
-            driven=self.driven[:steps, :, : steps * self.dimensions],
-            along=self.along[:steps],
-            held=self.held[:steps],
-        )
+        driven = self.driven[:steps, :, : steps * self.dimensions]
+        first = replace(self, free=self.free[:steps], driven=driven)
+        if self.steady is not None:
+            return first
+        return replace(first, along=self.along[:steps], held=self.held[:steps])
 
     def flight(self, state: Floats, thrust: Floats) -> Floats:
         """States (N, S+1, 2 d) of the flight from ``state`` (2 d,) under ``thrust`` (N, d), both ends included."""
@@ -64,7 +62,7 @@ class Prediction:
             count, -1
         )
         if self.steady is not None:
-            flown = nodes @ self.along[0] + thrust @ self.held[0]
+            flown = nodes @ self.along + thrust @ self.held
         else:
             flown = (nodes[:, None] @ self.along + thrust[:, None] @ self.held)[:, 0]
         out: Floats = flown.reshape(count, -1, size)
@@ -130,6 +128,8 @@ def prediction_of(
     key = cast(Hashable, motion)
     free, driven = _nodes(key, begin, dt, steps, dimensions)
     along, held = _within(key, begin, dt, steps if steady is None else 1, dimensions, samples)
+    if steady is not None:
+        along, held = along[0], held[0]
     return Prediction(motion, steady, begin, dt, free, driven, along, held)
 
 
