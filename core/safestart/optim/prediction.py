@@ -16,6 +16,7 @@ from typing import cast
 import numpy as np
 
 from safestart.dynamics.motion import RelativeMotion, SteadyMotion
+from safestart.errors import invalid
 from safestart.model.scenario import Floats
 
 
@@ -119,7 +120,7 @@ def prediction_of(
 ) -> Prediction:
     """Tables for N = ``steps`` intervals of ``dt`` seconds from ``begin``, with ``samples`` parts each.
 
-    ``dimensions`` 2 leaves out z, which the motion in the plane must not depend on.
+    ``dimensions`` 2 leaves out z; raises ``InvalidInput`` where the motion in the plane depends on it.
     """
     steady = motion if isinstance(motion, SteadyMotion) else None
     # A steady motion is the same from 0 on: one entry serves all, and differences of times lose nothing.
@@ -164,16 +165,26 @@ def moved(motion: RelativeMotion, t0: float, t1: float, d: int) -> tuple[Floats,
     return motion.transition(t0, t1)[np.ix_(keep, keep)], motion.held(t0, t1)[keep, :d]
 
 
+def _interval(motion: RelativeMotion, t0: float, t1: float, d: int) -> tuple[Floats, Floats]:
+    """:func:`moved`, unless the plane does not keep to itself."""
+    if d == 2 and (
+        motion.transition(t0, t1)[np.ix_([0, 1, 3, 4], [2, 5])].any()
+        or motion.held(t0, t1)[[0, 1, 3, 4], 2].any()
+    ):
+        raise invalid("dimensions", "3, for a motion that couples the plane with z", d)
+    return moved(motion, t0, t1, d)
+
+
 @lru_cache(maxsize=4)
 def _nodes(motion: RelativeMotion, begin: float, dt: float, steps: int, d: int) -> tuple[Floats, Floats]:
     steady = isinstance(motion, SteadyMotion)
-    step, push = moved(motion, begin, begin + dt, d)
+    step, push = _interval(motion, begin, begin + dt, d)
     free = np.empty((steps, 2 * d, 2 * d))
     driven = np.zeros((steps, 2 * d, steps * d))
     free[0] = np.eye(2 * d)
     for k in range(1, steps):
         if not steady:
-            step, push = moved(motion, begin + (k - 1) * dt, begin + k * dt, d)
+            step, push = _interval(motion, begin + (k - 1) * dt, begin + k * dt, d)
         free[k] = moved(motion, begin, begin + k * dt, d)[0]
         driven[k] = step @ driven[k - 1]
         driven[k, :, (k - 1) * d : k * d] = push
