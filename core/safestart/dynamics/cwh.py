@@ -153,14 +153,16 @@ def position_matrices(mean_motion: float, tau: Floats, dimensions: int) -> tuple
     return free, held
 
 
+# The series' quotients of neighbouring terms: [k] holds those of sin(p)/p, 2 (1 - cos p)/p^2 and 6 (p - sin p)/p^3.
+_QUOTIENTS = np.array([[[(2.0 * k + j) * (2.0 * k + j + 1.0)] for j in (2, 3, 4)] for k in range(6)])
+
+
 def _phases(phase: Floats) -> tuple[Floats, Floats, Floats]:
     """sin(p)/p, (1 - cos p)/p^2 and (p - sin p)/p^3, by series: exact at 0, to 1e-16 for |p| <= 0.5."""
     square = phase * phase
     # The first term left out is below p^8 / 9! < 3e-18 for p^2 < 1e-3, below p^14 / 15! < 5e-17 for |p| <= 0.5.
     terms = 3 if not len(phase) or float(square.max()) < 1e-3 else 6
-    sinc = versine = cubic = np.ones_like(square)
-    for k in range(terms - 1, -1, -1):
-        sinc = 1.0 - square / ((2 * k + 2) * (2 * k + 3)) * sinc
-        versine = 1.0 - square / ((2 * k + 3) * (2 * k + 4)) * versine
-        cubic = 1.0 - square / ((2 * k + 4) * (2 * k + 5)) * cubic
-    return sinc, versine / 2.0, cubic / 6.0
+    series = np.ones((3, len(phase)))
+    for quotients in _QUOTIENTS[terms - 1 :: -1]:
+        series = 1.0 - square / quotients * series
+    return series[0], series[1] / 2.0, series[2] / 6.0

@@ -155,9 +155,9 @@ class Search:
         hardly changes: the dips would close in on the touch by about a half each round, the secant does so at once.
         """
         out_times, out_faces = [], []
-        reach = _TOUCH_STEPS * self.watch.question.dt
+        reach, loaded = _TOUCH_STEPS * self.watch.question.dt, self.load > _SOME_WEIGHT
         for time, face in zip(times.tolist(), faces.tolist(), strict=True):
-            share = (self.faces == face) & (np.abs(self.times - time) < reach) & (self.load > _SOME_WEIGHT)
+            share = (self.faces == face) & (np.abs(self.times - time) < reach) & loaded
             total = float(self.load[share].sum())
             if total == 0.0:
                 continue

@@ -19,19 +19,33 @@ from safestart.model.scenario import Floats
 Ints = np.ndarray[tuple[int, ...], np.dtype[np.int64]]
 
 
-class Each(NamedTuple):
-    """Component i of a variable (n,) enters w rows of a block, ``rows[i]`` of (n, w), ascending, times ``value``."""
+class Each:
+    """Component i of a variable (n,) enters w rows of a block, ``rows[i]`` of (n, w), times ``value``.
 
+    Raises ``InvalidInput`` where the rows of a component do not rise.
+    """
+
+    def __init__(self, rows: Ints, value: float = 1.0) -> None:
+        if rows.ndim != 2 or rows.min(initial=0) < 0 or (rows[:, 1:] <= rows[:, :-1]).any():
+            raise invalid("rows", "numbers of rows (n, w), rising along the last axis", rows)
+        self.rows, self.value, self.last = rows, value, int(rows.max(initial=-1))
+
+
+class Part(NamedTuple):
+    """What a variable adds to a block: its columns, and for each of them up to w ``values`` (negative) in ``rows``."""
+
+    columns: slice
+    values: Floats | float
     rows: Ints
-    value: float = 1.0
+    width: int
 
 
 class Block(NamedTuple):
-    """``constant`` (R,) and what each variable adds; ``cone`` is the length of its second-order cones, 0 for rows."""
+    """``constant`` (R,) and its parts; ``cone`` is the length of its second-order cones, 0 for rows."""
 
     constant: Floats
     cone: int
-    parts: Mapping[str, Floats | Each]
+    parts: list[Part]
 
 
 class Columns:
@@ -51,7 +65,7 @@ class Found:
     Values and weights are there whatever the ``status``; they need not be finite.
     """
 
-    def __init__(self, solution: Any, variables: Mapping[str, int], blocks: Mapping[str, int]) -> None:
+    def __init__(self, solution: Any, variables: Mapping[str, slice], blocks: Mapping[str, slice]) -> None:
         self.status = str(solution.status)
         self._x, self._z, self._variables, self._blocks = solution.x, solution.z, variables, blocks
 
@@ -62,11 +76,11 @@ class Found:
 
     def value(self, variable: str) -> Floats:
         """Values (n,) of a variable."""
-        return _part(self._x, self._variables, variable)
+        return np.array(self._x[self._variables[variable]])
 
     def weights(self, block: str) -> Floats:
         """Weights (R,) of a block's rows; those of each norm are one vector of the second-order cone."""
-        return _part(self._z, self._blocks, block)
+        return np.array(self._z[self._blocks[block]])
 
 
 class ConeProgram:
@@ -78,10 +92,10 @@ class ConeProgram:
     """
 
     def __init__(self, **sizes: int) -> None:
-        self._sizes = sizes
+        self._columns, self._count = _slices(sizes)
         self._rows: dict[str, Block] = {}
         self._norms: dict[str, Block] = {}
-        self._cost: dict[str, Floats | float] = {}
+        self._cost = [0.0] * self._count
 
     def rows(self, name: str, constant: Floats, **coefficients: Floats | Each | float) -> None:
         """Add R rows, ``constant`` (R,) + ... >= 0."""
@@ -96,10 +110,11 @@ class ConeProgram:
     def minimise(self, **cost: Floats | float) -> None:
         """Set the objective: for each variable in it (n,) costs, or one number for all its components."""
         for variable, given in cost.items():
-            size = self._size(variable)
+            columns = self._of(variable)
+            size = columns.stop - columns.start
             if isinstance(given, np.ndarray) and given.shape != (size,):
                 raise invalid(variable, f"{size} costs", given.shape)
-        self._cost = cost
+            self._cost[columns] = given.tolist() if isinstance(given, np.ndarray) else [given] * size
 
     def solve(self, *, fine: bool = True) -> Found:
         """Solve; without ``fine`` the solver stops some iterations earlier, some 1e-5 from the optimum."""
@@ -114,41 +129,31 @@ class ConeProgram:
             )
         none = Columns([], [], [0] * (len(cost) + 1), (len(cost), len(cost)))
         solver = clarabel.DefaultSolver(none, cost, matrix, constant, kinds, _settings(fine))
-        sizes = {name: len(block.constant) for name, block in (self._rows | self._norms).items()}
-        return Found(solver.solve(), self._sizes, sizes)
+        places, _ = _slices({name: len(block.constant) for name, block in (self._rows | self._norms).items()})
+        return Found(solver.solve(), self._columns, places)
 
     def standard_form(self) -> tuple[list[float], Columns, list[float], list[tuple[int, int]]]:
         """Cost (n,), A (m, n), b (m,) and cones: minimise cost . x with b - A x in K.
 
         Cones are (length, how many): first the nonnegative rows as (0, how many), then the second-order cones.
         """
-        cost: list[float] = []
-        for name, size in self._sizes.items():
-            given = self._cost.get(name, 0.0)
-            cost += given.tolist() if isinstance(given, np.ndarray) else [given] * size
         rows, norms = list(self._rows.values()), list(self._norms.values())
         cones = [(0, sum([len(block.constant) for block in rows]))]
         cones += [(block.cone, len(block.constant) // block.cone) for block in norms]
         constant = np.concatenate([block.constant for block in rows + norms]).tolist()
-        return cost, self._columns(rows + norms, len(constant)), constant, cones
+        return self._cost, self._matrix(rows + norms, len(constant)), constant, cones
 
-    def _columns(self, blocks: list[Block], height: int) -> Columns:
+    def _matrix(self, blocks: list[Block], height: int) -> Columns:
         """A by columns, without zeros."""
-        lines, count = {}, 0
-        for variable, size in self._sizes.items():
-            lines[variable], count = slice(count, count + size), count + size
         # A line for each column: what stands in it, block after block, and in which row. Of every line a block takes
         # as many places as it needs in any.
-        widths = [max([_width(part) for part in block.parts.values()], default=0) for block in blocks]
-        width, first, at = sum(widths), 0, 0
+        widths = [max([part.width for part in block.parts], default=0) for block in blocks]
+        count, width, first, at = self._count, sum(widths), 0, 0
         filled, where = np.zeros((count, width)), np.empty((count, width), dtype=np.int64)
         for block, wide in zip(blocks, widths, strict=True):
-            for variable, part in block.parts.items():
-                place = lines[variable], slice(at, at + _width(part))
-                if isinstance(part, Each):
-                    filled[place], where[place] = -part.value, part.rows + first
-                else:
-                    filled[place], where[place] = -part.T, np.arange(first, first + len(part))
+            for part in block.parts:
+                place = part.columns, slice(at, at + part.width)
+                filled[place], where[place] = part.values, part.rows + first
             first, at = first + len(block.constant), at + wide
         # Flat indices are several times faster than masks, and sorted: they give the columns' ends.
         kept = (filled != 0.0).ravel().nonzero()[0]
@@ -161,41 +166,37 @@ class ConeProgram:
     ) -> Block:
         if name in self._rows or name in self._norms:
             raise invalid(name, "a name that no other block has", name)
-        parts: dict[str, Floats | Each] = {}
+        parts, count = [], len(constant)
         for variable, given in coefficients.items():
-            size, count = self._size(variable), len(constant)
-            if isinstance(given, int | float):
-                parts[variable], fits = Each(np.arange(0, count, cone or 1)[None], given), size == 1
+            columns = self._of(variable)
+            size = columns.stop - columns.start
+            if isinstance(given, np.ndarray):
+                fits = given.shape == (count, size)
+                parts.append(Part(columns, -given.T, np.arange(count), count))
+            elif isinstance(given, Each):
+                fits = len(given.rows) == size and given.last < count
+                parts.append(Part(columns, -given.value, given.rows, given.rows.shape[1]))
             else:
-                parts[variable] = given
-                fits = (
-                    given.rows.shape[0] == size if isinstance(given, Each) else given.shape == (count, size)
-                )
+                fits, rows = size == 1, np.arange(0, count, cone or 1)
+                parts.append(Part(columns, -given, rows, len(rows)))
             if not fits:
                 raise invalid(
                     f"{name}.{variable}", f"coefficients for {count} rows and {size} components", given
                 )
         return Block(constant, cone, parts)
 
-    def _size(self, variable: str) -> int:
-        if variable not in self._sizes:
-            raise invalid(variable, f"one of the variables {', '.join(self._sizes)}", variable)
-        return self._sizes[variable]
+    def _of(self, variable: str) -> slice:
+        if variable not in self._columns:
+            raise invalid(variable, f"one of the variables {', '.join(self._columns)}", variable)
+        return self._columns[variable]
 
 
-def _width(part: Floats | Each) -> int:
-    """How many rows a component enters at most."""
-    return int(part.rows.shape[1]) if isinstance(part, Each) else len(part)
-
-
-def _part(values: list[float], sizes: Mapping[str, int], wanted: str) -> Floats:
-    """The part of one long vector that has this name."""
-    first = 0
+def _slices(sizes: Mapping[str, int]) -> tuple[dict[str, slice], int]:
+    """Where each lies when all follow each other, and where the last ends."""
+    out, first = {}, 0
     for name, size in sizes.items():
-        if name == wanted:
-            return np.array(values[first : first + size])
-        first += size
-    raise invalid(wanted, f"one of {', '.join(sizes)}", wanted)
+        out[name], first = slice(first, first + size), first + size
+    return out, first
 
 
 @cache

@@ -10,6 +10,7 @@ taken from the first. Its weights are a vector (lambda, p) of that cone, |p| <= 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -70,7 +71,7 @@ def solve(
     if blocks:
         _into_cone(weights[plain:].reshape(blocks, cone), least)
     total = float(np.add.reduce(weights[holds]))
-    if not (np.isfinite(w).all() and np.isfinite(total) and total > 0.0):
+    if not (math.isfinite(np.add.reduce(w, axis=None)) and 0.0 < total < math.inf):
         return Solved(found.status)
     weights /= total
     bounded = bound(constant, thrust, weights, a_max, dimensions)

@@ -16,6 +16,7 @@ from typing import cast
 import numpy as np
 
 from safestart.dynamics.motion import RelativeMotion, SteadyMotion
+from safestart.errors import invalid
 from safestart.model.scenario import Floats
 
 
@@ -23,9 +24,9 @@ from safestart.model.scenario import Floats
 class Prediction:
     """States at the N nodes t_k = k dt, k < N, and within each interval; times count from ``begin`` (s).
 
-    ``free`` (N, 2 d, 2 d) and ``driven`` (N, 2 d, N d): x(t_k) = free_k x0 + driven_k u. ``along`` (K, 2 d, (S+1) 2 d)
-    and ``held`` (K, d, (S+1) 2 d): states at S+1 equally spaced times of an interval from its first state and its
-    thrust, K = N, or 1 for a ``steady`` motion, whose intervals are all alike.
+    ``free`` (N, 2 d, 2 d) and ``driven`` (N, 2 d, N d): x(t_k) = free_k x0 + driven_k u. ``along`` (2 d, (S+1) 2 d) and
+    ``held`` (d, (S+1) 2 d): states at S+1 equally spaced times of an interval from its first state and its thrust.
+    They serve for every interval of a ``steady`` motion; otherwise each interval has its own, (N, ...).
     """
 
     motion: RelativeMotion
@@ -45,17 +46,15 @@ class Prediction:
     @property
     def dimensions(self) -> int:
         """d."""
-        return int(self.held.shape[1])
+        return int(self.held.shape[-2])
 
     def until(self, steps: int) -> Prediction:
         """The first ``steps`` intervals alone: views."""
-        return replace(
-            self,
-            free=self.free[:steps],
-            driven=self.driven[:steps, :, : steps * self.dimensions],
-            along=self.along[:steps],
-            held=self.held[:steps],
-        )
+        driven = self.driven[:steps, :, : steps * self.dimensions]
+        first = replace(self, free=self.free[:steps], driven=driven)
+        if self.steady is not None:
+            return first
+        return replace(first, along=self.along[:steps], held=self.held[:steps])
 
     def flight(self, state: Floats, thrust: Floats) -> Floats:
         """States (N, S+1, 2 d) of the flight from ``state`` (2 d,) under ``thrust`` (N, d), both ends included."""
@@ -64,7 +63,7 @@ class Prediction:
             count, -1
         )
         if self.steady is not None:
-            flown = nodes @ self.along[0] + thrust @ self.held[0]
+            flown = nodes @ self.along + thrust @ self.held
         else:
             flown = (nodes[:, None] @ self.along + thrust[:, None] @ self.held)[:, 0]
         out: Floats = flown.reshape(count, -1, size)
@@ -121,7 +120,7 @@ def prediction_of(
 ) -> Prediction:
     """Tables for N = ``steps`` intervals of ``dt`` seconds from ``begin``, with ``samples`` parts each.
 
-    ``dimensions`` 2 leaves out z, which the motion in the plane must not depend on.
+    ``dimensions`` 2 leaves out z; raises ``InvalidInput`` where the motion in the plane depends on it.
     """
     steady = motion if isinstance(motion, SteadyMotion) else None
     # A steady motion is the same from 0 on: one entry serves all, and differences of times lose nothing.
@@ -130,6 +129,8 @@ def prediction_of(
     key = cast(Hashable, motion)
     free, driven = _nodes(key, begin, dt, steps, dimensions)
     along, held = _within(key, begin, dt, steps if steady is None else 1, dimensions, samples)
+    if steady is not None:
+        along, held = along[0], held[0]
     return Prediction(motion, steady, begin, dt, free, driven, along, held)
 
 
@@ -164,16 +165,26 @@ def moved(motion: RelativeMotion, t0: float, t1: float, d: int) -> tuple[Floats,
     return motion.transition(t0, t1)[np.ix_(keep, keep)], motion.held(t0, t1)[keep, :d]
 
 
+def _interval(motion: RelativeMotion, t0: float, t1: float, d: int) -> tuple[Floats, Floats]:
+    """:func:`moved`, unless the plane does not keep to itself."""
+    if d == 2 and (
+        motion.transition(t0, t1)[np.ix_([0, 1, 3, 4], [2, 5])].any()
+        or motion.held(t0, t1)[[0, 1, 3, 4], 2].any()
+    ):
+        raise invalid("dimensions", "3, for a motion that couples the plane with z", d)
+    return moved(motion, t0, t1, d)
+
+
 @lru_cache(maxsize=4)
 def _nodes(motion: RelativeMotion, begin: float, dt: float, steps: int, d: int) -> tuple[Floats, Floats]:
     steady = isinstance(motion, SteadyMotion)
-    step, push = moved(motion, begin, begin + dt, d)
+    step, push = _interval(motion, begin, begin + dt, d)
     free = np.empty((steps, 2 * d, 2 * d))
     driven = np.zeros((steps, 2 * d, steps * d))
     free[0] = np.eye(2 * d)
     for k in range(1, steps):
         if not steady:
-            step, push = moved(motion, begin + (k - 1) * dt, begin + k * dt, d)
+            step, push = _interval(motion, begin + (k - 1) * dt, begin + k * dt, d)
         free[k] = moved(motion, begin, begin + k * dt, d)[0]
         driven[k] = step @ driven[k - 1]
         driven[k, :, (k - 1) * d : k * d] = push
