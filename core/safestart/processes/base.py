@@ -54,6 +54,7 @@ class ProcessSpec:
     ``replay_tolerance`` is how far a replay on another machine or with other versions may be off, relative to
     max(1, |value|); on the same ones it is the same bit for bit.
     ``instant`` names a function (inputs) -> document that the service answers with at submission.
+    ``states`` names the list among the inputs, if there is one, that a service may limit further (``max_states``).
     ``tables`` are those of the outputs that are no lists of objects; these are tables by themselves.
     """
 
@@ -69,6 +70,7 @@ class ProcessSpec:
     version: str = "1.0.0"
     replay_tolerance: float = 1e-9
     keywords: tuple[str, ...] = ()
+    states: str = ""
     tables: tuple[Table, ...] = ()
     example: dict[str, Any] = field(default_factory=dict)
 
