@@ -7,8 +7,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic_core import PydanticSerializationError, to_json
 
-from safestart.model.validation import validation_error
+from safestart.errors import UnfitResult
+from safestart.model.validation import error_of, validation_error
 from safestart.processes.sharding import Sharding, load
 from safestart.records.artifact import Artifact as Artifact
 from safestart.runtime.progress import Context
@@ -80,6 +82,20 @@ class ProcessSpec:
             return self.inputs.model_validate(inputs)
         except ValidationError as error:
             raise validation_error(error) from None
+
+    def check(self, document: dict[str, Any]) -> None:
+        """Raise ``UnfitResult`` unless ``document``, as the JSON that is kept, is what ``outputs`` describes.
+
+        Nothing is converted on the way: text is no number, 2.0 is no integer, NaN is nothing at all.
+        """
+        try:
+            self.outputs.model_validate_json(to_json(document, inf_nan_mode="constants"), strict=True)
+        except ValidationError as error:
+            raise error_of(UnfitResult, error.errors(include_url=False), "outputs.") from None
+        except PydanticSerializationError as error:
+            raise UnfitResult(
+                f"outputs: required JSON, received something else ({error})", required="JSON"
+            ) from None
 
     def runner(self) -> Runner:
         """Import and return the function that executes this process."""
