@@ -11,7 +11,6 @@ from pydantic import Field, create_model
 
 from safestart.errors import InvalidInput, invalid
 from safestart.processes.base import ProcessSpec, WireModel
-from safestart.processes.go_no_go.spec import GoNoGoInputs
 from safestart.processes.registry import process
 from safestart.runtime.progress import Context
 from safestart_service.documents.describe import output_ids
@@ -99,10 +98,10 @@ def check_outputs(spec: ProcessSpec, request: ExecuteRequest, *, sync: bool) -> 
         )
 
 
-def check_states(inputs: WireModel, max_states: int) -> None:
+def check_states(spec: ProcessSpec, inputs: WireModel, max_states: int) -> None:
     """Raise ``InvalidInput`` beyond the number of states that this service is set to take."""
-    if isinstance(inputs, GoNoGoInputs) and len(inputs.states) > max_states:
-        raise invalid("states", f"at most {max_states} items", len(inputs.states))
+    if spec.states and len(getattr(inputs, spec.states)) > max_states:
+        raise invalid(spec.states, f"at most {max_states} items", len(getattr(inputs, spec.states)))
 
 
 def run_now(spec: ProcessSpec, inputs: WireModel, context: Context) -> dict[str, Any]:

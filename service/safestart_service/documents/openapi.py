@@ -9,12 +9,12 @@ from fastapi.openapi.utils import get_openapi
 from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
 
+from safestart.processes.go_no_go.one_start import GoNoGoAnswer
 from safestart.processes.registry import PROCESS_IDS, process
 from safestart.runtime.access import Role
 from safestart_service.access.gate import needed_role
 from safestart_service.documents import deprecation, schemas
 from safestart_service.documents.execution import execute_model
-from safestart_service.documents.instant import GoNoGoAnswer
 from safestart_service.documents.problems import MEDIA_TYPE, Problem
 
 REF = "#/components/schemas/"

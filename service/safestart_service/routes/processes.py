@@ -114,7 +114,7 @@ async def execute(
     def respond(context: Context) -> Response:
         asked: Any = parse_request(spec.id, body)
         check_outputs(spec, asked, sync=sync)
-        check_states(asked.inputs, found.settings.max_states)
+        check_states(spec, asked.inputs, found.settings.max_states)
         if sync:
             return Json(selected(run_now(spec, asked.inputs, context), asked))
         found.access.require_submit(request)

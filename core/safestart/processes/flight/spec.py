@@ -8,7 +8,7 @@ from pydantic import Field
 
 from safestart.model.scenario import Rest
 from safestart.processes.base import ProcessSpec, Table, WireModel
-from safestart.processes.go_no_go.question_fields import Kind
+from safestart.processes.go_no_go.question_fields import QuestionKind
 from safestart.processes.go_no_go.spec import StateInput
 from safestart.processes.views import Column, Findings
 from safestart.processes.wire import Horizon, ScenarioInput
@@ -19,7 +19,7 @@ class FlightInputs(ScenarioInput):
 
     start: StateInput
     rest: Rest = Field(Rest.LVLH, description="Frame in which the start is at rest.")
-    question: Kind = Field(
+    question: QuestionKind = Field(
         "stay",
         description="stay: in the corridor for horizon_s. synchronize: also at rest in the hold ball at the end, "
         "within within_s; where that is no GO, the best attempt to stay is flown.",

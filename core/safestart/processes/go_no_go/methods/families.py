@@ -13,6 +13,7 @@ from safestart.families.decide import decide_for_all
 from safestart.families.members import Family
 from safestart.families.prove import proof_for_all
 from safestart.model.scenario import MAX_MEAN_MOTION, MIN_ACCELERATION, Floats, number
+from safestart.processes.go_no_go.answer import Verdicts
 from safestart.processes.go_no_go.spec import GoNoGoInputs
 from safestart.processes.wire import finite
 from safestart.runtime.progress import Context
@@ -20,10 +21,8 @@ from safestart.runtime.progress import Context
 MOST_FAMILIES = {"common": 50, "per_corner": 10}
 
 
-def decide_families(
-    inputs: GoNoGoInputs, question: Question, starts: Floats, context: Context
-) -> dict[str, list[Any] | None]:
-    """Columns over the starts (S, 2 d), LVLH: verdict, margin, sentence, members that differ, proofs if asked for."""
+def decide_families(inputs: GoNoGoInputs, question: Question, starts: Floats, context: Context) -> Verdicts:
+    """Verdicts on the starts (S, 2 d), LVLH, with the members that differ, and proofs if asked for."""
     most = MOST_FAMILIES[inputs.witness]
     if len(starts) > most:
         raise invalid("states", f"at most {most} with half-widths and witness {inputs.witness}", len(starts))
@@ -32,18 +31,18 @@ def decide_families(
     for k, start in enumerate(starts):
         answers.append(decide_for_all(family, start, witness=inputs.witness))
         context.step(k + 1, len(starts), "starts")
-    return {
-        "verdict": [answer.verdict.value for answer in answers],
-        "margin_m": [finite(answer.margin_m) for answer in answers],
-        "reason": [_sentence(answer, question.horizon) for answer in answers],
-        "examples": [[_member(example) for example in answer.examples] for answer in answers],
-        "proof": [
+    return Verdicts(
+        [answer.verdict.value for answer in answers],
+        [finite(answer.margin_m) for answer in answers],
+        [_sentence(answer, question.horizon) for answer in answers],
+        examples=[[_member(example) for example in answer.examples] for answer in answers],
+        proof=[
             None if answer.verdict is Verdict.UNDECIDED else proof_for_all(family, start, answer)
             for start, answer in zip(starts, answers, strict=True)
         ]
         if inputs.proofs
         else None,
-    }
+    )
 
 
 def family_of(inputs: GoNoGoInputs, question: Question) -> Family:

@@ -17,10 +17,10 @@ def disturbance_of(inputs: GoNoGoInputs) -> Disturbance | None:
     return found if found.vector().any() else None
 
 
-def under(
+def decide(
     disturbance: Disturbance, question: Question, starts: Floats, context: Context
 ) -> tuple[list[Question], list[Answer]]:
-    """Answers, and the question that a proof of each is about: the tightened one for GO, the asked one for NO_GO."""
+    """The question that a proof of each answer is about (the tightened one for GO, else the asked one), the answers."""
     if not question.plain:
         raise invalid(
             "disturbance_m_s2", "question stay without a speed limit: the tube knows no other", question.kind
@@ -34,7 +34,7 @@ def under(
     return asked, answers
 
 
-def told(disturbance: Disturbance, question: Question, answer: Answer) -> str:
+def sentence(disturbance: Disturbance, question: Question, answer: Answer) -> str:
     """The verdict in words."""
     span = f"{question.horizon:g} s"
     if answer.verdict is Verdict.GO:
