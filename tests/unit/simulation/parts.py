@@ -10,6 +10,7 @@ from safestart.dynamics.motion import RelativeMotion
 from safestart.model.scenario import Floats
 
 
+@dataclass(frozen=True)
 class DoubleIntegrator(RelativeMotion):
     """A motion: no gravity at all."""
 
