@@ -81,7 +81,7 @@ def certify(scenario: Scenario, points: Floats, rest: Rest = Rest.LVLH) -> Certi
     range_margin = limit - np.sqrt((points * points).sum(axis=-1))
     margin = np.minimum(face_margin.min(axis=-1), range_margin)
     return Certificate(
-        corridor.faces, slack, slack_rate, erosion, face_margin, range_margin, limit, margin, margin > 0.0
+        corridor.names, slack, slack_rate, erosion, face_margin, range_margin, limit, margin, margin > 0.0
     )
 
 

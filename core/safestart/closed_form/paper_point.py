@@ -55,7 +55,7 @@ def prepare(
     )
     corridor = corridor_of(scenario.corridor, dimensions)
     return Prepared(
-        corridor.faces,
+        corridor.names,
         tuple(zip(corridor.offsets.tolist(), corridor.lengths.tolist(), strict=True)),
         range_limit(scenario, rest),
         2.0 * a_max,

@@ -6,29 +6,17 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import ValidationError
 from pydantic_core import PydanticSerializationError, to_json
 
 from safestart.errors import UnfitResult
 from safestart.model.validation import error_of, validation_error
+from safestart.model.wire_model import WireModel as WireModel
+from safestart.processes.output import ProcessOutput as ProcessOutput
 from safestart.processes.sharding import Sharding, load
+from safestart.processes.views import View
 from safestart.records.artifact import Artifact as Artifact
 from safestart.runtime.progress import Context
-
-
-class WireModel(BaseModel):
-    """Base of every model that crosses the wire: unknown fields are refused, NaN and infinity too."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, strict=False)
-
-
-@dataclass(frozen=True, slots=True)
-class ProcessOutput:
-    """What a process returns: a JSON-able document and its artifacts."""
-
-    document: dict[str, Any]
-    artifacts: tuple[Artifact, ...] = ()
-
 
 Runner = Callable[[Any, Context], ProcessOutput]
 
@@ -58,6 +46,8 @@ class ProcessSpec:
     ``instant`` names a function (inputs) -> document that the service answers with at submission.
     ``states`` names the list among the inputs, if there is one, that a service may limit further (``max_states``).
     ``tables`` are those of the outputs that are no lists of objects; these are tables by themselves.
+    ``views`` say how a page shows the outputs, the most important first.
+    ``extensions`` are further members of its description, each called ``safestart:...``.
     """
 
     id: str
@@ -74,6 +64,8 @@ class ProcessSpec:
     keywords: tuple[str, ...] = ()
     states: str = ""
     tables: tuple[Table, ...] = ()
+    views: tuple[View, ...] = ()
+    extensions: dict[str, Any] = field(default_factory=dict)
     example: dict[str, Any] = field(default_factory=dict)
 
     def parse(self, inputs: Any) -> WireModel:

@@ -41,6 +41,7 @@ class ExecuteRequest(WireModel):
     response: Literal["document", "raw"] = Field(
         "document", description="raw (the bare value) needs exactly one entry in outputs, and sync execution."
     )
+    inputs: Any
 
 
 @cache

@@ -140,8 +140,11 @@ def build(app: FastAPI) -> dict[str, Any]:
     ]
     outputs = [*ANSWERS, *(spec.outputs for spec in specs)]
     components: dict[str, Any] = document.setdefault("components", {}).setdefault("schemas", {})
-    for models, mode in ((inputs, "validation"), (outputs, "serialization")):
-        _, found = models_json_schema([(model, mode) for model in models], ref_template=REF + "{model}")
+    described = [
+        models_json_schema([(model, "validation") for model in inputs], ref_template=REF + "{model}"),
+        models_json_schema([(model, "serialization") for model in outputs], ref_template=REF + "{model}"),
+    ]
+    for _, found in described:
         for name, schema in found["$defs"].items():
             if components.setdefault(name, schema) != schema:
                 raise AssertionError(f"two different schemas are called {name}")

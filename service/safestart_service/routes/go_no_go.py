@@ -9,7 +9,7 @@ from fastapi.responses import Response
 
 from safestart.errors import NotFound
 from safestart.processes.go_no_go import run
-from safestart.processes.go_no_go.methods.registry import METHODS, PROVING
+from safestart.processes.go_no_go.method_registry import METHODS, PROVING
 from safestart.processes.go_no_go.one_start import ONE_START, GoNoGoAnswer
 from safestart.processes.go_no_go.spec import SPEC, GoNoGoInputs, GoNoGoOutputs
 from safestart.runtime.progress import Context
@@ -38,7 +38,7 @@ def _instant(inputs: GoNoGoInputs) -> dict[str, Any] | None:
 
 
 async def _answer(request: Request, inputs: GoNoGoInputs) -> Response:
-    document = await computed(request, _document, inputs, services(request).context)
+    document = await computed(request, lambda context: _document(inputs, context))
     if METHODS[inputs.method].proves and document["verdict"] != "UNDECIDED":
         document["proof_url"] = f"/go-no-go/proof?{request.url.query}"
     return Json(document)
@@ -47,7 +47,7 @@ async def _answer(request: Request, inputs: GoNoGoInputs) -> Response:
 async def _proof(request: Request, inputs: GoNoGoInputs) -> Response:
     method = inputs.method if METHODS[inputs.method].proves else PROVING
     asked = inputs.model_copy(update={"method": method, "proofs": True})
-    document = await computed(request, _document, asked, services(request).context)
+    document = await computed(request, lambda context: _document(asked, context))
     if document["proof"] is None:
         raise NotFound(
             f"there is no proof: {document['reason']}",
@@ -104,9 +104,9 @@ async def go_no_go_many(request: Request) -> Response:
     body = await read_body(request)
     found = services(request)
 
-    def respond() -> Response:
+    def respond(context: Context) -> Response:
         inputs = parse_body(GoNoGoInputs, body)
         check_states(SPEC, inputs, found.settings.max_states)
-        return Json(run_now(SPEC, inputs, found.context))
+        return Json(run_now(SPEC, inputs, context))
 
     return await computed(request, respond)

@@ -10,6 +10,7 @@ from safestart.model.scenario import Rest
 from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.go_no_go.question_fields import QuestionKind
 from safestart.processes.go_no_go.spec import StateInput
+from safestart.processes.views import Column, Findings
 from safestart.processes.wire import Horizon, ScenarioInput
 
 
@@ -56,6 +57,20 @@ SPEC = ProcessSpec(
     run="safestart.processes.flight.run:run",
     light=True,
     tables=(Table("flight", ("time_s", "body_m", "lvlh_m", "thrust_m_s2", "distance_m")),),
+    views=(
+        Findings(
+            "Verdict",
+            "",
+            word="verdict",
+            columns=(
+                Column("proved margin [m]", "margin_m"),
+                Column("closest [m]", "closest_m"),
+                Column("to face", "closest_face"),
+                Column("after [s]", "closest_s"),
+                Column("delta-v [m/s]", "delta_v_m_s"),
+            ),
+        ),
+    ),
     keywords=("exact", "trajectory"),
     example={"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "start": {"x_m": 5, "y_m": 40}},
 )

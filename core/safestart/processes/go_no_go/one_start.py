@@ -9,7 +9,7 @@ from pydantic import Field
 from safestart.model.scenario import Rest
 from safestart.processes.base import WireModel
 from safestart.processes.flat import Flat
-from safestart.processes.go_no_go.methods.registry import MethodName
+from safestart.processes.go_no_go.method_registry import MethodName
 from safestart.processes.go_no_go.question_fields import QuestionKind
 from safestart.processes.go_no_go.spec import GoNoGoInputs, StateInput
 from safestart.processes.go_no_go.uncertainty import Member

@@ -7,7 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from safestart.model.scenario import MAX_RANGE
-from safestart.processes.go_no_go.methods.registry import DEFAULT, METHODS, MethodName
+from safestart.processes.go_no_go.method_registry import DEFAULT, METHODS, MethodName
 from safestart.processes.go_no_go.uncertainty import HalfWidths
 from safestart.processes.wire import Horizon
 

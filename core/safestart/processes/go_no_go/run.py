@@ -5,7 +5,7 @@ from __future__ import annotations
 from safestart.processes.base import ProcessOutput
 from safestart.processes.go_no_go.answer import Answer
 from safestart.processes.go_no_go.conditions import conditions_of
-from safestart.processes.go_no_go.methods.registry import decide_by
+from safestart.processes.go_no_go.method_registry import decide_by
 from safestart.processes.go_no_go.spec import GoNoGoInputs
 from safestart.runtime.progress import Context
 

@@ -8,9 +8,10 @@ from pydantic import Field
 
 from safestart.model.scenario import MAX_RANGE, Rest
 from safestart.processes.base import ProcessSpec, Table, WireModel
-from safestart.processes.go_no_go.methods.registry import MethodName
+from safestart.processes.go_no_go.method_registry import MethodName
 from safestart.processes.go_no_go.question_fields import QuestionFields, QuestionKind
 from safestart.processes.go_no_go.uncertainty import Member
+from safestart.processes.views import Column, Findings
 from safestart.processes.wire import ScenarioInput
 
 MAX_STATES = 100_000
@@ -91,6 +92,20 @@ SPEC = ProcessSpec(
             (
                 *("verdict", "margin_m", "face_margins_m", "range_margin_m", "binding", "violated_faces"),
                 *("reason", "end_s"),
+            ),
+        ),
+    ),
+    views=(
+        Findings(
+            "Verdicts",
+            "states",
+            word="verdict",
+            columns=(
+                Column("margin [m]", "margin_m"),
+                Column("why", "reason"),
+                Column("binding", "binding"),
+                Column("faces violated at the start", "violated_faces"),
+                Column("at rest after [s]", "end_s"),
             ),
         ),
     ),

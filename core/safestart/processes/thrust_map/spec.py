@@ -7,6 +7,7 @@ from pydantic import Field, model_validator
 from safestart.model.scenario import MAX_MEAN_MOTION, Rest
 from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.coverage.spec import Rates, Thrusts
+from safestart.processes.views import Column, Rows
 from safestart.processes.wire import CorridorInput
 
 
@@ -56,6 +57,25 @@ SPEC = ProcessSpec(
     tables=(
         Table("safe_percent", ("safe_percent",), axes=("omega_t_deg_s", "a_max_m_s2")),
         Table("required_a_max_m_s2", ("omega_t_deg_s", "required_a_max_m_s2")),
+    ),
+    views=(
+        Rows(
+            "Required thrust",
+            "required_a_max_m_s2",
+            (
+                Column("tumble rate [deg/s]", "omega_t_deg_s"),
+                Column("required thrust [m/s²]", "required_a_max_m_s2"),
+            ),
+        ),
+        Rows(
+            "Certified share",
+            "safe_percent",
+            (
+                Column("tumble rate [deg/s]", "omega_t_deg_s"),
+                Column("thrust [m/s²]", "a_max_m_s2"),
+                Column("certified [%]", "safe_percent"),
+            ),
+        ),
     ),
     keywords=("certificate", "trade study"),
     example={"omega_t_deg_s": [1, 3, 5], "a_max_m_s2": [0.05, 0.1, 0.2], "stand_off_m": 40},

@@ -40,7 +40,7 @@ def _by_atlas(question: Question, starts: Floats, context: Context) -> list[Answ
     Few starts ask an atlas that is there and are solved otherwise; many have one built.
     """
     many = len(starts) >= _MANY
-    atlas = atlas_for(question, float(starts[:, 1].max()), context.shelf, make=many)
+    atlas = atlas_for(question, float(starts[:, 1].max()), context, make=many)
     if atlas is None:
         return one_by_one(question, starts, context)
     lower, upper = atlas.bounds(starts[:, :2])

@@ -43,7 +43,10 @@ def sentence(disturbance: Disturbance, question: Question, answer: Answer) -> st
         )
     if answer.verdict is Verdict.NO_GO:
         short = f"{-answer.upper:.2f} m"
-        return f"even undisturbed no thrust history stays for {span}: the best ends {short} outside a face"
+        return (
+            f"even undisturbed no thrust history stays for {span}: each is at some time at least {short} "
+            "outside a face"
+        )
     return f"undecided: {answer.reason}"
 
 

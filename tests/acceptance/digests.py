@@ -1,0 +1,146 @@
+"""Do all answers stay what they were? ``python -m tests.acceptance.digests store|check [--only NAME ...] [--quick]``.
+
+``digests.json`` holds, for each question and each place of its answer, a digest. ``check`` asks again and says which
+place of which answer changed, ``store`` writes anew the digests of the questions it asks. With ``--keep FOLDER``
+the answers themselves are written too: keep those of two trees, and ``diff -r`` shows the figures.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from fnmatch import fnmatch
+from pathlib import Path
+from tempfile import TemporaryFile
+from typing import Any
+
+from tests.acceptance import digest_questions as questions
+
+ROOT = Path(__file__).resolve().parents[2]
+STORED = Path(__file__).with_name("digests.json")
+
+SAME_ARITHMETIC = {
+    # NumPy has other sines and exponentials, OpenBLAS other sums, for processors with AVX-512; the last bits differ,
+    # and with them every solver's answer. These are what every x86-64 with AVX2 and FMA has. Numba needs nothing:
+    # what it compiles for a Haswell and for a Sapphire Rapids gives the same bits.
+    "NPY_DISABLE_CPU_FEATURES": "X86_V4 AVX512_ICL AVX512_SPR",
+    "OPENBLAS_CORETYPE": "Haswell",
+    "XLA_FLAGS": "--xla_cpu_max_isa=AVX2",
+    # A sum over two threads is another sum.
+    "OPENBLAS_NUM_THREADS": "1",
+}
+
+Files = dict[str, dict[str, str]]
+"""Digests by file and place."""
+
+
+def answers(names: Sequence[str], keep: str = "") -> Iterator[dict[str, Any]]:
+    """Ask in processes of their own, whose arithmetic is the same everywhere: an answer or an error of each."""
+    served = [name for name in names if name.startswith("service/")]
+    yield from _answers("tests.acceptance.digest_runs", [name for name in names if name not in served], keep)
+    yield from _answers("tests.acceptance.digest_service", served, keep)
+
+
+def _answers(module: str, names: Sequence[str], keep: str) -> Iterator[dict[str, Any]]:
+    if not names:
+        return
+    command = [sys.executable, "-m", module, keep, *names]
+    environment = os.environ | SAME_ARITHMETIC | {"PYTHONPATH": str(ROOT)}
+    with (
+        TemporaryFile("w+") as said,
+        subprocess.Popen(
+            command, cwd=ROOT, env=environment, stdout=subprocess.PIPE, stderr=said, text=True
+        ) as child,
+    ):
+        assert child.stdout is not None
+        for name in names:
+            line, seconds = child.stdout.readline(), child.stdout.readline()
+            if line.strip():
+                answer = json.loads(line)
+            else:
+                said.seek(0)
+                answer = {"error": f"the process died: {said.read()[-2000:]}"}
+            yield {"name": name, "seconds": float(seconds or 0.0), **answer}
+
+
+def differences(before: Mapping[str, Mapping[str, str]], now: Mapping[str, Mapping[str, str]]) -> list[str]:
+    """Which places of an answer changed, came, or went, each in a line."""
+    lines = []
+    for name in sorted(before.keys() | now.keys()):
+        old, new = before.get(name, {}), now.get(name, {})
+        changed = sorted(place for place in old.keys() | new.keys() if old.get(place) != new.get(place))
+        told = [place for place in changed if not place.startswith("(")] or changed
+        if told:
+            word = "is new" if name not in before else "is gone" if name not in now else "differs in"
+            lines.append(f"{name} {word} {', '.join(told)}")
+    return lines
+
+
+def stored() -> dict[str, Files]:
+    """The digests as they were; empty before the first ``store``."""
+    return json.loads(STORED.read_text()) if STORED.exists() else {}
+
+
+def check(names: Sequence[str], keep: str = "") -> dict[str, list[str]]:
+    """Differences by question, of those that have any; prints as it goes."""
+    before, found = stored(), {}
+    for answer in answers(names, keep):
+        name = answer["name"]
+        if "error" in answer:
+            lines = [answer["error"]]
+        elif name not in before:
+            lines = ["no digests are stored"]
+        else:
+            lines = differences(before[name], answer["files"])
+        print(f"{'differs' if lines else 'same':8}{answer['seconds']:7.1f} s  {name}", flush=True)
+        for line in lines:
+            print(f"    {line}")
+        if lines:
+            found[name] = lines
+    return found
+
+
+def store(names: Sequence[str], keep: str = "") -> list[str]:
+    """Write the digests of these answers beside the others; returns the questions that have none."""
+    found, failed = stored(), []
+    for answer in answers(names, keep):
+        print(f"{answer['seconds']:7.1f} s  {answer['name']}  {answer.get('error', '')}", flush=True)
+        if "error" in answer:
+            failed.append(answer["name"])
+        else:
+            found[answer["name"]] = answer["files"]
+    known = questions.names()
+    kept = {name: found[name] for name in sorted(found) if name in known}
+    STORED.write_text(json.dumps(kept, indent=0, sort_keys=True) + "\n")
+    return failed
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Exit code 0: nothing differs."""
+    parser = argparse.ArgumentParser(prog="python -m tests.acceptance.digests", description=__doc__)
+    parser.add_argument("what", choices=("store", "check", "list"))
+    parser.add_argument(
+        "--only", nargs="+", metavar="NAME", help="questions, or patterns such as 'go-no-go/*'"
+    )
+    parser.add_argument("--quick", action="store_true", help="those that CI asks")
+    parser.add_argument("--keep", default="", metavar="FOLDER", help="write the answers there")
+    asked = parser.parse_args(arguments)
+    names = questions.quick_names() if asked.quick else questions.names()
+    if asked.only:
+        names = [name for name in names if any(fnmatch(name, pattern) for pattern in asked.only)]
+    if asked.what == "list":
+        print("\n".join(names))
+        return 0
+    if asked.what == "store":
+        return 1 if store(names, asked.keep) else 0
+    found = check(names, asked.keep)
+    print(f"{len(names) - len(found)} of {len(names)} answers are what they were")
+    return 1 if found or not names else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
