@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from hashlib import sha256
+from importlib import import_module
 
-from safestart_service.documents.formats import csv_table, npz, ogc, parquet, record
 from safestart_service.documents.formats.base import Format
 
-FORMATS: tuple[Format, ...] = (
-    record.FORMAT,
-    ogc.FORMAT,
-    csv_table.FORMAT,
-    npz.FORMAT,
-    parquet.FORMAT,
+_MODULES = (
+    "record",
+    "ogc",
+    "csv_table",
+    "npz",
+    "parquet",
 )
 
+FORMATS: tuple[Format, ...] = tuple(
+    import_module(f"safestart_service.documents.formats.{module}").FORMAT for module in _MODULES
+)
 BY_NAME = {form.name: form for form in FORMATS}
 BY_TYPE = {form.media_type: form for form in FORMATS}
 
