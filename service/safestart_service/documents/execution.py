@@ -14,7 +14,7 @@ from safestart.processes.base import ProcessSpec, WireModel
 from safestart.processes.registry import process
 from safestart.runtime.progress import Context
 from safestart_service.documents.describe import output_ids
-from safestart_service.documents.formats import ogc_values
+from safestart_service.documents.formats.ogc import ogc_values
 from safestart_service.http.body import parse_body
 
 _QUALIFIED = {"value", "mediaType", "encoding", "schema"}

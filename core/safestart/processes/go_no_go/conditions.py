@@ -46,11 +46,12 @@ def points_of(inputs: GoNoGoInputs) -> Floats:
 def _together(inputs: GoNoGoInputs) -> Conditions:
     found = certify(inputs.scenario(), points_of(inputs), inputs.rest)
     face_margin, range_margin = found.face_margin.tolist(), found.range_margin.tolist()
-    told = [
-        binding_of(found.faces, *start)
-        for start in zip(found.slack.tolist(), face_margin, range_margin, strict=True)
-    ]
-    binding, violated = (list(column) for column in zip(*told, strict=True))
+    binding: list[str] = []
+    violated: list[list[str]] = []
+    for start in zip(found.slack.tolist(), face_margin, range_margin, strict=True):
+        binds, outside = binding_of(found.faces, *start)
+        binding.append(binds)
+        violated.append(outside)
     return Conditions(
         found.faces, found.range_limit, found.margin.tolist(), face_margin, range_margin, binding, violated
     )

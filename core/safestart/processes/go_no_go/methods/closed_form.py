@@ -7,26 +7,32 @@ from safestart.errors import invalid
 from safestart.processes.go_no_go.answer import Verdicts
 from safestart.processes.go_no_go.conditions import Conditions
 from safestart.processes.go_no_go.spec import GoNoGoInputs
-from safestart.processes.go_no_go.uncertainty import HALF_WIDTHS
+from safestart.processes.wire import ScenarioInput
 from safestart.runtime.progress import Context
 
-_UNKNOWN = frozenset(
+_TAKEN = frozenset(
     {
-        "question",
-        "speed_limit_m_s",
-        "keep_out_m",
-        "disturbance_m_s2",
-        "start_error_m",
-        "start_error_m_s",
-        *HALF_WIDTHS,
+        *ScenarioInput.model_fields,
+        *("states", "rest", "method", "proofs"),
+        # Details of questions that are refused themselves, and the time, which the conditions do not depend on.
+        *(
+            "horizon_s",
+            "within_s",
+            "hold_x_m",
+            "hold_y_m",
+            "hold_z_m",
+            "ball_radius_m",
+            "rest_speed_m_s",
+            "witness",
+        ),
     }
 )
-"""Inputs of which the closed form knows the default only, which asks for nothing."""
+"""Inputs that may be given; every other one is refused unless it is the default, which asks for nothing."""
 
 
 def decide(inputs: GoNoGoInputs, conditions: Conditions, context: Context) -> Verdicts:
     """A start is GO where its smallest margin is positive."""
-    if not _UNKNOWN.isdisjoint(inputs.model_fields_set):
+    if not inputs.model_fields_set <= _TAKEN:
         _refuse(inputs)
     context.step(1, 1)
     return Verdicts(
@@ -46,8 +52,8 @@ def decide(inputs: GoNoGoInputs, conditions: Conditions, context: Context) -> Ve
 
 
 def _refuse(inputs: GoNoGoInputs) -> None:
-    for name in GoNoGoInputs.model_fields:
-        if name in _UNKNOWN and getattr(inputs, name) != GoNoGoInputs.model_fields[name].default:
+    for name, field in GoNoGoInputs.model_fields.items():
+        if name not in _TAKEN and getattr(inputs, name) != field.default:
             raise invalid(
                 "method",
                 f"exact or auto where {name} is given: the closed form does not know it",
