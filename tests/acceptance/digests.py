@@ -18,7 +18,7 @@ from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any
 
-from tests.acceptance import digest_questions as questions
+from tests.acceptance.digested import questions
 
 ROOT = Path(__file__).resolve().parents[2]
 STORED = Path(__file__).with_name("digests.json")
@@ -41,8 +41,10 @@ Files = dict[str, dict[str, str]]
 def answers(names: Sequence[str], keep: str = "") -> Iterator[dict[str, Any]]:
     """Ask in processes of their own, whose arithmetic is the same everywhere: an answer or an error of each."""
     served = [name for name in names if name.startswith("service/")]
-    yield from _answers("tests.acceptance.digest_runs", [name for name in names if name not in served], keep)
-    yield from _answers("tests.acceptance.digest_service", served, keep)
+    yield from _answers(
+        "tests.acceptance.digested.runs", [name for name in names if name not in served], keep
+    )
+    yield from _answers("tests.acceptance.digested.service", served, keep)
 
 
 def _answers(module: str, names: Sequence[str], keep: str) -> Iterator[dict[str, Any]]:
