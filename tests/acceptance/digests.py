@@ -72,15 +72,17 @@ def _answers(module: str, names: Sequence[str], keep: str) -> Iterator[dict[str,
 
 
 def differences(before: Mapping[str, Mapping[str, str]], now: Mapping[str, Mapping[str, str]]) -> list[str]:
-    """Which places of an answer changed, came, or went, each in a line."""
+    """Which places of an answer changed, a line for each of its files."""
     lines = []
     for name in sorted(before.keys() | now.keys()):
-        old, new = before.get(name, {}), now.get(name, {})
+        if name not in now or name not in before:
+            lines.append(f"{name} {'is gone' if name in before else 'is new'}")
+            continue
+        old, new = before[name], now[name]
         changed = sorted(place for place in old.keys() | new.keys() if old.get(place) != new.get(place))
-        told = [place for place in changed if not place.startswith("(")] or changed
-        if told:
-            word = "is new" if name not in before else "is gone" if name not in now else "differs in"
-            lines.append(f"{name} {word} {', '.join(told)}")
+        if changed:
+            places = [place for place in changed if not place.startswith("(")] or changed
+            lines.append(f"{name} differs in {', '.join(places)}")
     return lines
 
 
