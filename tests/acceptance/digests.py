@@ -10,15 +10,17 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import platform
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from fnmatch import fnmatch
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any
 
-from tests.acceptance import digest_questions as questions
+from tests.acceptance.digested import questions
 
 ROOT = Path(__file__).resolve().parents[2]
 STORED = Path(__file__).with_name("digests.json")
@@ -41,8 +43,10 @@ Files = dict[str, dict[str, str]]
 def answers(names: Sequence[str], keep: str = "") -> Iterator[dict[str, Any]]:
     """Ask in processes of their own, whose arithmetic is the same everywhere: an answer or an error of each."""
     served = [name for name in names if name.startswith("service/")]
-    yield from _answers("tests.acceptance.digest_runs", [name for name in names if name not in served], keep)
-    yield from _answers("tests.acceptance.digest_service", served, keep)
+    yield from _answers(
+        "tests.acceptance.digested.runs", [name for name in names if name not in served], keep
+    )
+    yield from _answers("tests.acceptance.digested.service", served, keep)
 
 
 def _answers(module: str, names: Sequence[str], keep: str) -> Iterator[dict[str, Any]]:
@@ -68,26 +72,73 @@ def _answers(module: str, names: Sequence[str], keep: str) -> Iterator[dict[str,
 
 
 def differences(before: Mapping[str, Mapping[str, str]], now: Mapping[str, Mapping[str, str]]) -> list[str]:
-    """Which places of an answer changed, came, or went, each in a line."""
+    """Which places of an answer changed, a line for each of its files."""
     lines = []
     for name in sorted(before.keys() | now.keys()):
-        old, new = before.get(name, {}), now.get(name, {})
+        if name not in now or name not in before:
+            lines.append(f"{name} {'is gone' if name in before else 'is new'}")
+            continue
+        old, new = before[name], now[name]
         changed = sorted(place for place in old.keys() | new.keys() if old.get(place) != new.get(place))
-        told = [place for place in changed if not place.startswith("(")] or changed
-        if told:
-            word = "is new" if name not in before else "is gone" if name not in now else "differs in"
-            lines.append(f"{name} {word} {', '.join(told)}")
+        if changed:
+            places = [place for place in changed if not place.startswith("(")] or changed
+            lines.append(f"{name} differs in {', '.join(places)}")
     return lines
 
 
 def stored() -> dict[str, Files]:
     """The digests as they were; empty before the first ``store``."""
-    return json.loads(STORED.read_text()) if STORED.exists() else {}
+    return json.loads(STORED.read_text())["answers"] if STORED.exists() else {}
+
+
+def arithmetic() -> dict[str, str]:
+    """What the last bits depend on besides our code: versions of what computes."""
+    packages = (
+        "numpy",
+        "scipy",
+        "numba",
+        "llvmlite",
+        "clarabel",
+        "python-flint",
+        "jax",
+        "hj-reachability",
+        "pyarrow",
+    )
+    found = {name: version(name) for name in packages if _installed(name)}
+    return found | {"libc": " ".join(platform.libc_ver())}
+
+
+def _installed(name: str) -> bool:
+    try:
+        version(name)
+    except PackageNotFoundError:
+        return False
+    return True
+
+
+def other_arithmetic() -> str:
+    """What computes here in another version than where the digests were stored, in words; empty: nothing."""
+    made, here = json.loads(STORED.read_text())["made_with"], arithmetic()
+    names = [name for name in made.keys() | here.keys() if made.get(name) != here.get(name)]
+    return ", ".join(f"{name} {here.get(name)} instead of {made.get(name)}" for name in sorted(names))
+
+
+def same_arithmetic_possible() -> bool:
+    """Whether this machine can compute the same bits: x86-64 with AVX2 and FMA, and glibc's functions."""
+    try:
+        flags = Path("/proc/cpuinfo").read_text().split()
+    except OSError:
+        return False
+    return (
+        platform.machine() == "x86_64" and {"avx2", "fma"} <= set(flags) and platform.libc_ver()[0] == "glibc"
+    )
 
 
 def check(names: Sequence[str], keep: str = "") -> dict[str, list[str]]:
     """Differences by question, of those that have any; prints as it goes."""
     before, found = stored(), {}
+    if other := other_arithmetic():
+        print(f"computed here by {other}: differences may come from that")
     for answer in answers(names, keep):
         name = answer["name"]
         if "error" in answer:
@@ -114,9 +165,22 @@ def store(names: Sequence[str], keep: str = "") -> list[str]:
         else:
             found[answer["name"]] = answer["files"]
     known = questions.names()
-    kept = {name: found[name] for name in sorted(found) if name in known}
-    STORED.write_text(json.dumps(kept, indent=0, sort_keys=True) + "\n")
+    _write({name: found[name] for name in sorted(found) if name in known})
     return failed
+
+
+def _write(answers: Mapping[str, Files]) -> None:
+    """One line per file of an answer, so that a change of the stored digests can be read."""
+    blocks = []
+    for name, files in answers.items():
+        lines = [f"{json.dumps(file)}: {_line(files[file])}" for file in sorted(files)]
+        blocks.append(f"{json.dumps(name)}: {{\n" + ",\n".join(lines) + "\n}")
+    text = f'{{"made_with": {_line(arithmetic())},\n"answers": {{\n' + ",\n".join(blocks) + "\n}}\n"
+    STORED.write_text(text)
+
+
+def _line(document: Mapping[str, str]) -> str:
+    return json.dumps(document, sort_keys=True, separators=(",", ":"))
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -1,4 +1,4 @@
-"""The same answers over HTTP, for the digests: ``python -m tests.acceptance.digest_service KEEP NAME ...``.
+"""The same answers over HTTP, for the digests: ``python -m tests.acceptance.digested.service KEEP NAME ...``.
 
 ``safestart up`` runs the questions as jobs, and gives each result in every form that it offers.
 """
@@ -14,8 +14,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from tests.acceptance.digest_questions import AT_ONCE, asked
-from tests.acceptance.digest_runs import Answer, told
+from tests.acceptance.digested.calls import AT_ONCE
+from tests.acceptance.digested.questions import asked
+from tests.acceptance.digested.runs import Answer, told
 from tests.acceptance.running import Running
 
 NO_SUCH_TABLE = "no such table"

@@ -1,4 +1,4 @@
-"""Answers for the digests, in a process of its own: ``python -m tests.acceptance.digest_runs NAME ...``.
+"""Answers for the digests, in a process of its own: ``python -m tests.acceptance.digested.runs NAME ...``.
 
 It stands on what stays: ``execute`` and ``process`` of the core, the command line by its entry point. One line of
 JSON per answer goes to the standard output, with a folder of the answers themselves where one is named.
@@ -19,8 +19,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from tests.acceptance import digest_content as content
-from tests.acceptance.digest_questions import COMMANDS, asked
+from tests.acceptance.digested import content
+from tests.acceptance.digested.calls import COMMANDS
+from tests.acceptance.digested.questions import asked
 
 Answer = dict[str, bytes]
 """Files by name: ``document.json`` and whatever came with it."""
@@ -28,32 +29,48 @@ Answer = dict[str, bytes]
 
 def run(name: str) -> Answer:
     """The files that answer a question."""
-    return command(COMMANDS[name]) if name in COMMANDS else executed(name)
+    if name not in COMMANDS:
+        return executed(name)
+    printed, left = commands(COMMANDS[name])
+    return {f"printed-{place + 1}.json": _text(said) for place, said in enumerate(printed)} | left
 
 
 def executed(name: str) -> Answer:
-    """The document of a process and its artifacts."""
+    """The document of a process, its artifacts, and what the checker says of each proof among them."""
     from safestart.processes.execute import execute
 
     process_id, questions = asked(name)
     for inputs in questions:
         found = execute(process_id, inputs)
-    return {"document.json": _text(found.document)} | {item.name: item.data for item in found.artifacts}
+    files = {"document.json": _text(found.document)} | {item.name: item.data for item in found.artifacts}
+    documents = [json.loads(data) for file, data in files.items() if file.endswith(".json")]
+    proofs = {f"{place}.json": _text(proof) for place, proof in enumerate(proofs_in(documents))}
+    if proofs:
+        verified, _ = commands(tuple(("verify", proof, "--json") for proof in proofs), proofs)
+        files["verified.json"] = _text(verified)
+    return files
 
 
-def command(lines: tuple[tuple[str, ...], ...]) -> Answer:
-    """What command lines print, and the files that they leave in an empty folder."""
+def proofs_in(value: Any) -> list[Any]:
+    """Proof documents, wherever they stand."""
+    if isinstance(value, dict) and str(value.get("schema")).startswith("safestart-proof"):
+        return [value]
+    inner = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
+    return [proof for item in inner for proof in proofs_in(item)]
+
+
+def commands(lines: tuple[tuple[str, ...], ...], given: Answer | None = None) -> tuple[list[Any], Answer]:
+    """What command lines print in a folder of ``given`` files, and what files they leave there."""
     (point,) = entry_points(group="console_scripts", name="safestart")
     main = point.load()
-    printed = {}
     with TemporaryDirectory() as folder, contextlib.chdir(folder):
-        for place, words in enumerate(lines):
-            printed[f"printed-{place + 1}.json"] = _printed(main, words)
-        left = {path.name: path.read_bytes() for path in sorted(Path().iterdir())}
-    return printed | left
+        for name, data in (given or {}).items():
+            Path(name).write_bytes(data)
+        printed = [_printed(main, words) for words in lines]
+        return printed, {path.name: path.read_bytes() for path in sorted(Path().iterdir())}
 
 
-def _printed(main: Any, words: tuple[str, ...]) -> bytes:
+def _printed(main: Any, words: tuple[str, ...]) -> Any:
     out = io.StringIO()
     code: Any = 0
     before, sys.argv = sys.argv, ["safestart", *words]
@@ -64,7 +81,7 @@ def _printed(main: Any, words: tuple[str, ...]) -> bytes:
         code = end.code or 0
     finally:
         sys.argv = before
-    return _text({"exit": code, "printed": json.loads(out.getvalue() or "null")})
+    return {"exit": code, "printed": json.loads(out.getvalue() or "null")}
 
 
 def digests(answer: Answer) -> dict[str, content.Digests]:
