@@ -41,11 +41,12 @@ class Part(NamedTuple):
 
 
 class Block(NamedTuple):
-    """``constant`` (R,) and its parts; ``cone`` is the length of its second-order cones, 0 for rows."""
+    """``constant`` (R,), length of the second-order cones (0 for rows), and parts, the widest of them ``width``."""
 
     constant: Floats
     cone: int
     parts: list[Part]
+    width: int
 
 
 class Columns:
@@ -65,7 +66,7 @@ class Found:
     Values and weights are there whatever the ``status``; they need not be finite.
     """
 
-    def __init__(self, solution: Any, variables: Mapping[str, slice], blocks: Mapping[str, slice]) -> None:
+    def __init__(self, solution: Any, variables: Mapping[str, slice], blocks: Mapping[str, Block]) -> None:
         self.status = str(solution.status)
         self._x, self._z, self._variables, self._blocks = solution.x, solution.z, variables, blocks
 
@@ -80,7 +81,12 @@ class Found:
 
     def weights(self, block: str) -> Floats:
         """Weights (R,) of a block's rows; those of each norm are one vector of the second-order cone."""
-        return np.array(self._z[self._blocks[block]])
+        first = 0
+        for name, other in self._blocks.items():
+            if name == block:
+                break
+            first += len(other.constant)
+        return np.array(self._z[first : first + len(self._blocks[block].constant)])
 
 
 class ConeProgram:
@@ -92,7 +98,11 @@ class ConeProgram:
     """
 
     def __init__(self, **sizes: int) -> None:
-        self._columns, self._count = _slices(sizes)
+        self._columns: dict[str, slice] = {}
+        self._count = 0
+        for variable, size in sizes.items():
+            self._columns[variable] = slice(self._count, self._count + size)
+            self._count += size
         self._rows: dict[str, Block] = {}
         self._norms: dict[str, Block] = {}
         self._cost = [0.0] * self._count
@@ -108,7 +118,7 @@ class ConeProgram:
         self._norms[name] = self._block(name, constant.ravel(), constant.shape[1], coefficients)
 
     def minimise(self, **cost: Floats | float) -> None:
-        """Set the objective: for each variable in it (n,) costs, or one number for all its components."""
+        """Set costs: for a variable (n,) of them, or one number for all its components; others stay as they are, 0."""
         for variable, given in cost.items():
             columns = self._of(variable)
             size = columns.stop - columns.start
@@ -122,15 +132,13 @@ class ConeProgram:
         import clarabel
 
         cost, matrix, constant, cones = self.standard_form()
-        kinds: list[Any] = []
-        for length, count in cones:
-            kinds += (
-                [clarabel.SecondOrderConeT(length)] * count if length else [clarabel.NonnegativeConeT(count)]
-            )
+        (_, rows), *norms = cones
+        kinds: list[Any] = [clarabel.NonnegativeConeT(rows)]
+        for length, count in norms:
+            kinds += [clarabel.SecondOrderConeT(length)] * count
         none = Columns([], [], [0] * (len(cost) + 1), (len(cost), len(cost)))
         solver = clarabel.DefaultSolver(none, cost, matrix, constant, kinds, _settings(fine))
-        places, _ = _slices({name: len(block.constant) for name, block in (self._rows | self._norms).items()})
-        return Found(solver.solve(), self._columns, places)
+        return Found(solver.solve(), self._columns, self._rows | self._norms)
 
     def standard_form(self) -> tuple[list[float], Columns, list[float], list[tuple[int, int]]]:
         """Cost (n,), A (m, n), b (m,) and cones: minimise cost . x with b - A x in K.
@@ -147,14 +155,13 @@ class ConeProgram:
         """A by columns, without zeros."""
         # A line for each column: what stands in it, block after block, and in which row. Of every line a block takes
         # as many places as it needs in any.
-        widths = [max([part.width for part in block.parts], default=0) for block in blocks]
-        count, width, first, at = self._count, sum(widths), 0, 0
+        count, width, first, at = self._count, sum([block.width for block in blocks]), 0, 0
         filled, where = np.zeros((count, width)), np.empty((count, width), dtype=np.int64)
-        for block, wide in zip(blocks, widths, strict=True):
+        for block in blocks:
             for part in block.parts:
                 place = part.columns, slice(at, at + part.width)
                 filled[place], where[place] = part.values, part.rows + first
-            first, at = first + len(block.constant), at + wide
+            first, at = first + len(block.constant), at + block.width
         # Flat indices are several times faster than masks, and sorted: they give the columns' ends.
         kept = (filled != 0.0).ravel().nonzero()[0]
         data, indices = filled.ravel().take(kept), where.ravel().take(kept)
@@ -183,20 +190,12 @@ class ConeProgram:
                 raise invalid(
                     f"{name}.{variable}", f"coefficients for {count} rows and {size} components", given
                 )
-        return Block(constant, cone, parts)
+        return Block(constant, cone, parts, max([part.width for part in parts], default=0))
 
     def _of(self, variable: str) -> slice:
         if variable not in self._columns:
             raise invalid(variable, f"one of the variables {', '.join(self._columns)}", variable)
         return self._columns[variable]
-
-
-def _slices(sizes: Mapping[str, int]) -> tuple[dict[str, slice], int]:
-    """Where each lies when all follow each other, and where the last ends."""
-    out, first = {}, 0
-    for name, size in sizes.items():
-        out[name], first = slice(first, first + size), first + size
-    return out, first
 
 
 @cache

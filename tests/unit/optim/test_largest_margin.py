@@ -1,5 +1,6 @@
 """The exact question's cone program: its matrices written out by hand, its dual bound, and a solver that fails."""
 
+from fractions import Fraction
 from typing import Any
 
 import clarabel
@@ -8,17 +9,18 @@ import pytest
 from scipy.sparse import csc_array
 
 from safestart.optim import cone_program
-from safestart.optim.largest_margin import solve
+from safestart.optim.largest_margin import _into_cone, solve
 
 
 def drawn(d: int, blocks: int) -> tuple[np.ndarray, np.ndarray]:
-    """Rows of a flight of 6 intervals: those of later thrusts are 0, as for times before the end."""
+    """Rows of a flight of 6 intervals, zeros for thrusts after their time; the ninth is far from binding."""
     rng = np.random.default_rng(10 * d + blocks)
     rows = 9 + blocks * (d + 1)
     thrust = rng.normal(size=(rows, 6 * d))
     thrust[:4, 3 * d :] = 0.0
     thrust[9 :: d + 1] = 0.0
     constant = rng.uniform(1.0, 3.0, rows)
+    constant[8] = 90.0
     return constant, thrust
 
 
@@ -89,7 +91,24 @@ def test_thrust_and_weights_close_the_gap(d: int, blocks: int) -> None:
     weights = answer.weights[9:].reshape(blocks, d + 1)
     assert (np.linalg.norm(weights[:, 1:], axis=1) <= weights[:, 0]).all()
     assert (answer.weights[:9] >= 0.0).all()
+    # What the interior point leaves on a row that does not matter is no part of a proof.
+    assert answer.weights[8] == 0.0
     assert answer.weights[:9].sum() + weights[:, 0].sum() == pytest.approx(1.0, abs=1e-12)
+
+
+def test_weights_of_norm_limits_are_in_the_cone_in_exact_arithmetic() -> None:
+    pulls = np.random.default_rng(4).normal(size=(100, 3))
+    heads = np.linalg.norm(pulls, axis=1) * np.random.default_rng(5).choice([0.9, 1.0 - 1e-15, 1.0, 1.1], 100)
+    weights = np.column_stack([heads, pulls])
+    weights[:3] *= 1e-12
+    _into_cone(weights, 1e-10)
+    assert not weights[:3].any()
+    for head, *pull in weights.tolist():
+        assert sum(Fraction(e) ** 2 for e in pull) <= Fraction(head) ** 2
+    np.testing.assert_array_equal(weights[3:, 1:], pulls[3:])
+    np.testing.assert_allclose(
+        weights[3:, 0], np.maximum(heads, np.linalg.norm(pulls, axis=1))[3:], rtol=1e-13
+    )
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf])
@@ -101,14 +120,19 @@ def test_what_the_solver_cannot_do_gives_no_thrust(value: float) -> None:
     assert answer.status not in ("Solved", "AlmostSolved")
 
 
-def test_numbers_that_are_not_finite_give_no_thrust(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("part", ["value", "weights"])
+@pytest.mark.parametrize("number", [np.nan, np.inf])
+def test_numbers_that_are_not_finite_give_no_thrust(
+    part: str, number: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
     constant, thrust = drawn(2, 0)
-    value = cone_program.Found.value
+    given = getattr(cone_program.Found, part)
 
-    def broken(found: cone_program.Found, variable: str) -> np.ndarray:
-        out = value(found, variable)
-        out[0] = np.nan
+    def broken(found: cone_program.Found, name: str) -> np.ndarray:
+        out: np.ndarray = given(found, name)
+        out[0] = number
         return out
 
-    monkeypatch.setattr(cone_program.Found, "value", broken)
-    assert solve(constant, thrust, 0.1, 2).thrust is None
+    monkeypatch.setattr(cone_program.Found, part, broken)
+    answer = solve(constant, thrust, 0.1, 2)
+    assert (answer.thrust, answer.weights, answer.bound) == (None, None, np.inf)
