@@ -7,7 +7,7 @@ import { differing, exploreAddress, findings, outcome } from "../../service/safe
 import { columnsOf, each, flat, tablesOf } from "../../service/safestart_service/static/logic/tables.js";
 import { readTrade, tradeExplore } from "../../service/safestart_service/static/logic/trade.js";
 
-const FINDINGS = { kind: "findings", table: "windows.findings", word: "findings.verdict", good: ["SAFE"], bad: ["UNSAFE"] };
+const FINDINGS = { kind: "findings", table: "windows.findings", word: "findings.verdict", good: ["SAFE"], bad: ["UNSAFE"], basis: "", unproved: [] };
 const found = (...verdicts) => ({ windows: [{ abort_window_min: [0, 240], run_s: 1, findings: verdicts.map((verdict, k) => ({ requirement: `r${k}`, verdict, counter_example: verdict === "UNSAFE" ? { x_m: -900 } : null })) }] });
 
 test("a row holds the scalars of inner objects and short vectors", () => {
@@ -37,12 +37,19 @@ test("a path leads to every entry, under its name", () => {
 
 test("the worst finding is the result's verdict", () => {
   const of = (...verdicts) => outcome([FINDINGS], tablesOf(found(...verdicts)));
-  assert.deepEqual(of("SAFE", "SAFE"), { word: "SAFE", sense: "good", count: 2, of: 2 });
-  assert.deepEqual(of("SAFE", "UNKNOWN", "SAFE"), { word: "UNKNOWN", sense: "open", count: 1, of: 3 });
-  assert.deepEqual(of("SAFE", "UNKNOWN", "UNSAFE"), { word: "UNSAFE", sense: "bad", count: 1, of: 3 });
-  assert.deepEqual(of("SURE"), { word: "SURE", sense: "open", count: 1, of: 1 }, "a word that nobody knows is no good news");
+  assert.deepEqual(of("SAFE", "SAFE"), { word: "SAFE", sense: "good", basis: null, count: 2, of: 2 });
+  assert.deepEqual(of("SAFE", "UNKNOWN", "SAFE"), { word: "UNKNOWN", sense: "open", basis: null, count: 1, of: 3 });
+  assert.deepEqual(of("SAFE", "UNKNOWN", "UNSAFE"), { word: "UNSAFE", sense: "bad", basis: null, count: 1, of: 3 });
+  assert.deepEqual(of("SURE"), { word: "SURE", sense: "open", basis: null, count: 1, of: 1 }, "a word that nobody knows is no good news");
   assert.equal(outcome([], tablesOf(found("SAFE"))), null);
   assert.equal(outcome([FINDINGS], tablesOf({ windows: [] })), null);
+});
+
+test("what rests on no proof is shown as a claim, and the worst of it still first", () => {
+  const view = { ...FINDINGS, table: "states", word: "verdict", good: ["GO"], bad: ["NO_GO"], basis: "method", unproved: ["closed_form"] };
+  const of = (method) => outcome([view], tablesOf({ method, verdict: ["GO", "NO_GO"] }, [{ name: "states", columns: ["verdict"], axes: [] }]));
+  assert.deepEqual(of("closed_form"), { word: "NO_GO", sense: "open", basis: "closed_form", count: 1, of: 2 });
+  assert.deepEqual(of("exact"), { word: "NO_GO", sense: "bad", basis: null, count: 1, of: 2 });
 });
 
 test("findings come worst first", () => {

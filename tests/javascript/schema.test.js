@@ -22,6 +22,7 @@ test("bounds are written as people write them", () => {
   assert.equal(bounds({ minimum: 5e-324, maximum: 100 }), "(> 0, ≤ 100)");
   assert.equal(bounds({ minimum: 0.00010000000000000002 }), "(> 0.0001)");
   assert.equal(bounds({ minimum: 0, maximum: 0.0013, multipleOf: 2, maxItems: 3 }), "(≥ 0, ≤ 0.0013, a multiple of 2, at most 3)");
+  assert.equal(bounds({ maximum: 2 ** 63 }), "(≤ 9223372036854776000)");
   assert.equal(bounds({ exclusiveMinimum: 0 }), "(> 0)");
   assert.equal(bounds({}), "");
 });

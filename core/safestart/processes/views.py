@@ -24,7 +24,8 @@ class Column:
 class Findings:
     """Statements, each with a verdict in one word: they head the page, and the worst of them is the result's verdict.
 
-    ``word`` is the column of the verdict. A word that is neither ``good`` nor ``bad`` decides nothing.
+    ``word`` is the column of the verdict. A word that is neither ``good`` nor ``bad`` decides nothing. ``basis`` is the
+    output that says what the verdicts rest on; where it is one of ``unproved``, they are shown as claims without proof.
     """
 
     kind: ClassVar[str] = "findings"
@@ -34,6 +35,8 @@ class Findings:
     columns: tuple[Column, ...] = ()
     good: tuple[str, ...] = ("GO", "SAFE", "HELD")
     bad: tuple[str, ...] = ("NO_GO", "UNSAFE", "BROKEN")
+    basis: str = ""
+    unproved: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.go_no_go.method_registry import MethodName
 from safestart.processes.go_no_go.question_fields import QuestionFields, QuestionKind
 from safestart.processes.go_no_go.uncertainty import Member
-from safestart.processes.views import Column, Findings
+from safestart.processes.views import Column, Facts, Findings
 from safestart.processes.wire import ScenarioInput
 
 MAX_STATES = 100_000
@@ -107,6 +107,18 @@ SPEC = ProcessSpec(
                 Column("faces violated at the start", "violated_faces"),
                 Column("at rest after [s]", "end_s"),
             ),
+            basis="method",
+            unproved=("closed_form",),
+        ),
+        Facts(
+            (
+                Column("Method", "method"),
+                Column("Question", "question"),
+                Column("At rest in", "rest"),
+                Column("Synchronization radius [m]", "r_sync_m"),
+                Column("Why there is none", "r_sync_reason"),
+                Column("Faces", "faces"),
+            )
         ),
     ),
     keywords=("certificate", "go/no-go"),

@@ -5,9 +5,19 @@ const SENSES = ["bad", "open", "good"];
 /** The sense of a verdict's word in a view of findings: "good", "bad", or "open" where it decides nothing. */
 export const sense = ({ good, bad }, word) => (bad.includes(word) ? "bad" : good.includes(word) ? "good" : "open");
 
-/** The findings of a view, worst first: rows with their word and its sense. Within a sense they keep their order. */
+/** What the verdicts of a view rest on where that is no proof, null otherwise. */
+export function claim({ basis, unproved }, tables) {
+  const found = basis ? tables[""][0][basis] : null;
+  return unproved.includes(found) ? found : null;
+}
+
+/**
+ * The findings of a view, worst first: rows with their word, its sense, and `shown`, the sense it is shown in, which is
+ * "open" for what rests on no proof. Within a sense they keep their order.
+ */
 export const findings = (view, tables) => (tables[view.table] ?? []).map((row) => ({ row, word: row[view.word], sense: sense(view, row[view.word]) }))
   .filter(({ word }) => word !== null && word !== undefined)
+  .map((found) => ({ ...found, basis: claim(view, tables), shown: claim(view, tables) === null ? found.sense : "open" }))
   .sort((one, two) => SENSES.indexOf(one.sense) - SENSES.indexOf(two.sense));
 
 /** A result's verdict: the worst word of its findings, and how many say so; null where a process has no findings. */
@@ -16,7 +26,7 @@ export function outcome(views, tables) {
   if (!all.length) return null;
   const worst = SENSES.find((one) => all.some((found) => found.sense === one));
   const so = all.filter((found) => found.sense === worst);
-  return { word: so[0].word, sense: worst, count: so.length, of: all.length };
+  return { word: so[0].word, sense: so[0].shown, basis: so[0].basis, count: so.length, of: all.length };
 }
 
 /** The address at which Explore asks about a start of a result, as it was asked there: corridor, orbit and time with it. */

@@ -22,7 +22,7 @@ export function resolve(schema, whole) {
 function bound(value, sign, strict) {
   if (Math.abs(value) < 1e-300) return value === 0 ? `${sign} 0` : `${strict} 0`;
   const plain = Number(value.toPrecision(12));
-  return plain === value ? `${sign} ${value}` : `${strict} ${plain}`;
+  return Math.abs(plain - value) > 1e-15 * Math.abs(value) || plain === value ? `${sign} ${value}` : `${strict} ${plain}`;
 }
 
 /** Bounds of a number or list in words, "" without. */

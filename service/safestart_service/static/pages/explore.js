@@ -78,7 +78,9 @@ const stored = store.panel({
 // ---- what they show
 
 function redraw() {
-  const values = given(store.inputs), panels = [certified, region];
+  const values = given(store.inputs), old = certified.old !== null || region.old !== null;
+  // While the next answer is on its way, the picture before stands there greyed: at once, and drawn only once.
+  map.classList.toggle("old", old && values !== null);
   map.dataset.digest = certified.state === "there" ? certified.digest : "";
   map.dataset.proved = region.state === "there" ? region.digest : "";
   if (values === null) {
@@ -86,11 +88,8 @@ function redraw() {
     return showMapState();
   }
   map.hidden = false;
-  const waits = panels.some((panel) => panel.state === "asking"), old = panels.some((panel) => panel.old !== null);
-  // While the next answer is on its way, the picture before stands there greyed: at once, and drawn only once.
-  map.classList.toggle("old", old);
   showMapState();
-  if (old && waits && certified.state === "asking") return undefined;
+  if (old && certified.state === "asking") return undefined;
   map.classList.remove("old");
   const inOrbit = $("frame").value === "lvlh" && flight.data !== null;
   const done = drawMap(map, {

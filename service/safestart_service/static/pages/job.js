@@ -103,7 +103,8 @@ async function partial(signal) {
     const { shards, outputs } = await get(`/jobs/${id}/partial`, { signal });
     const spec = await description(job.processID);
     if (signal.aborted || !outputs) return;
-    $("results").replaceChildren(el("h2", {}, `So far: ${shards.done} of ${shards.total} parts`), ...shown(known(spec, outputs, job.inputs)).parts);
+    const { head, parts } = shown(known(spec, outputs, job.inputs));
+    $("results").replaceChildren(el("h2", {}, `So far: ${shards.done} of ${shards.total} parts`), ...head, ...parts);
   } catch {
     // Nothing yet, or the service is away, of which the stream tells.
   }

@@ -74,8 +74,8 @@ function showAnswer({ state, answer, error, question }) {
   } else if (state === "asking") loading(place, "Running");
   else if (state === "none") place.replaceChildren();
   else {
-    const result = known(answer.spec, answer.outputs, question.inputs), { parts } = shown(result);
-    place.replaceChildren(el("h2", {}, "Answer ", verdictBadge(result) ?? ""), ...parts, ...rest(result),
+    const result = known(answer.spec, answer.outputs, question.inputs), { head, parts } = shown(result);
+    place.replaceChildren(el("h2", {}, "Answer ", verdictBadge(result) ?? ""), ...head, ...parts, ...rest(result),
       el("details", {}, el("summary", {}, "The answer as JSON"), el("pre", { tabindex: "0" }, text(answer.outputs))));
   }
 }

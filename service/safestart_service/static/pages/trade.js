@@ -61,7 +61,7 @@ function figures(found, inputs) {
     table(rows, [["tumble rate [deg/s]", (r) => r.rate], ["required thrust [m/s²]", (r) => r.needed], ["", explore]], "Required thrust"),
     el("div", { class: "tools" }, el("button", {
       type: "button", class: "plain", onclick: () => save("required-thrust.csv", csv([["omega_t_deg_s", "required_a_max_m_s2"], ...rows.map((r) => [r.rate, r.needed])])),
-    }, "CSV"), saveButtons($("map"), "trade-study", el)));
+    }, "CSV"), saveButtons($("map"), "trade", el)));
 }
 
 $("controls").addEventListener("input", () => {

@@ -18,7 +18,7 @@ export function draw(place, traces, layout = {}, config = {}) {
   drawn.set(place, [traces, layout, config]);
   const { ink, soft, line, card } = theme();
   const axis = { gridcolor: line, zerolinecolor: line, linecolor: line, tickcolor: line, automargin: true };
-  const title = layout.title && { font: { size: 12 }, x: 0, xref: "paper", xanchor: "left", y: 1, yref: "container", yanchor: "top", pad: { t: 8 }, ...layout.title, text: lines(layout.title.text, (place.clientWidth - 64) / 6.3) };
+  const title = layout.title && { font: { size: 12 }, x: 0, xref: "paper", xanchor: "left", y: 1, yref: "paper", yanchor: "bottom", pad: { b: 8 }, ...layout.title, text: lines(layout.title.text, (place.clientWidth - 64) / 6.3) };
   const rows = layout.legend ? 0 : Math.ceil(traces.filter((trace) => trace.name && trace.showlegend !== false).length / Math.max(1, Math.floor((place.clientWidth - 64) / 190)));
   const whole = {
     paper_bgcolor: card, plot_bgcolor: card, font: { color: ink, size: 12, family: "system-ui, sans-serif" }, hoverlabel: { font: { size: 12 } },

@@ -78,7 +78,8 @@ export const definition = (name, value) => el("div", {}, el("dt", {}, name), el(
 
 /** A table: columns of [title, function of the row]; numbers to the right. */
 export function table(rows, columns, label) {
-  const head = el("tr", {}, ...columns.map(([title]) => el("th", { scope: "col" }, title)));
+  const isNumber = (of) => rows.some((row) => typeof of(row) === "number");
+  const head = el("tr", {}, ...columns.map(([title, of]) => el("th", { scope: "col", class: isNumber(of) ? "number" : null }, title)));
   const body = rows.map((row) => el("tr", {}, ...columns.map(([, of]) => {
     const value = of(row);
     if (value instanceof Node) return el("td", {}, value);

@@ -17,16 +17,16 @@ export const known = (spec, outputs, inputs, { artifacts = [], job = null } = {}
 export function verdictBadge({ spec, tables }) {
   const found = outcome(spec["safestart:views"], tables);
   if (found === null) return null;
-  const many = found.of > 1 ? ` (${found.count} of ${found.of})` : "";
-  return badge("verdict", found.word.replace("_", " ") + many, found.sense);
+  const many = found.of > 1 ? ` (${found.count} of ${found.of})` : "", claimed = found.basis === null ? "" : `, ${found.basis.replace("_", " ")}, no proof`;
+  return badge("verdict", found.word.replace("_", " ") + many + claimed, found.sense);
 }
 
 /** Put the result of a job into its place. */
 export async function results(place, job, spec, call) {
   const document = await (await call(`/jobs/${job.jobID}/results`)).json();
   const result = known(spec, document.outputs, document.inputs, { artifacts: document.artifacts, job: job.jobID });
-  const { parts, draws } = shown(result);
-  parts.push(...pictures(call, job.processID, document.artifacts), ...rest(result));
+  const { head, parts: views, draws } = shown(result);
+  const parts = [...head, ...pictures(call, job.processID, document.artifacts), ...views, ...rest(result)];
   parts.push(el("h2", { class: "on-screen" }, "Downloads"), el("ul", { class: "files" },
     el("li", {}, download(call, `${root}/jobs/${job.jobID}/results`, `${job.processID}-${job.jobID.slice(0, 8)}.json`, "result document")),
     ...document.artifacts.map((file) => el("li", {}, download(call, file.href, file.name, `${file.name} (${file.media_type}, ${Math.ceil(file.size / 1024)} KiB)`))),
@@ -54,8 +54,8 @@ export function rest({ spec, outputs, tables }) {
   const declared = new Set(spec["safestart:tables"].flatMap(({ columns, axes }) => [...columns, ...axes]));
   for (const [name, value] of Object.entries(outputs)) {
     if (seen.has(name) || declared.has(name)) continue;
-    if (Array.isArray(value) && value.length && value.every((item) => typeof item === "string")) parts.push(...value.map((item) => el("p", { class: "note" }, item)));
-    else if (value === null || typeof value !== "object") figures.push([name, value]);
+    if (Array.isArray(value) && value.length && value.every((item) => typeof item === "string" && item.includes(" "))) parts.push(...value.map((item) => el("p", { class: "note" }, item)));
+    else if (value === null || typeof value !== "object" || name in tables[""][0]) figures.push([name, tables[""][0][name]]);
     else if (tables[name]) parts.push(el("h3", {}, name), ...listed(tables[name], columnsOf(tables[name]).map((key) => [key, (row) => row[key]]), name, name));
     else if (Object.keys(tables[""][0]).some((key) => key.startsWith(`${name}.`))) figures.push(...Object.entries(tables[""][0]).filter(([key]) => key.startsWith(`${name}.`)));
     else if (!Array.isArray(value) || value.length) arrays.push(name);

@@ -10,22 +10,27 @@ import { definition, el, save, table } from "./page.js";
 
 /** Rows shown at most; the download has all of them. */
 const MOST_ROWS = 500;
+const SHORT = 12;
 
 /**
- * Elements and pictures of a result by its views: `{ parts, draws }`. `result` is `{ spec, names, outputs, tables, inputs,
+ * Elements and pictures of a result by its views: `{ head, parts, draws }`, `head` being what stands before any picture.
+ * `result` is `{ spec, names, outputs, tables, inputs,
  * artifacts, job }`; `draws` are to be called once the parts are on the page.
  */
 export function shown(result) {
-  const parts = [], draws = [];
-  for (const view of result.spec["safestart:views"]) KINDS[view.kind]?.(view, result, parts, draws);
-  return { parts, draws };
+  const head = [], parts = [], draws = [], views = result.spec["safestart:views"], from = views.findIndex((view) => isLong(view, result));
+  views.forEach((view, k) => KINDS[view.kind]?.(view, result, from < 0 || k < from ? head : parts, draws));
+  return { head, parts, draws };
 }
+
+/** Whether a view takes much room: the pictures stand before the first one that does. */
+const isLong = ({ kind, table: name }, { tables }) => ["overlay", "flights"].includes(kind) || (kind === "rows" && (tables[name] ?? []).length > SHORT);
 
 const KINDS = {
   findings(view, { tables, names }, parts) {
     const all = findings(view, tables);
     if (!all.length) return;
-    const word = (found) => el("b", { class: `word ${found.sense}` }, found.word.replace("_", " "));
+    const word = (found) => el("b", { class: `word ${found.shown}` }, found.word.replace("_", " "));
     const columns = used(view.columns, all.map(({ row }) => row), names);
     parts.push(el("h2", {}, view.title), table(all, [["verdict", word], ...columns.map(([title, of]) => [title, (found) => of(found.row)])], view.title));
   },
