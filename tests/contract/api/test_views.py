@@ -12,8 +12,8 @@ import pytest
 from pydantic import BaseModel
 
 import safestart_service
+from safestart.engines.registry import ENGINES
 from safestart.processes.base import ProcessSpec
-from safestart.processes.benchmark.spec import ENGINES
 from safestart.processes.registry import PROCESS_IDS, process
 from safestart.processes.views import Comparison, Facts, Findings, Flights, Matrices, Overlay, Rows
 from tests.contract.api.service_client import service
@@ -91,7 +91,7 @@ def test_every_view_shows_what_the_outputs_have(name: str) -> None:
             case Overlay():
                 for path in (view.by, "cells"):
                     check_column(spec, view.table, path)
-                assert view.certain in {engine.name for engine in spec.engines}
+                assert view.certain in set(ENGINES)
             case Flights():
                 case_model = follow(spec.outputs, f"{view.path}.*.*")
                 for column in view.columns:
@@ -112,6 +112,7 @@ def test_a_description_carries_views_tables_and_engines(tmp_path: Path) -> None:
         "name": "analytical",
         "title": "certificate (closed form)",
         "colour": "#009E73",
+        "summary": ENGINES["analytical"].summary,
     }
     assert [view["kind"] for view in found["safestart:views"]] == [
         "facts",
@@ -122,7 +123,7 @@ def test_a_description_carries_views_tables_and_engines(tmp_path: Path) -> None:
     ]
     assert kinds["benchmark"] == found["safestart:view_kinds"]
     assert passive["safestart:views"][0]["kind"] == "findings"
-    assert passive["safestart:engines"] == []
+    assert "safestart:engines" not in passive
     tables = process("safe-region").tables
     assert [one.name for one in tables] == ["inner_polygon_m", "outer_polygon_m"]
 
@@ -141,6 +142,6 @@ def test_javascript_names_no_process() -> None:
 
 def test_the_maps_colours_are_the_engines() -> None:
     style = (STATIC / "safestart.css").read_text()
-    colours = {engine.name: engine.colour for engine in ENGINES}
+    colours = {name: spec.screen_colour or spec.colour for name, spec in ENGINES.items()}
     assert f"--certified: {colours['analytical']};" in style
     assert f"--exact: {colours['exact']};" in style
