@@ -18,6 +18,12 @@ lint:
     python3 -m uv run --all-packages python tools/openapi.py check
     python3 -m uv run --all-packages python tools/settings_page.py check
 
+# the pages' scripts: lint and unit tests (needs node)
+pages:
+    npm install --silent
+    npm run --silent lint
+    npm test --silent
+
 # every engine beside its peer
 bench:
     python3 -m uv run --all-packages safestart bench

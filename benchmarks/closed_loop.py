@@ -20,7 +20,7 @@ from safestart.engines.monte_carlo import MonteCarlo
 from safestart.model.scenario import Rest, Scenario
 from safestart.runtime.progress import Context
 from safestart.simulation.compiled_loop import fly
-from safestart.simulation.trajectory import start_states
+from safestart.simulation.starts import start_states
 
 RATES_DEG_S = (1.0, 3.0)
 CELLS = 12
@@ -36,7 +36,7 @@ def measure(runs: int = 7) -> dict[str, dict[str, float]]:
         plan = flight_plan(scenario, TUNED, problem.dt, 30)
         starts = start_states(scenario, problem.points()[problem.inside()], Rest.LVLH)
         flights = fly(plan, starts)
-        clean = np.flatnonzero(flights.safe & (flights.infeasible == 0))
+        clean = np.flatnonzero(flights.safe & (flights.fallbacks == 0))
         starts = starts[clean[:: max(1, len(clean) // CELLS)]]
         steps = int(fly(plan, starts).steps.sum())
         peer = OsqpLoop(scenario, TUNED, problem.dt, 30)

@@ -17,9 +17,9 @@ import numpy as np
 from benchmarks.peers.hj_avoid_game import peer_tube
 from safestart.collision_avoidance.bounds.certified import lower, unavoidable, upper
 from safestart.collision_avoidance.game import Game, Players
-from safestart.collision_avoidance.inputs import InputSet
 from safestart.collision_avoidance.tube import solve_tube
 from safestart.collision_avoidance.tube_settings import TubeSettings
+from safestart.constraints.thrust import InputSet
 from safestart.levelset import optimal_inputs
 from safestart.model.scenario import Floats
 

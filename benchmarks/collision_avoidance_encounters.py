@@ -13,16 +13,18 @@ import time
 import numpy as np
 
 from safestart.collision_avoidance.encounters.adversary import ADVERSARIES, adversary
-from safestart.collision_avoidance.encounters.encounter import Clock, fly
-from safestart.collision_avoidance.encounters.feedback import Slot
+from safestart.collision_avoidance.encounters.clock import Clock
+from safestart.collision_avoidance.encounters.encounter import fly
+from safestart.collision_avoidance.encounters.encounter import lost as breached
 from safestart.collision_avoidance.encounters.observation import Sight
 from safestart.collision_avoidance.encounters.pilots import PILOTS, pilot
+from safestart.collision_avoidance.encounters.slot import Slot
 from safestart.collision_avoidance.encounters.starts import certified_unsafe, near_boundary
 from safestart.collision_avoidance.encounters.supervisor import Guards, Supervisor
 from safestart.collision_avoidance.game import Game
-from safestart.collision_avoidance.inputs import InputSet
 from safestart.collision_avoidance.tube import solve_tube
 from safestart.collision_avoidance.tube_settings import TubeSettings
+from safestart.constraints.thrust import InputSet
 from safestart.model.metrics import wilson
 from safestart.runtime.progress import Context
 
@@ -45,19 +47,20 @@ def study(count: int) -> int:
                 begin = time.process_time()
                 opponent = adversary(other, GAME, HORIZON_S, count, SEED + 2, 10)
                 supervised = name == "supervisor"
+                clock = Clock(1.0, HORIZON_S, supervised)
                 flier = (
-                    Supervisor(sight, slot, Guards(error, 10.0), 1.0)
+                    Supervisor(sight, slot, Guards(error, 10.0), clock)
                     if supervised
-                    else pilot(name, GAME, slot)
+                    else pilot(name, sight, clock, slot)
                 )
-                flights = fly(sight, starts, flier, opponent, Clock(1.0, HORIZON_S, supervised))
-                lost = int(flights.lost(GAME.keep_out_m).sum())
-                beyond = int(flights.lost(GAME.keep_out_m - error).sum())
+                flights = fly(sight, starts, flier, opponent, clock)
+                lost = int(breached(flights, GAME.keep_out_m).sum())
+                beyond = int(breached(flights, GAME.keep_out_m - error).sum())
                 low, high = wilson(lost, count) or (0.0, 1.0)
                 print(
                     f"{kind:8} {name:10} {other:8} lost {lost:6} [{100 * low:.3f}, {100 * high:.3f}] %, "
-                    f"beyond the error {beyond:6}, least {flights.separation_m.min():7.2f} m, "
-                    f"{np.mean(flights.delta_v_m_s):5.2f} m/s, {time.process_time() - begin:.1f} s",
+                    f"beyond the error {beyond:6}, least {flights.margin.min():7.2f} m, "
+                    f"{np.mean(flights.delta_v):5.2f} m/s, {time.process_time() - begin:.1f} s",
                     flush=True,
                 )
                 failed |= kind == "outside" and name == "certified" and beyond > 0

@@ -75,6 +75,7 @@ def _run() -> dict[str, dict[str, float]]:
     from safestart.engines.base import Problem
     from safestart.engines.hj.domain import count_steps, size_domain
     from safestart.engines.hj.fused import FusedSolver
+    from safestart.engines.hj.options import HamiltonJacobiInput
     from safestart.engines.hj.peer import PeerSolver
     from safestart.engines.hj.settings import Settings
     from safestart.engines.hj.target import TargetValues
@@ -84,10 +85,10 @@ def _run() -> dict[str, dict[str, float]]:
     ratios: dict[str, float] = {}
     times = {"triad_bytes_per_s": bandwidth, "multiply_add_flops_per_s": peak}
     for accuracy, (stages, work) in SCHEMES.items():
-        options = {"hamilton_jacobi": {"accuracy": accuracy, "frame": "body"}}
-        problem = Problem(Scenario.of(3.0, 0.1), horizon=SPAN, kind=SetKind.TUBE, options=options)
-        settings = Settings.of(problem)
-        domain = size_domain(problem, settings)
+        options = HamiltonJacobiInput.model_validate({"accuracy": accuracy, "frame": "body"})
+        problem = Problem(Scenario.of(3.0, 0.1), horizon=SPAN, kind=SetKind.TUBE)
+        settings = Settings.of(problem, options)
+        domain = size_domain(problem, settings.frame)
         steps, courant = count_steps(problem, domain, settings)
         terminal = TargetValues.of(problem, domain, settings).terminal
         kinds = (FusedSolver, PeerSolver)

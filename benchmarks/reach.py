@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from statistics import median
 
 from benchmarks.peers.highs_lp import slack_map
@@ -13,6 +12,7 @@ from safestart.engines.base import Engine, Problem
 from safestart.engines.exact import Exact
 from safestart.engines.forward import Forward
 from safestart.engines.hamilton_jacobi import HamiltonJacobi
+from safestart.engines.hj.options import HamiltonJacobiInput
 from safestart.model.scenario import Scenario, SetKind
 from safestart.runtime.progress import Context
 
@@ -28,11 +28,10 @@ def measure() -> dict[str, dict[str, float]]:
     fixed = Problem(Scenario.of(RATE_DEG_S, THRUST))
     cells = fixed.grid.nx * fixed.grid.ny
     # The paper's formulation (body frame), and the same solver in LVLH, the faster of the two.
-    theirs = {"solver": "hj_reachability"}
-    turning = replace(tube, options={"hamilton_jacobi": theirs | {"frame": "body"}})
-    exact, hj = _beside(Exact(), tube, lambda: _run(HamiltonJacobi(), turning))
-    still = replace(tube, options={"hamilton_jacobi": theirs})
-    _, hj_lvlh = _beside(Exact(), tube, lambda: _run(HamiltonJacobi(), still))
+    theirs = HamiltonJacobiInput(accuracy="low", solver="hj_reachability", frame="body")
+    exact, hj = _beside(Exact(), tube, lambda: _run(HamiltonJacobi(theirs), tube))
+    lvlh = theirs.model_copy(update={"frame": "lvlh"})
+    _, hj_lvlh = _beside(Exact(), tube, lambda: _run(HamiltonJacobi(lvlh), tube))
     backward, programs = _beside(Backward(), fixed, lambda: once(lambda: slack_map(fixed)))
     part = slice(0, LITERAL_CELLS)
     forward, literal = _beside(

@@ -31,8 +31,8 @@ from safestart.processes.registry import process
 from safestart.records.comparable import comparable
 from safestart.runtime.progress import Context
 from safestart.simulation.compiled_loop import fly
-from safestart.simulation.trajectory import start_states
-from safestart.simulation.truth import CONTINUOUS, Truth
+from safestart.simulation.noise import CONTINUOUS, Truth
+from safestart.simulation.starts import start_states
 from tests.waiting import until
 
 FILTER: dict[str, Any] = {"controllers": ["filter"], "certificates": ["closed_form"]}
@@ -60,7 +60,7 @@ def measure(runs: int = 5) -> dict[str, dict[str, float]]:
     starts = start_states(scenario, points, Rest.LVLH)
     plan = flight_plan(scenario, TUNED, 2.0, 30)
     flights = fly(plan, starts, TRUTH)
-    clean = starts[np.flatnonzero(flights.safe & (flights.infeasible == 0))[:10]]
+    clean = starts[np.flatnonzero(flights.safe & (flights.fallbacks == 0))[:10]]
     peer, many = OsqpLoop(scenario, TUNED, 2.0, 30), np.tile(clean, (200, 1))
     steps = 30 * len(clean)
     own, other = side_by_side(lambda: fly(plan, many, TRUTH), lambda: peer.fly_all(clean), runs)

@@ -29,7 +29,8 @@ without_engine() {
     bin=$work/worker/env/bin
     "$bin/safestart" worker --help >/dev/null
     "$bin/dask" scheduler --help >/dev/null
-    "$bin/python" -c "import jax, numba, psycopg, safestart_worker.loop"
+    "$bin/python" -c "import numba, psycopg, safestart_worker.loop"
+    "$bin/python" -c "$no_jax"
     if [ -n "$client" ]; then $client -f docker/compose.yaml config --quiet
     else echo "check: no compose client here, the compose file is only parsed by the tests"; fi
 }
@@ -67,6 +68,10 @@ no_engines='
 import importlib.util as found
 held = [name for name in ("jax", "numba", "dask", "distributed", "safestart_worker") if found.find_spec(name)]
 raise SystemExit(f"the service image would hold {held}" if held else 0)'
+
+no_jax='
+import importlib.util as found
+raise SystemExit("the worker would hold JAX" if found.find_spec("jax") else 0)'
 
 if [ "${1:-}" = --engine ]; then with_engine; else without_engine; fi
 echo "check: docker files are sound"

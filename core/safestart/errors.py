@@ -93,6 +93,13 @@ class JobFailed(NotFound):
     title = "The job failed"
 
 
+class UnfitResult(SafestartError):
+    """A result that is not what its process describes: it is not kept."""
+
+    slug = "unfit-result"
+    title = "The result does not fit its description"
+
+
 class Unavailable(SafestartError):
     """Something this request needs (database, optional package, port) is not there."""
 

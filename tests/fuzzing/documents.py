@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from safestart.certificates.disturbed.prove import proof_against
+from safestart.disturbance.prove import proof_against
 from safestart.disturbance.tube import Disturbance, decide_disturbed, tube_of
 from safestart.exact.decide import decide
 from safestart.exact.prove import proof_of
@@ -22,9 +22,9 @@ from safestart.families.decide import decide_for_all
 from safestart.families.members import Family
 from safestart.families.prove import proof_for_all
 from safestart.model.scenario import Chaser, CorridorShape, Scenario, Target
-from safestart.plain_json import loads
 from safestart.proofs.checker import check
 from safestart.proofs.statement import ProofRejected, digest_of
+from safestart.runtime.plain_json import loads
 from tests.fuzzing.decided import truth
 from tests.fuzzing.disturbed import truth_against
 from tests.fuzzing.mutants import known_fields, mutants, paths

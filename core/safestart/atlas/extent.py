@@ -16,7 +16,8 @@ import numpy as np
 
 from safestart.exact.watch import Watch
 from safestart.model.scenario import Floats
-from safestart.optim.conic import bound, into_disk, solver_settings
+from safestart.optim.cone_program import ConeProgram
+from safestart.optim.thrust_ball import bound, into_balls, keep_in_balls
 
 CLEARANCE = 1e-3
 """Distance (m) that the witness of a farthest start keeps, so that its proof does not hang on the last digit."""
@@ -107,36 +108,21 @@ class Extent:
         """Start, thrust inside the disk, the common margin asked for or found, the rows' weights, and by the dual how
         far along ``direction`` any start with margin 0 lies (m).
         """
-        import clarabel
-        from scipy.sparse import csc_array
-
-        rows, columns = thrust.shape
-        count = columns // 2
-        free = direction is None
-        size = rows + 1 + 3 * count
-        a = np.zeros((size, columns + 2 + free))
-        b = np.zeros(size)
-        a[:rows, :columns], a[:rows, columns : columns + 2] = -self.a_max * thrust, -start
-        b[:rows] = offset if free else offset - CLEARANCE
-        a[rows, columns + 1], b[rows] = 1.0, self.y_max
-        cones = rows + 1 + 3 * np.arange(count)
-        b[cones] = 1.0
-        for axis in (0, 1):
-            a[cones + 1 + axis, 2 * np.arange(count) + axis] = -1.0
-        cost = np.zeros(columns + 2 + free)
-        if direction is None:
-            a[:rows, -1], cost[-1] = 1.0, -1.0
-        else:
-            cost[columns : columns + 2] = -direction
-        kinds = [clarabel.NonnegativeConeT(rows + 1), *[clarabel.SecondOrderConeT(3)] * count]
-        none = csc_array((len(cost), len(cost)))
-        found = clarabel.DefaultSolver(none, cost, csc_array(a), b, kinds, solver_settings()).solve()
-        status = str(found.status)
-        x, weights = np.array(found.x), np.maximum(np.array(found.z[:rows]), 0.0)
-        if status not in ("Solved", "AlmostSolved") or not (
-            np.isfinite(x).all() and np.isfinite(weights).all()
-        ):
-            raise NotSolved(f"the solver stopped with {status}")
-        used = self.a_max * into_disk(x[:columns].reshape(count, 2))
-        reach = bound(offset, thrust, weights, self.a_max, 2) + max(float(found.z[rows]), 0.0) * self.y_max
-        return x[columns : columns + 2], used, float(x[-1]) if free else CLEARANCE, weights, reach
+        count = thrust.shape[1] // 2
+        free = {"margin": 1} if direction is None else {}
+        program = ConeProgram(thrust=2 * count, start=2, **free)
+        asked = {"margin": -1.0} if direction is None else {}
+        kept = offset if direction is None else offset - CLEARANCE
+        program.rows("faces", kept, thrust=self.a_max * thrust, start=start, **asked)
+        program.rows("cut", np.array([self.y_max]), start=np.array([[0.0, -1.0]]))
+        keep_in_balls(program, count, 2)
+        program.minimise(**(asked if direction is None else {"start": -direction}))
+        found = program.solve()
+        values = [found.value(name) for name in ("thrust", "start", *free)]
+        weights = np.maximum(found.weights("faces"), 0.0)
+        if not found.solved or not all(np.isfinite(part).all() for part in (*values, weights)):
+            raise NotSolved(f"the solver stopped with {found.status}")
+        used = self.a_max * into_balls(values[0].reshape(count, 2))
+        cut = max(float(found.weights("cut")[0]), 0.0)
+        reach = bound(offset, thrust, weights, self.a_max, 2) + cut * self.y_max
+        return values[1], used, float(values[2][0]) if free else CLEARANCE, weights, reach

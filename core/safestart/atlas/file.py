@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from safestart.atlas.atlas import Atlas
+from safestart.atlas.evidence import require_borne_out
 from safestart.atlas.extent import Ceiling, Witness
-from safestart.certificates.atlas_evidence import require_borne_out
 from safestart.errors import InvalidInput, invalid
 from safestart.exact.question import Question
 from safestart.model.scenario import Chaser, CorridorShape, Floats, Scenario, Target
@@ -70,7 +70,7 @@ def pack(atlas: Atlas) -> bytes:
 def unpack(data: bytes) -> Atlas:
     """The atlas that :func:`pack` wrote; raises ``InvalidInput`` for anything else.
 
-    What the file says of its evidence is computed again (:mod:`~safestart.certificates.atlas_evidence`): a margin, a
+    What the file says of its evidence is computed again (:mod:`~safestart.atlas.evidence`): a margin, a
     ceiling or an area that its thrusts and multipliers do not bear out is refused.
     """
     try:

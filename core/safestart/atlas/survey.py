@@ -14,18 +14,23 @@ from safestart.exact.decide import GUARD
 from safestart.exact.question import Question
 from safestart.exact.watch import watch_of
 from safestart.model.scenario import MAX_RANGE, Floats, number
+from safestart.runtime.progress import Context
 
 TOLERANCE = 0.005
 MOST_DIRECTIONS = 200
 
+_ALONE = Context()
+
 Evidence = tuple[Witness, Ceiling | None]
 
 
-def build(question: Question, y_max: float = 150.0, tolerance: float = TOLERANCE) -> Atlas:
+def build(
+    question: Question, y_max: float = 150.0, tolerance: float = TOLERANCE, context: Context = _ALONE
+) -> Atlas:
     """Build the atlas: directions are asked until the relative area gap is at most ``tolerance``.
 
     Raises ``InvalidInput`` for a question in 3-D or other than plain `stay`, for a tolerance outside (1e-4, 1] and a
-    cut below the hold plane.
+    cut below the hold plane, and ``Cancelled`` where ``context`` says so between two directions.
     """
     if question.dimensions != 2:
         raise invalid("dimensions", "2: an atlas is planar", question.dimensions)
@@ -40,6 +45,7 @@ def build(question: Question, y_max: float = 150.0, tolerance: float = TOLERANCE
     message, sandwich = "", None
 
     def oracle(direction: Floats) -> Support[Evidence]:
+        context.step(len(found), MOST_DIRECTIONS, "directions")
         witness, above, reach = extent.farthest(direction)
         bound = max(reach, float(direction @ witness.start))
         support = Support(direction, witness.start, bound, (witness, above))

@@ -10,7 +10,7 @@ import typer
 from rich.markup import escape
 
 from safestart.cli.console import Json, out, print_json
-from safestart.plain_json import loads
+from safestart.runtime.plain_json import loads
 
 _MOST_BYTES = 16 * 1024 * 1024
 
@@ -25,9 +25,9 @@ def register(app: typer.Typer) -> None:
     ) -> None:
         """Check a GO or NO_GO proof. Exit code 0: valid, 1: rejected, 2: unreadable."""
         # Ball arithmetic is loaded here and not with every command.
-        from safestart.certificates.wording import asked
         from safestart.proofs.checker import check
         from safestart.proofs.statement import ProofRejected
+        from safestart.proofs.wording import asked
 
         document = _load(proof)
         try:

@@ -73,16 +73,28 @@ def certify(scenario: Scenario, points: Floats, rest: Rest = Rest.LVLH) -> Certi
     if not np.isfinite(points).all():
         raise invalid("points", "finite coordinates in metres", "NaN or infinity")
     corridor = corridor_of(scenario.corridor, points.shape[-1])
-    slack = corridor.slack(points)
-    slack_rate = points @ rate_matrix(corridor, scenario, rest)
+    slack = corridor.offsets - rowwise(points, corridor.normals.T)
+    slack_rate = rowwise(points, rate_matrix(corridor, scenario, rest))
     erosion = np.minimum(slack_rate, 0.0) ** 2 / (2.0 * scenario.chaser.max_acceleration)
     face_margin = (slack - erosion) / corridor.lengths
     limit = range_limit(scenario, rest)
     range_margin = limit - np.sqrt((points * points).sum(axis=-1))
     margin = np.minimum(face_margin.min(axis=-1), range_margin)
     return Certificate(
-        corridor.faces, slack, slack_rate, erosion, face_margin, range_margin, limit, margin, margin > 0.0
+        corridor.names, slack, slack_rate, erosion, face_margin, range_margin, limit, margin, margin > 0.0
     )
+
+
+def rowwise(points: Floats, matrix: Floats) -> Floats:
+    """``points @ matrix`` with the same bits for a start alone (..., d) as for one among many.
+
+    BLAS multiplies a matrix of many rows with fused multiply-adds and a single row by another routine, without them:
+    the last bit differs, and next to zero the verdict. A single row is therefore multiplied as one of two.
+    """
+    rows = points.reshape(-1, points.shape[-1])
+    product = np.repeat(rows, 2, axis=0) @ matrix if len(rows) == 1 else rows @ matrix
+    found: Floats = product[: len(rows)].reshape(*points.shape[:-1], matrix.shape[-1])
+    return found
 
 
 def rate_matrix(corridor: Corridor, scenario: Scenario, rest: Rest) -> Floats:

@@ -11,8 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from safestart.collision_avoidance.capture_kernel import arrivals
-from safestart.collision_avoidance.encounters.feedback import Gains, Slot, command
+from safestart.collision_avoidance.encounters.slot import Slot
 from safestart.collision_avoidance.game import Game
+from safestart.control.pd import PdGains, pd_thrust
 from safestart.errors import invalid
 from safestart.levelset import Ball, Box, Lattice, Options, Solution, solve
 from safestart.levelset.dynamics import Aim, Rates
@@ -26,7 +27,7 @@ STEP = 0.5
 _TIME = 100.0
 
 
-def arrival_times(game: Game, slot: Slot, gains: Gains, states: Floats, horizon_s: float) -> Floats:
+def arrival_times(game: Game, slot: Slot, gains: PdGains, states: Floats, horizon_s: float) -> Floats:
     """First time (...) in s at which states (..., 4) are in the slot's box; inf where not within the horizon.
 
     No disturbance acts. Raises ``InvalidInput`` for a game that is not planar.
@@ -50,7 +51,7 @@ class ClosedLoop:
 
     game: Game
     slot: Slot
-    gains: Gains
+    gains: PdGains
     varies: bool = False
 
     @property
@@ -64,7 +65,8 @@ class ClosedLoop:
         axes = lattice.coordinates()
         a = self.game.matrix()
         drift = [[a[i, k] * axes[k] for k in range(4) if a[i, k] != 0.0] for i in range(4)]
-        u = command(np.stack(np.broadcast_arrays(*axes), axis=-1), self.slot, self.gains, self.game.control)
+        states = np.stack(np.broadcast_arrays(*axes), axis=-1)
+        u = pd_thrust(states, np.array(self.slot.centre), self.gains, self.game.control)
         for channel in range(2):
             pushed = u[..., channel]
             # Of a box every channel depends on its own position and speed alone.
@@ -82,7 +84,7 @@ class ClosedLoop:
 def level_set(
     game: Game,
     slot: Slot,
-    gains: Gains,
+    gains: PdGains,
     lattice: Lattice,
     horizon_s: float,
     options: Options,

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from safestart.model.scenario import Floats
+from safestart.runtime.kernels import compiled
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _rates(x, y, vx, vy, law):  # type: ignore[no-untyped-def]
     """Accelerations of eq. (5) under eqs. (8), (9), relative to the box's centre; ``law`` as in :func:`arrivals`."""
     w, disk, most_x, most_y = law[0], law[5], law[6], law[7]
@@ -25,7 +25,7 @@ def _rates(x, y, vx, vy, law):  # type: ignore[no-untyped-def]
     return ux - 2.0 * w * vy, uy + 2.0 * w * vx + 3.0 * w * w * y
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def arrivals(states: Floats, law: Floats, half: Floats, step: float, horizon: float, out: Floats) -> None:
     """``out`` (N,): first time (s) at which a state (N, 4) is in the box, looked at every ``step``; inf if never.
 

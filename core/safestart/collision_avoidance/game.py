@@ -1,6 +1,7 @@
 """The avoid game of paper 001: a chaser that keeps its distance, and one that wants to end it.
 
-Axes are the paper's: x tangential (along-track), y radial, z normal to the orbit, then their rates, eq. (4), (5):
+Axes are the paper's: x tangential (along-track), y radial, z normal to the orbit, then their rates. Controllers and
+records are in LVLH; ``Game.to_lvlh`` and its kin are the only place where one becomes the other. Eqs. (4) and (5):
 
     x'' = -2 w y' + u_x + d_x,   y'' = 2 w x' + 3 w^2 y + u_y + d_y,   z'' = -w^2 z + u_z + d_z.
 
@@ -20,7 +21,8 @@ from enum import StrEnum
 
 import numpy as np
 
-from safestart.collision_avoidance.inputs import InputSet, held_down, left_over
+from safestart.collision_avoidance.inputs import held_down, left_over
+from safestart.constraints.thrust import InputSet
 from safestart.dynamics.cwh import input_matrix, system_matrix, transition_matrix
 from safestart.errors import invalid
 from safestart.levelset import Ball, Box, Input, Linear
@@ -29,8 +31,8 @@ from safestart.model.scenario import MAX_MEAN_MOTION, Floats, number
 
 MAX_KEEP_OUT = 100_000.0
 
-# Positions of a game with m channels, as axes of safestart.dynamics.cwh (0 radial, 1 along-track, 2 normal).
-_AXES = {1: [2], 2: [1, 0], 3: [1, 0, 2]}
+# Positions of a game with m channels, as axes of LVLH (0 radial, 1 along-track, 2 normal).
+_AXES = {1: (2,), 2: (1, 0), 3: (1, 0, 2)}
 
 
 class Players(StrEnum):
@@ -83,6 +85,36 @@ class Game:
         """The sums to which the game comes down exactly, None where the two bounds differ."""
         return self.enforceable if self.realisable == self.enforceable else None
 
+    @property
+    def axes(self) -> tuple[int, ...]:
+        """The LVLH axes (0, 1, 2) of the channels, in order."""
+        return _AXES[self.channels]
+
+    def to_lvlh(self, states: Floats) -> Floats:
+        """States (..., 2 m) as LVLH has them, (..., 6): what the game does not know is 0."""
+        out = np.zeros((*states.shape[:-1], 6))
+        out[..., self._rows] = states
+        return out
+
+    def from_lvlh(self, states: Floats) -> Floats:
+        """LVLH states (..., 6) as the game has them, (..., 2 m)."""
+        # In C order: the order of the numbers in memory must not reach the products made of them.
+        return np.ascontiguousarray(states[..., self._rows])
+
+    def thrust_to_lvlh(self, inputs: Floats) -> Floats:
+        """Inputs (..., m) in LVLH axes, (..., 3)."""
+        out = np.zeros((*inputs.shape[:-1], 3))
+        out[..., self.axes] = inputs
+        return out
+
+    def thrust_from_lvlh(self, thrust: Floats) -> Floats:
+        """Thrust (..., 3) in LVLH axes by channel, (..., m)."""
+        return np.ascontiguousarray(thrust[..., self.axes])
+
+    @property
+    def _rows(self) -> list[int]:
+        return [*self.axes, *(axis + 3 for axis in self.axes)]
+
     def matrix(self) -> Floats:
         """A (2 m, 2 m) of eq. (5)."""
         return self._cut(system_matrix(self.mean_motion))
@@ -93,9 +125,7 @@ class Game:
 
     def held_input(self, tau: float) -> Floats:
         """What one unit of a constant input adds to the state after ``tau`` seconds, (2 m, m)."""
-        axes = _AXES[self.channels]
-        rows = [*axes, *(axis + 3 for axis in axes)]
-        held: Floats = input_matrix(self.mean_motion, tau)[np.ix_(rows, axes)]
+        held: Floats = input_matrix(self.mean_motion, tau)[np.ix_(self._rows, self.axes)]
         return held
 
     def motion(
@@ -138,9 +168,7 @@ class Game:
         )
 
     def _cut(self, full: Floats) -> Floats:
-        axes = _AXES[self.channels]
-        rows = [*axes, *(axis + 3 for axis in axes)]
-        cut: Floats = full[np.ix_(rows, rows)]
+        cut: Floats = full[np.ix_(self._rows, self._rows)]
         return cut
 
 

@@ -7,17 +7,15 @@ V >= max(V_plane, V_normal). Two small grids, of 4 and 2 axes, take the place of
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from safestart.collision_avoidance.bounds.certified import lower, upper
 from safestart.collision_avoidance.game import Game
-from safestart.collision_avoidance.tube import Answer, Tube, solve_tube
-from safestart.collision_avoidance.tube_settings import TubeSettings
+from safestart.collision_avoidance.tube import Answer, Tube
 from safestart.errors import invalid
 from safestart.model.scenario import Bools, Floats
-from safestart.runtime.progress import Context
 
 _PLANE, _NORMAL = [0, 1, 3, 4], [2, 5]
 
@@ -76,17 +74,3 @@ class SpaceTube:
         if states.ndim == 0 or states.shape[-1] != 6:
             raise invalid("states", "last axis of length 6", states.shape)
         return states[..., _PLANE], states[..., _NORMAL]
-
-
-def solve_space(
-    game: Game, horizon_s: float, settings: TubeSettings | None = None, context: Context | None = None
-) -> SpaceTube:
-    """Solve both games with the same settings; the normal one has nodes enough to take 4 times as many per axis.
-
-    Raises ``InvalidInput`` as :func:`~safestart.collision_avoidance.tube.solve_tube` does, and for a game in the plane.
-    """
-    settings, context = settings or TubeSettings(), context or Context()
-    plane = solve_tube(game.restricted(0, 2), horizon_s, settings, context.part(0.0, 0.95, 1.0, "plane"))
-    fine = replace(settings, shape=(4 * settings.shape[0], 4 * settings.shape[1]))
-    normal = solve_tube(game.restricted(2, 3), horizon_s, fine, context.part(0.95, 0.05, 1.0, "normal"))
-    return SpaceTube(game, plane, normal)

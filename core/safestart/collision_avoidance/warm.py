@@ -6,9 +6,9 @@ import numpy as np
 
 from safestart.collision_avoidance.bounds.certified import lower, upper
 from safestart.collision_avoidance.capture import arrival_times
-from safestart.collision_avoidance.encounters.feedback import RECOVERY, Slot
+from safestart.collision_avoidance.encounters.slot import RECOVERY, Slot
 from safestart.collision_avoidance.game import Game
-from safestart.collision_avoidance.inputs import InputSet
+from safestart.constraints.thrust import InputSet
 
 
 def warm() -> None:

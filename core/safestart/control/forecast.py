@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from safestart.constraints.corridor import corridor_of
+from safestart.constraints.corridor import corridor_of, faces_about_z
 from safestart.control.gains import Gains
 from safestart.control.regimes import Law, control_law
-from safestart.dynamics.cwh import input_matrix, transition_matrix
+from safestart.dynamics.cwh import Cwh, input_matrix, transition_matrix
 from safestart.errors import invalid
 from safestart.model.scenario import Floats, Scenario
+from safestart.optim.prediction import held_through
 
 SUBSTEPS = 3
 """Truth sub-steps per control interval, at each of which the corridor is checked (paper 000, section 2.1)."""
@@ -20,8 +21,6 @@ SUBSTEPS = 3
 MAX_NODES = 50
 MAX_FORECASTS = 200_000
 """Bound on steps times nodes: tables of some 100 MB."""
-
-AnyFloats = np.ndarray[tuple[Any, ...], np.dtype[np.floating[Any]]]
 
 
 class Plan(NamedTuple):
@@ -87,13 +86,13 @@ def flight_plan(
     components = np.array([0, 1, 3, 4] if planar else [0, 1, 2, 3, 4, 5])
     corridor = corridor_of(scenario.corridor, d)
     count = len(corridor.offsets)
-    taus = dt * np.arange(1, nodes + 1)
-    phi = np.array([transition_matrix(n, tau)[:, components] for tau in taus])
-    gamma = np.array([input_matrix(n, tau)[:, :d] * a_max for tau in taus])
+    transition, held = held_through(Cwh(n), 0.0, dt * np.arange(1.0, nodes + 1.0))
+    phi, gamma = np.ascontiguousarray(transition[:, :, components]), held[:, :, :d] * a_max
 
     # Corridor rows, k-major: the face normals at node j of step k, times Phi_j and B_j.
-    angles = scenario.target.tumble_rate * dt * (np.arange(steps)[:, None] + np.arange(1, nodes + 1))
-    turned = _turn(corridor.normals, angles)
+    rate = scenario.target.tumble_rate
+    angles: Floats = rate * dt * (np.arange(steps)[:, None] + np.arange(1.0, nodes + 1.0))
+    turned = faces_about_z(corridor.normals, angles)
     state = np.einsum("kjic,jcx->kxij", turned, phi[:, :d]).reshape(steps, len(components), count * nodes)
     normals = np.einsum("kjic,jcu->kuij", turned, gamma[:, :d]).reshape(steps, d, count * nodes)
     tightened = corridor.offsets - gains.corridor_margin
@@ -116,8 +115,8 @@ def flight_plan(
     blocks.append(_constant(steps, box, np.zeros((len(components), 2 * d)), np.ones(2 * d)))
 
     instants = np.arange(steps)[:, None] + np.arange(1, substeps + 1) / substeps
-    faces = _turn(corridor.normals / corridor.lengths[:, None], scenario.target.tumble_rate * dt * instants)
-    theta = scenario.target.tumble_rate * dt * np.arange(steps)
+    faces = faces_about_z(corridor.normals / corridor.lengths[:, None], rate * dt * instants)
+    theta = rate * dt * np.arange(steps)
     normals, state, bounds, weights = (
         np.ascontiguousarray(np.concatenate(parts, axis=-1)) for parts in zip(*blocks, strict=True)
     )
@@ -144,16 +143,6 @@ def flight_plan(
         transition_matrix(n, dt / substeps),
         input_matrix(n, dt / substeps),
     )
-
-
-def _turn(normals: Floats, angles: AnyFloats) -> Floats:
-    """A R_z(-theta) for body-frame rows (F, d) and angles (...), shape (..., F, d)."""
-    cos, sin = np.cos(angles)[..., None], np.sin(angles)[..., None]
-    out = np.empty((*angles.shape, *normals.shape))
-    out[...] = normals
-    out[..., 0] = normals[:, 0] * cos - normals[:, 1] * sin
-    out[..., 1] = normals[:, 0] * sin + normals[:, 1] * cos
-    return out
 
 
 def _constant(

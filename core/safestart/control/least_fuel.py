@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from safestart.exact.watch import Ints, Watch
 from safestart.model.scenario import Floats
-from safestart.optim.conic import into_disk, solver_settings
+from safestart.optim.cone_program import ConeProgram, Each
+from safestart.optim.thrust_ball import into_balls, keep_in_balls
 
 ROUNDS = 8
 # Rows near a local minimum below this share of the wanted margin are added; a plan that keeps it is taken.
@@ -43,25 +42,14 @@ def least_fuel(
 
 def _solve(slack: Floats, thrust: Floats, a_max: float, d: int) -> Floats | None:
     """Minimise sum_k s_k over |w_k| <= s_k <= 1 with slack + a_max thrust . w >= 0, thrusts being a_max w (N, d)."""
-    import clarabel
-    from scipy.sparse import csc_array
-
-    rows, columns = thrust.shape
-    count, cone = columns // d, d + 1
-    a = np.zeros((rows + count + count * cone, columns + count))
-    b = np.zeros(len(a))
-    a[:rows, :columns], b[:rows] = -a_max * thrust, slack
-    each = np.arange(count)
-    a[rows + each, columns + each], b[rows : rows + count] = 1.0, 1.0
-    heads = rows + count + cone * each
-    a[heads, columns + each] = -1.0
-    for axis in range(d):
-        a[heads + 1 + axis, d * each + axis] = -1.0
-    cost = np.concatenate([np.zeros(columns), np.ones(count)])
-    cones: list[Any] = [clarabel.NonnegativeConeT(rows + count), *[clarabel.SecondOrderConeT(cone)] * count]
-    none = csc_array((len(cost), len(cost)))
-    found = clarabel.DefaultSolver(none, cost, csc_array(a), b, cones, solver_settings()).solve()
-    w = np.array(found.x[:columns])
-    if str(found.status) not in ("Solved", "AlmostSolved") or not np.isfinite(w).all():
+    count = thrust.shape[1] // d
+    program = ConeProgram(thrust=count * d, impulse=count)
+    program.rows("faces", slack, thrust=a_max * thrust)
+    program.rows("largest", np.ones(count), impulse=Each(np.arange(count)[:, None], -1.0))
+    keep_in_balls(program, count, d, radius="impulse")
+    program.minimise(impulse=1.0)
+    found = program.solve()
+    w = found.value("thrust")
+    if not found.solved or not np.isfinite(w).all():
         return None
-    return a_max * into_disk(w.reshape(count, d))
+    return a_max * into_balls(w.reshape(count, d))

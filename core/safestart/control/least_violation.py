@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
+from safestart.runtime.kernels import compiled
 
 MAX_PIVOTS = 200
 BLAND_AFTER = 60
 TOLERANCE = 1e-11
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def least_violation(normals, bounds, weights, point, work, basis):  # type: ignore[no-untyped-def]
     """Set ``point`` (d,) to a minimiser over the box |w_i| <= 1 of max_r weights_r (normals_r w - bounds_r).
 

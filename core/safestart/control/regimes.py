@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from numba import njit
-
 from safestart.control.gains import Gains
 from safestart.model.scenario import Scenario
+from safestart.runtime.kernels import compiled
 
 FAR, CLOSE, HOLD = 0, 1, 2
 REGIMES = ("far", "close", "hold")
@@ -60,7 +59,7 @@ def control_law(scenario: Scenario, gains: Gains, dt: float) -> Law:
     )
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def nominal_command(x, y, z, vx, vy, vz, time, cos, sin, r0, v_max, law):  # type: ignore[no-untyped-def]
     """Command (ax, ay, az) in LVLH, m/s^2, not limited, and the regime's code.
 

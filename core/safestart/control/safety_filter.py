@@ -17,20 +17,15 @@ The case is reported. Last comes the projection onto the thrust disk (ball in 3-
 from __future__ import annotations
 
 import math
-from types import ModuleType
 
 import numpy as np
-from numba import njit
 
 from safestart.control import least_violation as _least_violation
 from safestart.control.forecast import Plan
 from safestart.model.scenario import Floats
 from safestart.optim import projection as _projection
 from safestart.optim.projection import FEASIBLE
-from safestart.runtime.stamp import source_stamp
-
-SOURCES: tuple[ModuleType, ...] = (_projection, _least_violation)
-"""Modules whose kernels the filter calls: their text is part of its cache key."""
+from safestart.runtime.kernels import compiled
 
 TIE = 1e-8
 """Widening of the fallback's rows (scaled command) so that the set of minimisers keeps an interior."""
@@ -39,63 +34,65 @@ _project = _projection.project
 _least = _least_violation.least_violation
 
 
-def _build(stamp: int):  # type: ignore[no-untyped-def]
-    @njit(cache=True, nogil=True, error_model="numpy")
-    def filter_step(plan, k, x, nominal, previous, command, bounds, work, index):  # type: ignore[no-untyped-def]
-        stamp  # noqa: B018  (the cell is part of numba's cache key)
-        normals, weights = plan.normals[k], plan.weights[k]
-        rows = plan.state[k]
-        d, m = normals.shape
-        a_max = plan.law.max_acceleration
-        scale = 1.0 / ((1.0 + plan.effort_weight + plan.move_weight) * a_max)
+@compiled(error_model="numpy")
+def filter_step(plan, k, x, nominal, previous, command, bounds, work, index):  # type: ignore[no-untyped-def]
+    """Solve (7) for control step ``k`` and return whether it was feasible; if not, the command is the fallback's.
+
+    ``x`` (6,) is the LVLH state (m, m/s), ``nominal`` and ``previous`` (d,) are commands in m/s^2. The result goes
+    to ``command`` (d,), m/s^2, of length at most a_max. ``bounds`` (rows,), ``work`` (10, 4) and ``index`` (4,)
+    integers are scratch.
+    """
+    normals, weights = plan.normals[k], plan.weights[k]
+    rows = plan.state[k]
+    d, m = normals.shape
+    a_max = plan.law.max_acceleration
+    scale = 1.0 / ((1.0 + plan.effort_weight + plan.move_weight) * a_max)
+    for i in range(d):
+        command[i] = scale * (nominal[i] + plan.move_weight * previous[i])
+    for r in range(m):
+        bounds[r] = plan.bounds[k, r]
+    for c in range(2 * d):
+        value = x[plan.components[c]]
+        for r in range(m):
+            bounds[r] -= rows[c, r] * value
+    if plan.keep_out_row >= 0:
+        # Copies: the plan may be shared by threads.
+        normals, weights = normals.copy(), weights.copy()
+        _keep_out(plan, x, normals, bounds, weights)
+    worst = -math.inf
+    for r in range(m):
+        value = -bounds[r]
+        for i in range(d):
+            value += normals[i, r] * command[i]
+        worst = max(worst, value)
+    feasible = True
+    if worst > _projection.VIOLATION:
+        feasible = _project(normals, bounds, command, work, index) == FEASIBLE
+    if not feasible:
         for i in range(d):
             command[i] = scale * (nominal[i] + plan.move_weight * previous[i])
-        for r in range(m):
-            bounds[r] = plan.bounds[k, r]
-        for c in range(2 * d):
-            value = x[plan.components[c]]
-            for r in range(m):
-                bounds[r] -= rows[c, r] * value
-        if plan.keep_out_row >= 0:
-            # Copies: the plan may be shared by threads.
-            normals, weights = normals.copy(), weights.copy()
-            _keep_out(plan, x, normals, bounds, weights)
-        worst = -math.inf
-        for r in range(m):
-            value = -bounds[r]
-            for i in range(d):
-                value += normals[i, r] * command[i]
-            worst = max(worst, value)
-        feasible = True
-        if worst > _projection.VIOLATION:
-            feasible = _project(normals, bounds, command, work, index) == FEASIBLE
-        if not feasible:
-            for i in range(d):
-                command[i] = scale * (nominal[i] + plan.move_weight * previous[i])
-            centre = work[9]
-            centre[:d] = command[:d]
-            least = _least(normals, bounds, weights, command, work, index)
-            # Rows of the fallback, let out by the least violation; the rest of the box stays as it is.
-            for r in range(m - 2 * d):
-                if weights[r] > 0.0:
-                    bounds[r] += max(0.0, least) / weights[r] + TIE
-                else:
-                    bounds[r] = math.inf
-            # Where rounding makes the shrunken set empty, the minimax solver's own vertex stays.
-            if _project(normals, bounds, centre, work, index) == FEASIBLE:
-                command[:d] = centre[:d]
-        length = 0.0
-        for i in range(d):
-            length += command[i] * command[i]
-        length = a_max / max(math.sqrt(length) / plan.disk_limit, 1.0)
-        for i in range(d):
-            command[i] *= length
-        return feasible
-
-    return filter_step
+        centre = work[9]
+        centre[:d] = command[:d]
+        least = _least(normals, bounds, weights, command, work, index)
+        # Rows of the fallback, let out by the least violation; the rest of the box stays as it is.
+        for r in range(m - 2 * d):
+            if weights[r] > 0.0:
+                bounds[r] += max(0.0, least) / weights[r] + TIE
+            else:
+                bounds[r] = math.inf
+        # Where rounding makes the shrunken set empty, the minimax solver's own vertex stays.
+        if _project(normals, bounds, centre, work, index) == FEASIBLE:
+            command[:d] = centre[:d]
+    length = 0.0
+    for i in range(d):
+        length += command[i] * command[i]
+    length = a_max / max(math.sqrt(length) / plan.disk_limit, 1.0)
+    for i in range(d):
+        command[i] *= length
+    return feasible
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _keep_out(plan, x, normals, bounds, weights):  # type: ignore[no-untyped-def]
     """Write the keep-out row of one step: e . p_1 >= R, linearised at the direction e of the free drift at node 1."""
     d = normals.shape[0]
@@ -123,15 +120,6 @@ def _keep_out(plan, x, normals, bounds, weights):  # type: ignore[no-untyped-def
         normals[c, row] /= length
     weights[row] = plan.law.max_acceleration * length / radius
     bounds[row] = (radius - plan.keep_out_radius) / weights[row]
-
-
-filter_step = _build(source_stamp(*SOURCES))
-"""``filter_step(plan, k, x, nominal, previous, command, bounds, work, index) -> feasible``, compiled.
-
-``k`` is the control step, ``x`` (6,) the LVLH state (m, m/s), ``nominal`` and ``previous`` (d,) commands in m/s^2;
-the result is written to ``command`` (d,), m/s^2, of length at most a_max. ``bounds`` (rows,), ``work`` (10, 4) and
-``index`` (4,) integers are scratch. False when (7) is infeasible and the command is the fallback's.
-"""
 
 
 def filter_command(

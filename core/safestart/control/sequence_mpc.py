@@ -12,10 +12,12 @@ again.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from safestart.control.controller import Command
 from safestart.control.least_fuel import least_fuel
 from safestart.exact.answer import GUARD, Verdict
 from safestart.exact.question import Question
@@ -96,5 +98,42 @@ class SequencePlanner:
         return watch_of(left, step * self._turn)
 
     def _nodes(self, watch: Watch, state: Floats, thrust: Floats) -> Floats:
-        flown = watch.tables.flight(state, thrust)
+        flown = watch.prediction.flight(state, thrust)
         return np.concatenate([flown[:, 0], flown[-1:, -1]])
+
+
+@dataclass(frozen=True, slots=True)
+class PlannedCommand(Command):
+    """A command of a plan, labelled ``planned`` or ``kept``; ``verdict`` is the exact answer where the plan begins."""
+
+    verdict: Verdict = Verdict.UNDECIDED
+
+
+class SequenceMpc:
+    """The planner as a controller: the plan's thrust, from a new plan where the old one no longer holds."""
+
+    def __init__(self, question: Question) -> None:
+        self._planner = SequencePlanner(question)
+        self._plan: Plan | None = None
+        self._first = 0
+
+    def begin(self, state: Floats) -> None:  # noqa: ARG002
+        """No plan yet."""
+        self._plan = None
+
+    def command(self, k: int, state: Floats) -> PlannedCommand:
+        """See :class:`safestart.control.controller.Controller`; feasible where the plan keeps the corridor."""
+        planar = state[[0, 1, 3, 4]]
+        plan = self._plan and self._planner.kept(self._plan, self._first, k, planar)
+        label = "kept" if plan else "planned"
+        if plan is None:
+            plan, self._first = self._planner.plan(k, planar), k
+            self._plan = plan
+        thrust = np.append(plan.thrust[k - self._first], 0.0)
+        return PlannedCommand(thrust, plan.verdict is Verdict.GO, label, verdict=plan.verdict)
+
+
+def start_verdict(commands: Sequence[Command]) -> Verdict | None:
+    """The exact answer for the first state that a flight's commands were made from; None of another controller."""
+    first = commands[0] if commands else None
+    return first.verdict if isinstance(first, PlannedCommand) else None

@@ -7,11 +7,13 @@ n tau -> 0 and n = 0 (the double integrator) is exact.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
+from safestart.dynamics.motion import SteadyMotion
 from safestart.errors import invalid
-from safestart.model.scenario import Floats
+from safestart.model.scenario import MAX_MEAN_MOTION, Floats, number
 
 
 def _phase_functions(phase: float) -> tuple[float, float, float]:
@@ -85,6 +87,28 @@ def input_matrix(mean_motion: float, tau: float) -> Floats:
     return bd
 
 
+@dataclass(frozen=True)
+class Cwh(SteadyMotion):
+    """The motion near a target on a circular orbit of ``mean_motion`` rad/s; raises ``InvalidInput`` out of range."""
+
+    mean_motion: float
+
+    def __post_init__(self) -> None:
+        number("mean_motion", self.mean_motion, 0.0, MAX_MEAN_MOTION)
+
+    def transition(self, t0: float, t1: float) -> Floats:
+        """Phi(t1 - t0)."""
+        return transition_matrix(self.mean_motion, t1 - t0)
+
+    def held(self, t0: float, t1: float) -> Floats:
+        """B_d(t1 - t0)."""
+        return input_matrix(self.mean_motion, t1 - t0)
+
+    def positions(self, tau: Floats, dimensions: int) -> tuple[Floats, Floats]:
+        """Position rows of Phi(tau) and B_d(tau)."""
+        return position_matrices(self.mean_motion, tau, dimensions)
+
+
 _PLANE = np.array([0, 1, 3, 4])
 
 
@@ -100,9 +124,45 @@ def planar_input(mean_motion: float, tau: float) -> Floats:
     return planar
 
 
-def feedforward(mean_motion: float, position: Floats, velocity: Floats) -> Floats:
-    """Acceleration that cancels the CWH terms, shape (..., 3) (eq. 6): the negative of A's lower rows."""
-    n = mean_motion
-    x, z = position[..., 0], position[..., 2]
-    vx, vy = velocity[..., 0], velocity[..., 1]
-    return np.stack([-(3.0 * n * n * x + 2.0 * n * vy), 2.0 * n * vx, n * n * z], axis=-1)
+def position_matrices(mean_motion: float, tau: Floats, dimensions: int) -> tuple[Floats, Floats]:
+    """Position rows of Phi(tau), (J, d, 2 d), and of B_d(tau), (J, d, d), for J times in seconds."""
+    d, count = dimensions, len(tau)
+    p = mean_motion * tau
+    if count and float(np.abs(p).max()) > 0.5:
+        keep = np.r_[0:d, 3 : 3 + d]
+        n, each = mean_motion, tau.tolist()
+        return (
+            np.array([transition_matrix(n, t)[:d, keep] for t in each]),
+            np.array([input_matrix(n, t)[:d, :d] for t in each]),
+        )
+    f1, f2, f3 = _phases(p)
+    square = tau * tau
+    free, held = np.zeros((count, d, 2 * d)), np.zeros((count, d, d))
+    swing = 2.0 * tau * p * f2
+    free[:, 0, 0] = 1.0 + 3.0 * p * p * f2
+    free[:, 1, 0] = -6.0 * p**3 * f3
+    free[:, 1, 1] = 1.0
+    free[:, 0, d], free[:, 0, d + 1] = tau * f1, swing
+    free[:, 1, d], free[:, 1, d + 1] = -swing, tau * (4.0 * f1 - 3.0)
+    sweep = 2.0 * square * p * f3
+    held[:, 0, 0], held[:, 0, 1] = square * f2, sweep
+    held[:, 1, 0], held[:, 1, 1] = -sweep, square * (4.0 * f2 - 1.5)
+    if d == 3:
+        free[:, 2, 2], free[:, 2, 5] = 1.0 - p * p * f2, tau * f1
+        held[:, 2, 2] = square * f2
+    return free, held
+
+
+# The series' quotients of neighbouring terms: [k] holds those of sin(p)/p, 2 (1 - cos p)/p^2 and 6 (p - sin p)/p^3.
+_QUOTIENTS = np.array([[[(2.0 * k + j) * (2.0 * k + j + 1.0)] for j in (2, 3, 4)] for k in range(6)])
+
+
+def _phases(phase: Floats) -> tuple[Floats, Floats, Floats]:
+    """sin(p)/p, (1 - cos p)/p^2 and (p - sin p)/p^3, by series: exact at 0, to 1e-16 for |p| <= 0.5."""
+    square = phase * phase
+    # The first term left out is below p^8 / 9! < 3e-18 for p^2 < 1e-3, below p^14 / 15! < 5e-17 for |p| <= 0.5.
+    terms = 3 if not len(phase) or float(square.max()) < 1e-3 else 6
+    series = np.ones((3, len(phase)))
+    for quotients in _QUOTIENTS[terms - 1 :: -1]:
+        series = 1.0 - square / quotients * series
+    return series[0], series[1] / 2.0, series[2] / 6.0

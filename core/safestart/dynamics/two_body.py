@@ -44,7 +44,7 @@ class Orbit:
         return cls(radius, inclination)
 
     def state(self) -> Floats:
-        """Inertial position and velocity (6,)."""
+        """Inertial position and velocity of the target (6,) at t = 0."""
         cu, su = math.cos(self.latitude), math.sin(self.latitude)
         ci, si = math.cos(self.inclination), math.sin(self.inclination)
         out = np.array([cu, su * ci, su * si]), np.array([-su, cu * ci, cu * si])
@@ -74,7 +74,18 @@ def axes(target: Floats) -> tuple[Floats, Floats]:
     return rows, np.array([size * float(gravity(r) @ z) / momentum, 0.0, momentum / (size * size)])
 
 
-class RelativeMotion:
+@dataclass(frozen=True, slots=True)
+class TwoBody:
+    """The motion of a chaser near a target on ``orbit``."""
+
+    orbit: Orbit
+
+    def start(self, state: Floats) -> TwoBodyFlight:
+        """A chaser at the LVLH state (6,) at t = 0."""
+        return TwoBodyFlight(self.orbit, state)
+
+
+class TwoBodyFlight:
     """A chaser near a target from an LVLH state (6,), m and m/s, on."""
 
     def __init__(self, orbit: Orbit, state: Floats) -> None:
@@ -82,7 +93,14 @@ class RelativeMotion:
         rows, omega = axes(target)
         position = rows.T @ state[:3]
         velocity = rows.T @ (state[3:] + np.cross(omega, state[:3]))
+        self.state = np.array(state, dtype=np.float64)
         self._all = np.concatenate([target, position, velocity])
+
+    def push(self, impulse: Floats) -> None:
+        """Change the velocity at once by ``impulse`` (3,), m/s, in LVLH axes."""
+        rows, _omega = axes(self._all[:6])
+        self._all[9:] += rows.T @ impulse
+        self.state = _seen(self._all)
 
     def fly(self, thrust: Floats, times: Floats) -> Floats:
         """LVLH states (T, 6) at ``times``, the first of which is now, with ``thrust`` (3,) held in LVLH axes."""
@@ -103,9 +121,12 @@ class RelativeMotion:
             while len(out) < len(times) and times[len(out)] <= solver.t:
                 out.append(solver.y if times[len(out)] == solver.t else dense(times[len(out)]))
         if solver.status != "finished":
+            self.state = np.full(6, np.nan)
             return np.full((len(times), 6), np.nan)
-        self._all = solver.y
-        return np.array([_seen(y) for y in out])
+        self._all = np.array(solver.y)
+        states = np.array([_seen(y) for y in out])
+        self.state = states[-1].copy()
+        return states
 
 
 def _seen(y: Floats) -> Floats:

@@ -13,9 +13,6 @@ from safestart.runtime.progress import Context
 class Analytical:
     """The certificate's region, whatever the horizon; nearly sound (see docs/theory/closed-form.md), partial."""
 
-    name = "analytical"
-    summary = "closed-form certificate: directional erosion and synchronization range"
-
     def solve(self, problem: Problem, context: Context) -> EngineResult:
         """Certify the whole grid at once."""
         start = time.perf_counter()
@@ -24,4 +21,4 @@ class Analytical:
         context.step(1, 1)
         limit = answer.range_limit
         detail = {"range_limit_m": limit if math.isfinite(limit) else None, "rest": problem.rest.value}
-        return EngineResult(self.name, ResultCode.OK, answer.mask, answer.margin, run, detail=detail)
+        return EngineResult(ResultCode.OK, answer.mask, answer.margin, run, detail=detail)

@@ -24,12 +24,8 @@ from safestart.sets.zonotope import meet_arc
 class Backward:
     """Exact set of the sampled, box-limited input; a tube is the union over the steps 0..N."""
 
-    name = "backward"
-    summary = "nominal backward reachable set: box input, zero-order hold, exact zonotope test"
-
     def solve(self, problem: Problem, context: Context) -> EngineResult:
         """Margin (m) of every cell; ``arrays`` holds it before the cut to the corridor."""
-        problem.check_options(self.name)
         compile_s = 0.0 if warm.cache_info().currsize else warm()
         start = time.perf_counter()
         points = problem.points().reshape(-1, 2)
@@ -43,4 +39,4 @@ class Backward:
             np.maximum(margin, meet_arc(generators, arc).margin(positions), out=margin)
             context.step(step.index, total, "steps")
         detail = {"set": problem.kind.value, "rest": problem.rest.value, "input": "box", "steps": total}
-        return finish(self.name, problem, margin, start, compile_s, detail)
+        return finish(problem, margin, start, compile_s, detail)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any, Protocol
@@ -28,7 +28,7 @@ class Problem:
     """What an engine is asked: which starts of the grid, at rest, belong to its set.
 
     ``horizon`` and ``dt`` in seconds (``dt`` is the control interval of the sampled engines; the horizon is a
-    whole number of them), ``options`` holds per-engine settings by engine name.
+    whole number of them).
     """
 
     scenario: Scenario
@@ -37,8 +37,6 @@ class Problem:
     dt: float = 2.0
     rest: Rest = Rest.LVLH
     kind: SetKind = SetKind.FIXED
-    seed: int = 0
-    options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         number("horizon", self.horizon, 0.0, MAX_HORIZON, open_low=True)
@@ -60,17 +58,6 @@ class Problem:
         """Grid points inside the corridor at t = 0, (ny, nx): every engine's region is restricted to them."""
         return corridor_of(self.scenario.corridor).contains(self.points())
 
-    def option(self, engine: str, name: str, default: Any) -> Any:
-        """Setting ``name`` of an engine, or its default."""
-        return self.options.get(engine, {}).get(name, default)
-
-    def check_options(self, engine: str, allowed: Collection[str] = ()) -> None:
-        """Raise ``InvalidInput`` when the settings of an engine hold a name it does not know."""
-        for name in self.options.get(engine, {}):
-            if name not in allowed:
-                known = ", ".join(sorted(allowed)) or "no options"
-                raise invalid(f"options.{engine}", f"only known options ({known})", name)
-
 
 @dataclass(frozen=True, slots=True)
 class EngineResult:
@@ -82,7 +69,6 @@ class EngineResult:
     bounds); ``arrays`` further arrays worth keeping (value slices).
     """
 
-    engine: str
     code: ResultCode
     mask: Bools | None
     margin: Floats | None
@@ -94,10 +80,7 @@ class EngineResult:
 
 
 class Engine(Protocol):
-    """A reachability engine: ``name``, what it computes, and ``solve``."""
-
-    name: str
-    summary: str
+    """A reachability engine, made with its options or with their defaults; what it is called says its spec."""
 
     def solve(self, problem: Problem, context: Context) -> EngineResult:
         """Decide every cell; bad input raises ``InvalidInput``, numerical trouble is a result code."""

@@ -35,9 +35,6 @@ CHUNK = 8192
 class Exact:
     """Exact reachable set of the disk input, tube or fixed time; the yardstick of the gridded engines."""
 
-    name = "exact"
-    summary = "exact reachable set by support functions: disk input, tube or fixed time, no grid"
-
     def solve(self, problem: Problem, context: Context) -> EngineResult:
         """Margin of every cell.
 
@@ -45,7 +42,6 @@ class Exact:
         corridor (a tube restricted to the corridor is all of it), and ``reach_time`` (ny, nx), the time (s) at
         which that margin is attained.
         """
-        problem.check_options(self.name)
         compile_s = 0.0 if warm.cache_info().currsize else warm()
         start = time.perf_counter()
         points = problem.points().reshape(-1, 2)
@@ -64,13 +60,13 @@ class Exact:
             run = time.perf_counter() - start
             message = "the margin is not finite: horizon and mean motion are outside what the series can hold"
             code = ResultCode.NUMERICAL_FAILURE
-            return EngineResult(self.name, code, None, None, run, compile_s, message, detail)
+            return EngineResult(code, None, None, run, compile_s, message, detail)
         field = margin.reshape(shape)
         mask, restricted = restrict(problem, field)
         run = time.perf_counter() - start
         arrays = {"margin_unrestricted": field, "reach_time": when.reshape(shape)}
         code = ResultCode.OK
-        return EngineResult(self.name, code, mask, restricted, run, compile_s, detail=detail, arrays=arrays)
+        return EngineResult(code, mask, restricted, run, compile_s, detail=detail, arrays=arrays)
 
 
 def reach_margin(

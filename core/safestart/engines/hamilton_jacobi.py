@@ -17,10 +17,12 @@ from safestart.engines.base import EngineResult, Problem, ResultCode
 from safestart.engines.hj.certified import count_errors, exact_answer
 from safestart.engines.hj.domain import Domain, count_steps, size_domain, start_states, warnings
 from safestart.engines.hj.frame import MODEL
-from safestart.engines.hj.settings import ENGINE, Settings
+from safestart.engines.hj.options import HamiltonJacobiInput
+from safestart.engines.hj.settings import BOUNDARY, PRECISION, Settings
 from safestart.engines.hj.target import TargetValues, target_at
 from safestart.engines.region import restrict
-from safestart.model.scenario import Floats, SetKind
+from safestart.errors import Unavailable
+from safestart.model.scenario import Floats, SetKind, number
 from safestart.runtime.progress import Context
 
 # Between two looks at the context: a twentieth of the steps, and no more than a few seconds of work.
@@ -47,8 +49,10 @@ class Solver(Protocol):
 class HamiltonJacobi:
     """Level sets on a four-dimensional grid: neither an inner nor an outer bound, its error has no sign."""
 
-    name = ENGINE
-    summary = "Hamilton-Jacobi level sets on a grid (own solver, or hj-reachability)"
+    def __init__(self, options: HamiltonJacobiInput | None = None, *, match: float | None = None) -> None:
+        """``match`` (m/s, at most 1000) asks for co-rotation to within that speed, too; raises ``InvalidInput``."""
+        self._options = options or HamiltonJacobiInput()
+        self._match = None if match is None else number("match", match, 0.0, 1e3, open_low=True)
 
     def solve(self, problem: Problem, context: Context) -> EngineResult:
         """Step the value function back over the horizon and read its slice at the starts.
@@ -58,12 +62,11 @@ class HamiltonJacobi:
         target). ``detail["certified"]`` counts the cells that the exact set refutes
         (:mod:`safestart.engines.hj.certified`); the mask is the level set's own.
 
-        Raises ``InvalidInput`` for settings it does not know, for a box that does not hold every start and for
-        a grid that needs more time steps than anyone waits for; ``Cancelled`` between stretches of time. A
-        value that is not finite, or that leaves the range it must keep, is ``NUMERICAL_FAILURE``.
+        Raises ``InvalidInput`` for a grid that needs more time steps than anyone waits for; ``Cancelled`` between
+        stretches of time. A value that is not finite, or that leaves the range it must keep, is ``NUMERICAL_FAILURE``.
         """
-        settings = Settings.of(problem)
-        domain = size_domain(problem, settings)
+        settings = Settings.of(problem, self._options, self._match)
+        domain = size_domain(problem, settings.frame)
         steps, courant = count_steps(problem, domain, settings)
         context.step(0.0, problem.horizon, "compiling")
         target = TargetValues.of(problem, domain, settings)
@@ -80,7 +83,7 @@ class HamiltonJacobi:
         if failure:
             run = time.perf_counter() - begin
             code = ResultCode.NUMERICAL_FAILURE
-            return EngineResult(self.name, code, None, None, run, solver.compile_s, failure, detail)
+            return EngineResult(code, None, None, run, solver.compile_s, failure, detail)
         field = -_slice(problem, domain, settings, value)
         mask, margin = restrict(problem, field)
         run = time.perf_counter() - begin
@@ -91,9 +94,7 @@ class HamiltonJacobi:
         if exact.code is ResultCode.OK:
             arrays["margin_exact"] = exact.arrays["margin_unrestricted"]
         detail["value_min_m"], detail["value_max_m"] = float(value.min()), float(value.max())
-        return EngineResult(
-            self.name, ResultCode.OK, mask, margin, run, solver.compile_s, message, detail, arrays
-        )
+        return EngineResult(ResultCode.OK, mask, margin, run, solver.compile_s, message, detail, arrays)
 
 
 def _solver(problem: Problem, domain: Domain, settings: Settings, terminal: Floats, courant: float) -> Solver:
@@ -102,8 +103,15 @@ def _solver(problem: Problem, domain: Domain, settings: Settings, terminal: Floa
         from safestart.engines.hj.fused import FusedSolver
 
         return FusedSolver(problem, domain, settings, terminal, courant)
-    from safestart.engines.hj.peer import PeerSolver
-
+    try:
+        from safestart.engines.hj.peer import PeerSolver
+    except ModuleNotFoundError as error:
+        raise Unavailable(
+            f"solver hj_reachability: required the extra safestart[oracle] on the worker, received no {error.name}",
+            field="hamilton_jacobi.solver",
+            required="the extra safestart[oracle], or solver fused",
+            received="hj_reachability",
+        ) from None
     return PeerSolver(problem, domain, settings, terminal, courant)
 
 
@@ -159,7 +167,7 @@ def _detail(
         "rest": problem.rest.value,
         "frame": settings.frame.value,
         "accuracy": settings.accuracy,
-        "boundary": settings.boundary,
+        "boundary": BOUNDARY,
         "match_m_s": settings.match,
         "shape": list(settings.shape),
         "half_widths": {
@@ -172,7 +180,7 @@ def _detail(
         "target_min_m": target.low,
         "target_max_m": target.high,
         "solver": settings.solver,
-        "precision": settings.precision,
+        "precision": PRECISION,
         "model": MODEL[settings.frame],
         "warnings": warnings(problem, domain, settings),
     }

@@ -8,11 +8,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from safestart.dynamics.cwh import planar_input, planar_transition
+from safestart.attitude.spin import Spin
+from safestart.dynamics.cwh import Cwh
 from safestart.engines.base import EngineResult, Problem, ResultCode
 from safestart.engines.region import restrict, start_velocity
 from safestart.errors import invalid
 from safestart.model.scenario import Floats, SetKind
+from safestart.optim.prediction import responses
 
 MAX_STEPS = 4000
 
@@ -36,39 +38,27 @@ def steps(problem: Problem) -> Iterator[Step]:
     n, count, dt = problem.scenario.target.mean_motion, problem.steps, problem.dt
     if count > MAX_STEPS:
         raise invalid("dt", f"at most {MAX_STEPS} control intervals in the horizon", dt)
-    a = planar_transition(n, dt)
-    # Columns 0-1: A^k [I; W], the state of a start; columns 2-3: A^k B. Powers by doubling.
-    powers = np.empty((count + 1, 4, 4))
-    powers[0, :2, :2] = np.eye(2)
-    powers[0, 2:, :2] = start_velocity(problem.scenario, problem.rest)
-    powers[0, :, 2:] = planar_input(n, dt)
-    done = 1
-    while done <= count:
-        more = min(done, count + 1 - done)
-        np.matmul(a, powers[:more], out=powers[done : done + more])
-        a = a @ a
-        done += more
-    drift, response = powers[:, :2, :2], powers[:, :2, 2:]
+    starts = np.concatenate([np.eye(2), start_velocity(problem.scenario, problem.rest)])
+    drift, response = (part[:, :2] for part in responses(Cwh(n), dt, count, starts))
     for k in range(count + 1) if problem.kind is SetKind.TUBE else (count,):
         yield Step(k, problem.scenario.target.tumble_rate * dt * k, drift[k], response[:k])
 
 
 def to_body(vectors: Floats, theta: float) -> Floats:
     """R_z(-theta) applied to the rows of ``vectors`` (..., 2)."""
-    c, s = np.cos(theta), np.sin(theta)
-    return np.asarray(vectors @ np.array([[c, -s], [s, c]]))
+    return np.asarray(vectors @ np.ascontiguousarray(Spin(0.0).turned_by(np.asarray(theta))[:2, :2].T))
 
 
 def finish(
-    name: str, problem: Problem, margin: Floats, start: float, compile_s: float, detail: Mapping[str, object]
+    problem: Problem, margin: Floats, start: float, compile_s: float, detail: Mapping[str, object]
 ) -> EngineResult:
     """Result of a sampled engine from its unrestricted margins (P,) and the clock at its start (s)."""
     field = margin.reshape(problem.grid.ny, problem.grid.nx)
     if not np.isfinite(field).all():
         run = time.perf_counter() - start
         code, message = ResultCode.NUMERICAL_FAILURE, "the margin is not finite"
-        return EngineResult(name, code, None, None, run, compile_s, message, detail)
+        return EngineResult(code, None, None, run, compile_s, message, detail)
     mask, restricted = restrict(problem, field)
     run = time.perf_counter() - start
     arrays = {"margin_unrestricted": field}
-    return EngineResult(name, ResultCode.OK, mask, restricted, run, compile_s, detail=detail, arrays=arrays)
+    return EngineResult(ResultCode.OK, mask, restricted, run, compile_s, detail=detail, arrays=arrays)

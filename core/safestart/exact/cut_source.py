@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from safestart.exact.motion import NodeTables
 from safestart.exact.question import Question
 from safestart.exact.watch import Cuts, Ints, Minima
 from safestart.model.scenario import Floats
+from safestart.optim.prediction import Prediction
 
 
 class Watched(Protocol):
     """Faces (``normals`` (F, d), ``offsets`` (F,), ``names``) of one question, its rows, and the minima of a flight."""
 
     question: Question
-    tables: NodeTables
+    prediction: Prediction
     normals: Floats
     offsets: Floats
     names: tuple[str, ...]

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from safestart.attitude.body_frame import rotation
 from safestart.exact.question import SPEED_SCALE, Question
 from safestart.model.scenario import Floats
 
@@ -46,8 +47,7 @@ def limit_at(question: Question, name: str, time: float) -> Limit:
         matrix[:, d:] = SPEED_SCALE * np.eye(d)
         return Limit(matrix, centre, SPEED_SCALE * float(question.speed_limit or 0.0))
     turn = np.eye(d)
-    c, s = math.cos(rate * time), math.sin(rate * time)
-    turn[:2, :2] = [[c, s], [-s, c]]
+    turn[:2, :2] = rotation(rate * time).T
     if name == "hold":
         matrix[:, :d] = turn
         return Limit(matrix, np.array(question.hold, dtype=np.float64), goal.radius)

@@ -1,4 +1,4 @@
-"""Norm limits as rows over start and thrust: what :mod:`safestart.optim.conic` takes as blocks."""
+"""Norm limits as rows over start and thrust: what :mod:`safestart.optim.largest_margin` takes as blocks."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from safestart.exact.limits import AT_END, limit_at
-from safestart.exact.motion import NodeTables, moved
 from safestart.exact.question import Question
 from safestart.model.scenario import Floats
+from safestart.optim.prediction import Prediction
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,27 +37,24 @@ class Blocks:
         )
 
 
-def blocks(question: Question, tables: NodeTables, names: Sequence[str], times: Floats) -> Blocks:
-    """The limits ``names`` (B) at ``times`` (B,) in [0, T] seconds; ``tables`` are the question's."""
-    d, count, dt = question.dimensions, question.steps, question.dt
+def blocks(question: Question, prediction: Prediction, names: Sequence[str], times: Floats) -> Blocks:
+    """The limits ``names`` (B) at ``times`` (B,) in [0, T] seconds; ``prediction`` is the question's."""
+    d, count = question.dimensions, question.steps
     offset = np.zeros((len(times), d + 1))
     start, thrust = np.zeros((len(times), d + 1, 2 * d)), np.zeros((len(times), d + 1, count * d))
     for b, (name, time) in enumerate(zip(names, times.tolist(), strict=True)):
         limit = limit_at(question, name, time)
         offset[b] = limit.limit, *-limit.centre
-        last = min(int(time / dt), count - 1)
-        along, held = moved(question.scenario.target.mean_motion, time - last * dt, d)
-        along = limit.matrix @ along
-        start[b, 1:] = along @ tables.free[last]
-        thrust[b, 1:] = along @ tables.driven[last]
-        thrust[b, 1:, d * last : d * last + d] += limit.matrix @ held
+        start[b, 1:], thrust[b, 1:] = prediction.state_rows(time, limit.matrix)
     return Blocks(times, tuple(names), offset, start, thrust)
 
 
-def end_blocks(question: Question, tables: NodeTables) -> tuple[Floats, Floats, Floats]:
+def end_blocks(question: Question, prediction: Prediction) -> tuple[Floats, Floats, Floats]:
     """The limits at the end for every T = k dt, k = 0 .. N, stacked: offset (N+1, 2 d+2), and so start and thrust."""
     count = question.steps + 1
-    made = blocks(question, tables, AT_END * count, np.repeat(question.dt * np.arange(count), len(AT_END)))
+    made = blocks(
+        question, prediction, AT_END * count, np.repeat(question.dt * np.arange(count), len(AT_END))
+    )
     return (
         made.offset.reshape(count, -1),
         made.start.reshape(count, -1, made.start.shape[-1]),

@@ -13,7 +13,7 @@ from safestart.exact.limits import AT_END, SPEED, limit_at
 from safestart.exact.norm_rows import blocks
 from safestart.exact.watch import Cuts, Ints
 from safestart.model.scenario import Floats
-from safestart.optim.conic import solve
+from safestart.optim.largest_margin import solve
 
 _FIRST_TIMES = 9
 _FINEST = 2e-7
@@ -55,7 +55,7 @@ class Search:
         kept[: len(watch.names)] = np.arange(len(watch.names)) == nearest
         self.times, self.faces, self.rows = first.times[kept], first.faces[kept], first.thrust[kept]
         self.constant = distances[kept]
-        self.blocks = blocks(question, watch.tables, (), np.empty(0))
+        self.blocks = blocks(question, watch.prediction, (), np.empty(0))
         if question.goal is not None:
             self.rounding += _ROUNDING * question.goal.scale * (speed + push)
             self._limit(AT_END, np.full(len(AT_END), question.horizon))
@@ -75,7 +75,7 @@ class Search:
             self.now = Multiplier(0.0, SPEED, 1.0, tuple(pull.tolist()))
 
     def _limit(self, names: tuple[str, ...], times: Floats) -> None:
-        self.blocks = self.blocks.and_more(blocks(self.watch.question, self.watch.tables, names, times))
+        self.blocks = self.blocks.and_more(blocks(self.watch.question, self.watch.prediction, names, times))
 
     def _stacked(self) -> tuple[Floats, Floats]:
         """Constant and thrust of all rows, those of the blocks last."""
@@ -155,9 +155,9 @@ class Search:
         hardly changes: the dips would close in on the touch by about a half each round, the secant does so at once.
         """
         out_times, out_faces = [], []
-        reach = _TOUCH_STEPS * self.watch.question.dt
+        reach, loaded = _TOUCH_STEPS * self.watch.question.dt, self.load > _SOME_WEIGHT
         for time, face in zip(times.tolist(), faces.tolist(), strict=True):
-            share = (self.faces == face) & (np.abs(self.times - time) < reach) & (self.load > _SOME_WEIGHT)
+            share = (self.faces == face) & (np.abs(self.times - time) < reach) & loaded
             total = float(self.load[share].sum())
             if total == 0.0:
                 continue

@@ -46,7 +46,7 @@ def synchronize(watch: Watch, state: Floats, tolerance: float, *, verdict_only: 
 @lru_cache(maxsize=4)
 def end_rows(question: Question) -> tuple[Floats, Floats, Floats]:
     """The rows of the limits at every end, kept between calls."""
-    return end_blocks(question, watch_of(question).tables)
+    return end_blocks(question, watch_of(question).prediction)
 
 
 class _Ends:

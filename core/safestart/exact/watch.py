@@ -16,12 +16,15 @@ from functools import lru_cache
 
 import numpy as np
 
+from safestart.attitude.body_frame import into_body, out_of_body
 from safestart.constraints.corridor import corridor_of
+from safestart.constraints.cubic import dips
+from safestart.dynamics.cwh import Cwh
 from safestart.exact import speed
 from safestart.exact.limits import AT_END, limit_at
-from safestart.exact.motion import NodeTables, held_displacement, motion_tables
 from safestart.exact.question import Question
 from safestart.model.scenario import Floats
+from safestart.optim.prediction import prediction_of
 
 Ints = np.ndarray[tuple[int, ...], np.dtype[np.int64]]
 
@@ -54,24 +57,6 @@ class Cuts:
     thrust: Floats
 
 
-def dips(value: Floats, slope: Floats) -> tuple[Floats, Floats]:
-    """Minimum of the cubic over each sample and where it lies in [0, 1], both (..., S, F).
-
-    ``value`` and ``slope`` (slope times the sample's length) go (..., S+1, F).
-    """
-    left, right = value[..., :-1, :], value[..., 1:, :]
-    begin, end = slope[..., :-1, :], slope[..., 1:, :]
-    rise = right - left
-    square = 3.0 * rise - 2.0 * begin - end
-    root = np.sqrt(np.maximum(square * square - 3.0 * (begin + end - 2.0 * rise) * begin, 0.0))
-    below = square + root
-    # -begin / (square + root) is the cubic's minimum; it lies in the sample when 0 < -begin < square + root.
-    inside = (begin < 0.0) & (below > -begin)
-    at = np.where(inside, -begin / np.where(inside, below, 1.0), np.where(right < left, 1.0, 0.0))
-    low = left + at * (begin + at * (square + at * (begin + end - 2.0 * rise)))
-    return low, at
-
-
 class Watch:
     """The margins of one question; made by :func:`watch_of`.
 
@@ -86,8 +71,8 @@ class Watch:
         samples = math.ceil(question.dt / longest)
         self.samples = max(1, min(samples, _MOST_SAMPLES // question.steps))
         self.step = question.dt / self.samples
-        self.tables: NodeTables = motion_tables(
-            self.mean_motion, question.dt, question.steps, question.dimensions, self.samples
+        self.prediction = prediction_of(
+            Cwh(self.mean_motion), question.dt, question.steps, question.dimensions, self.samples
         )
         nodes = question.dt * np.arange(question.steps)[:, None]
         self.times = nodes + self.step * np.arange(self.samples + 1)[None, :]
@@ -96,21 +81,21 @@ class Watch:
         corridor = corridor_of(question.scenario.corridor, question.dimensions)
         self.normals = corridor.normals / corridor.lengths[:, None]
         self.offsets = corridor.offsets / corridor.lengths
-        self.names = corridor.faces
+        self.names = corridor.names
 
     def until(self, steps: int) -> Watch:
         """The watch of the same question with T at ``steps`` intervals, at most its own: views of the same tables."""
         out = copy(self)
         goal = self.question.goal and replace(self.question.goal, earliest=1)
         out.question = replace(self.question, steps=steps, goal=goal)
-        out.tables = self.tables.until(steps)
+        out.prediction = self.prediction.until(steps)
         out.times, out.cosine, out.sine = self.times[:steps], self.cosine[:steps], self.sine[:steps]
         return out
 
     def minima(self, state: Floats, thrust: Floats) -> Minima:
         """Local minima and the all-times bound of the flight from ``state`` (2 d,) under ``thrust`` (N, d) in m/s^2."""
         d, h = self.question.dimensions, self.step
-        flown = self.tables.flight(state, thrust)
+        flown = self.prediction.flight(state, thrust)
         value, slope = self.along_normals(flown)
         value += self.offsets
         limit = self.question.speed_limit
@@ -138,20 +123,13 @@ class Watch:
 
     def cuts(self, times: Floats, faces: Ints) -> Cuts:
         """Rows of f_i(t) = offset + start . x0 + thrust . u for pairs of time (J,) in [0, T] and face (J,)."""
-        d, count, dt = self.question.dimensions, self.question.steps, self.question.dt
-        last = np.minimum((times / dt).astype(np.int64), count - 1)
-        free, held = held_displacement(self.mean_motion, times - last * dt, d)
         angle = self.phase + self.rate * times
         cosine, sine = np.cos(angle), np.sin(angle)
         body = self.normals[faces]
         normal = -body
-        normal[:, 0] = -(cosine * body[:, 0] - sine * body[:, 1])
-        normal[:, 1] = -(sine * body[:, 0] + cosine * body[:, 1])
-        along = (normal[:, None, :] @ free)[:, 0]
-        start = (along[:, None, :] @ self.tables.free[last])[:, 0]
-        thrust = (along[:, None, :] @ self.tables.driven[last])[:, 0]
-        columns = d * last[:, None] + np.arange(d)
-        thrust[np.arange(len(times))[:, None], columns] += (normal[:, None, :] @ held)[:, 0]
+        x, y = out_of_body(cosine, sine, body[:, 0], body[:, 1])
+        normal[:, 0], normal[:, 1] = -x, -y
+        start, thrust = self.prediction.position_rows(times, normal)
         return Cuts(times, faces, self.offsets[faces], start, thrust)
 
     def along_normals(self, flown: Floats) -> tuple[Floats, Floats]:
@@ -169,8 +147,8 @@ class Watch:
         x, y = position[..., 0], position[..., 1]
         vx, vy = speed[..., 0] + w * y, speed[..., 1] - w * x
         turned, rate = position.copy(), speed.copy()
-        turned[..., 0], turned[..., 1] = c * x + s * y, c * y - s * x
-        rate[..., 0], rate[..., 1] = c * vx + s * vy, c * vy - s * vx
+        turned[..., 0], turned[..., 1] = into_body(c, s, x, y)
+        rate[..., 0], rate[..., 1] = into_body(c, s, vx, vy)
         return turned, rate
 
     def between(self, furthest: float, fastest: float, thrust: Floats) -> float:

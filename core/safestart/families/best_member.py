@@ -23,7 +23,7 @@ from safestart.families.answer import TOLERANCE, Example, ForAll, Piece, Witness
 from safestart.families.between import Reach, nodes, reach
 from safestart.families.members import Family, Interval
 from safestart.model.scenario import Floats
-from safestart.optim.conic import bound
+from safestart.optim.thrust_ball import bound
 
 # The nodes take at most this part of a margin, or a millimetre.
 _SHARE, _LEAST_M, _MOST_PARTS = 0.05, 1e-3, 64
@@ -42,7 +42,8 @@ class Friendly:
         self.watch = Watch(self.question)
         self.half = family.half
         self.a_max = family.thrusts[1]
-        self.names, self.normals, self.tables = self.watch.names, self.watch.normals, self.watch.tables
+        self.names, self.normals = self.watch.names, self.watch.normals
+        self.prediction = self.watch.prediction
         held = np.abs(self.normals) @ self.half[: self.question.dimensions]
         self.offsets = self.watch.offsets + held
 

@@ -13,7 +13,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from safestart.exact.watch import Cuts, Ints, Minima, Watch, dips, watch_of
+from safestart.constraints.cubic import dips
+from safestart.exact.watch import Cuts, Ints, Minima, Watch, watch_of
 from safestart.families.between import chord_gap, half_angle, nodes, reach, turned
 from safestart.families.members import Family, signs
 from safestart.model.scenario import Floats
@@ -33,7 +34,7 @@ class Hostile:
         first = self.nodes[0]
         self.faces = len(first.names)
         self.half = family.half
-        self.names, self.tables = first.names * len(self.nodes), first.tables
+        self.names, self.prediction = first.names * len(self.nodes), first.prediction
         self.normals = np.tile(first.normals, (len(self.nodes), 1))
         held = np.abs(first.normals) @ self.half[: self.question.dimensions]
         self.offsets = np.tile(first.offsets - held, len(self.nodes))
@@ -123,7 +124,7 @@ def _box(node: Watch, half: Floats) -> _Box:
     d = len(half) // 2
     still = np.zeros((node.question.steps, d))
     wide = np.nonzero(half > 0.0)[0]
-    columns = [node.tables.flight(half[i] * np.eye(2 * d)[i], still) for i in wide]
+    columns = [node.prediction.flight(half[i] * np.eye(2 * d)[i], still) for i in wide]
     along = [node.along_normals(column) for column in columns]
     shape = (len(wide), *node.times.shape, len(node.names))
     return _Box(
@@ -138,7 +139,7 @@ def _box(node: Watch, half: Floats) -> _Box:
 def _node_minima(node: Watch, box: _Box, state: Floats, thrust: Floats) -> tuple[Floats, Minima]:
     """All-times bounds per face (F,) and the local minima over time of the worst corner's distances."""
     d = node.question.dimensions
-    flown = node.tables.flight(state, thrust)
+    flown = node.prediction.flight(state, thrust)
     value, slope = node.along_normals(flown)
     value += node.offsets
     low, at = dips(

@@ -11,7 +11,7 @@ from safestart.levelset.dynamics import Ball, Motion
 from safestart.levelset.kernels.lookup import lookup
 from safestart.levelset.lattice import Boundary, Lattice
 from safestart.model.scenario import Floats
-from safestart.unit import unit
+from safestart.model.unit import unit
 
 
 @dataclass(frozen=True, slots=True)

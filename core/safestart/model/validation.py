@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
-from safestart.errors import InvalidInput
+from safestart.errors import InvalidInput, SafestartError
 
 _LONGEST = 120
 _LISTED = 5
@@ -61,15 +61,23 @@ def received(report: Any) -> str:
     return shown if len(shown) <= _LONGEST else shown[: _LONGEST - 3] + "..."
 
 
+Error = TypeVar("Error", bound=SafestartError)
+
+
 def refusal(reports: Sequence[Any], prefix: str = "") -> InvalidInput:
     """One exception for a list of reports: the first in full, the other fields by name."""
+    return error_of(InvalidInput, reports, prefix)
+
+
+def error_of(kind: type[Error], reports: Sequence[Any], prefix: str = "") -> Error:
+    """The same as another of our errors."""
     named = reports[: 1 + _LISTED]
     fields = [prefix + (".".join(str(part) for part in report["loc"]) or "body") for report in named]
     wanted, came = required(reports[0]), received(reports[0])
     detail = f"{fields[0]}: required {wanted}, received {came}"
     if len(fields) > 1:
         detail += f" (and {len(reports) - 1} more: {', '.join(fields[1:])})"
-    return InvalidInput(detail, field=fields[0], required=wanted, received=came)
+    return kind(detail, field=fields[0], required=wanted, received=came)
 
 
 def validation_error(error: ValidationError, prefix: str = "") -> InvalidInput:

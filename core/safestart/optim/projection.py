@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
+from safestart.runtime.kernels import compiled
 
 FEASIBLE, INFEASIBLE, STALLED = 0, 1, 2
 
@@ -18,7 +18,7 @@ MAX_STEPS = 200
 """No instance of the tests takes more than a few dozen; beyond this the caller falls back."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def project(normals, bounds, point, work, active):  # type: ignore[no-untyped-def]
     """Move ``point`` (d,) to the nearest point with ``point @ normals <= bounds``; return a status code.
 

@@ -6,27 +6,17 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import ValidationError
+from pydantic_core import PydanticSerializationError, to_json
 
-from safestart.model.validation import validation_error
+from safestart.errors import UnfitResult
+from safestart.model.validation import error_of, validation_error
+from safestart.model.wire_model import WireModel as WireModel
+from safestart.processes.output import ProcessOutput as ProcessOutput
 from safestart.processes.sharding import Sharding, load
+from safestart.processes.views import View
 from safestart.records.artifact import Artifact as Artifact
 from safestart.runtime.progress import Context
-
-
-class WireModel(BaseModel):
-    """Base of every model that crosses the wire: unknown fields are refused, NaN and infinity too."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, strict=False)
-
-
-@dataclass(frozen=True, slots=True)
-class ProcessOutput:
-    """What a process returns: a JSON-able document and its artifacts."""
-
-    document: dict[str, Any]
-    artifacts: tuple[Artifact, ...] = ()
-
 
 Runner = Callable[[Any, Context], ProcessOutput]
 
@@ -54,7 +44,10 @@ class ProcessSpec:
     ``replay_tolerance`` is how far a replay on another machine or with other versions may be off, relative to
     max(1, |value|); on the same ones it is the same bit for bit.
     ``instant`` names a function (inputs) -> document that the service answers with at submission.
+    ``states`` names the list among the inputs, if there is one, that a service may limit further (``max_states``).
     ``tables`` are those of the outputs that are no lists of objects; these are tables by themselves.
+    ``views`` say how a page shows the outputs, the most important first.
+    ``extensions`` are further members of its description, each called ``safestart:...``.
     """
 
     id: str
@@ -69,7 +62,10 @@ class ProcessSpec:
     version: str = "1.0.0"
     replay_tolerance: float = 1e-9
     keywords: tuple[str, ...] = ()
+    states: str = ""
     tables: tuple[Table, ...] = ()
+    views: tuple[View, ...] = ()
+    extensions: dict[str, Any] = field(default_factory=dict)
     example: dict[str, Any] = field(default_factory=dict)
 
     def parse(self, inputs: Any) -> WireModel:
@@ -78,6 +74,20 @@ class ProcessSpec:
             return self.inputs.model_validate(inputs)
         except ValidationError as error:
             raise validation_error(error) from None
+
+    def check(self, document: dict[str, Any]) -> None:
+        """Raise ``UnfitResult`` unless ``document``, as the JSON that is kept, is what ``outputs`` describes.
+
+        Nothing is converted on the way: text is no number, 2.0 is no integer, NaN is nothing at all.
+        """
+        try:
+            self.outputs.model_validate_json(to_json(document, inf_nan_mode="constants"), strict=True)
+        except ValidationError as error:
+            raise error_of(UnfitResult, error.errors(include_url=False), "outputs.") from None
+        except PydanticSerializationError as error:
+            raise UnfitResult(
+                f"outputs: required JSON, received something else ({error})", required="JSON"
+            ) from None
 
     def runner(self) -> Runner:
         """Import and return the function that executes this process."""

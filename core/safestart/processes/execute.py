@@ -25,9 +25,10 @@ class Execution:
 
 
 def execute(process_id: str, inputs: Any, context: Context | None = None) -> Execution:
-    """Validate the inputs, run the process, state where the answer came from.
+    """Validate the inputs, run the process, check the outputs, state where the answer came from.
 
-    Raises ``NotFound`` for an unknown process and ``InvalidInput`` for inputs outside the spec.
+    Raises ``NotFound`` for an unknown process, ``InvalidInput`` for inputs outside the spec, and ``UnfitResult`` for
+    outputs outside it.
     """
     spec = process(process_id)
     parsed = spec.parse(inputs)
@@ -47,6 +48,7 @@ def merge(
 
 
 def _finished(spec: ProcessSpec, parsed: WireModel, started: datetime, output: ProcessOutput) -> Execution:
+    spec.check(output.document)
     dumped = parsed.model_dump(mode="json")
     document = {
         "schema_version": SCHEMA_VERSION,

@@ -1,4 +1,4 @@
-"""What every picture shares: headless figures, a colour-blind-safe palette, the corridor, PNG and NPZ bytes."""
+"""What every picture shares: headless figures, the corridor, PNG and NPZ bytes."""
 
 from __future__ import annotations
 
@@ -17,26 +17,6 @@ from safestart.model.scenario import CorridorShape
 from safestart.processes.base import Artifact
 
 mpl.use("Agg")
-
-PALETTE = {
-    "analytical": "#009E73",
-    "exact": "#000000",
-    "backward": "#0072B2",
-    "forward": "#56B4E9",
-    "hamilton_jacobi": "#D55E00",
-    "monte_carlo": "#CC79A7",
-}
-"""Okabe-Ito colours, one per engine, the same in every picture."""
-
-LABELS = {
-    "analytical": "certificate (closed form)",
-    "exact": "exact",
-    "backward": "backward (box input)",
-    "forward": "forward (outer)",
-    "hamilton_jacobi": "Hamilton-Jacobi",
-    "monte_carlo": "Monte Carlo (flown)",
-}
-
 
 NPZ = "application/x-npz"
 

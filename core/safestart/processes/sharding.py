@@ -11,23 +11,15 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from safestart.campaign.part import Part as Part
+from safestart.model.wire_model import WireModel
+from safestart.processes.output import ProcessOutput
 from safestart.records.comparable import canonical
 from safestart.runtime.progress import Context
 
-if TYPE_CHECKING:
-    from safestart.processes.base import ProcessOutput, WireModel
-
 MAX_SHARDS = 10_000
-
-
-@dataclass(frozen=True, slots=True)
-class Part:
-    """What one shard gave: a small JSON-able document, and bytes that only the merge reads."""
-
-    document: dict[str, Any]
-    data: bytes = b""
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from safestart.certificates.disturbed import proof as disturbed
-from safestart.certificates.disturbed import statement as disturbed_statement
+from safestart.proofs import disturbed, disturbed_statement, family_statement
 from safestart.proofs import family as for_all
-from safestart.proofs import family_statement
 from safestart.proofs import single as proof
 from safestart.proofs.single import Verified
 

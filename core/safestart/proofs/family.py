@@ -14,12 +14,12 @@ from typing import Any
 
 from flint import arb, arb_mat, fmpq
 
-from safestart.certificates.wording import lines_for_all
 from safestart.proofs.balls import PRECISION, Motion
 from safestart.proofs.family_statement import StatedForAll, read
 from safestart.proofs.refute import Refutation
 from safestart.proofs.single import Verified
 from safestart.proofs.statement import ProofRejected, Stated
+from safestart.proofs.wording import lines_for_all
 from safestart.runtime.precision import precise
 
 _MOST_PIECES, _MOST_PARTS = 100_000, 4096

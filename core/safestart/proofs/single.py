@@ -14,11 +14,11 @@ from typing import Any
 
 from flint import arb, arb_mat, fmpq
 
-from safestart.certificates.wording import lines
 from safestart.proofs.balls import PRECISION, Motion
 from safestart.proofs.refute import refute
 from safestart.proofs.statement import Stated, read
 from safestart.proofs.strict import ProofRejected
+from safestart.proofs.wording import lines
 from safestart.runtime.precision import precise
 
 _MOST_PIECES = 100_000

@@ -17,11 +17,11 @@ from hashlib import sha256
 from typing import Any
 
 from safestart.errors import InvalidInput
-from safestart.plain_json import loads
 from safestart.records.artifact import Artifact
 from safestart.records.bundle_page import page
 from safestart.records.bundle_parts import event_facts, job_facts, require_names, require_result
 from safestart.records.comparable import canonical, digest
+from safestart.runtime.plain_json import loads
 
 FORMAT, VERSION = "safestart-bundle", 1
 MOST_BYTES = 2 * 1024**3

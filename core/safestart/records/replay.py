@@ -18,11 +18,11 @@ from typing import Any, Literal
 import numpy as np
 
 from safestart.errors import invalid
-from safestart.plain_json import loads
 from safestart.processes.execute import SCHEMA_VERSION, execute
 from safestart.processes.registry import process
 from safestart.records.artifact import Artifact
 from safestart.records.comparable import canonical, comparable
+from safestart.runtime.plain_json import loads
 from safestart.runtime.progress import Context
 
 MOST_DIFFERENCES = 50

@@ -1,6 +1,6 @@
 """Guard of one supervised command: ends it when the supervisor goes away. Run as a script, imports nothing of ours.
 
-``guard.py FD GRACE_S COMMAND...``: FD is the reading end of a pipe that only the supervisor holds open for writing.
+``orphan_guard.py FD GRACE_S COMMAND...``: FD is the reading end of a pipe that only the supervisor writes to.
 It works wherever there are pipes, and needs no help from the command.
 """
 

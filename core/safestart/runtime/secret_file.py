@@ -1,8 +1,9 @@
-"""The database's password from a file: what stands in the environment is shown to whoever may inspect the process."""
+"""The database's password from a file: whoever may inspect the process sees its environment."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from urllib.parse import quote
 
 from safestart.errors import invalid
 
@@ -10,20 +11,21 @@ _REQUIRED = "a readable file that holds the password of the database"
 
 
 def with_password(url: str, file: str) -> str:
-    """``url`` with the password in ``file``, when it is one of PostgreSQL without any; raises ``InvalidInput``."""
-    if not file:
-        return url
-    # Here and not above: whoever only reads settings starts without SQLAlchemy.
-    from sqlalchemy.engine import make_url
-    from sqlalchemy.exc import ArgumentError
+    """``url`` with the password in ``file``, when it is one of PostgreSQL with a user and no password.
 
-    try:
-        parsed = make_url(url)
-    except (ArgumentError, ValueError):
-        return url  # refused where it is used, by what a URL must be
-    if parsed.get_backend_name() != "postgresql" or parsed.password is not None:
+    Raises ``InvalidInput`` for a file that holds no password. Any other URL stays as it is: the store refuses what it
+    cannot use.
+    """
+    scheme, separator, rest = url.partition("://")
+    user, at, place = rest.partition("@")
+    if (
+        not (file and separator and at)
+        or scheme.partition("+")[0] != "postgresql"
+        or ":" in user
+        or "/" in user
+    ):
         return url
-    return parsed.set(password=_read(file)).render_as_string(hide_password=False)
+    return f"{scheme}://{user}:{quote(_read(file), safe='')}@{place}"
 
 
 def _read(file: str) -> str:

@@ -15,12 +15,7 @@ import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from http.client import HTTPException
 from pathlib import Path
-from urllib.error import HTTPError
-from urllib.request import ProxyHandler, build_opener
-
-from safestart.errors import Unavailable
 
 FIRST_PAUSE_S = 0.5
 LONGEST_PAUSE_S = 30.0
@@ -184,28 +179,6 @@ def describe(code: int) -> str:
         return f"signal {-code}, {signal.Signals(-code).name}"
     except ValueError:
         return f"signal {-code}"
-
-
-def wait_ready(url: str, within_s: float, alive: Callable[[], bool] = lambda: True) -> float:
-    """Poll ``url`` until it answers 2xx; returns the seconds it took.
-
-    Raises ``Unavailable`` after ``within_s`` seconds, or as soon as ``alive`` says False.
-    """
-    opener = build_opener(ProxyHandler({}))  # a proxy of the environment has no business with a local service
-    start = time.monotonic()
-    last = "no answer"
-    while time.monotonic() - start < within_s and alive():
-        try:
-            with opener.open(url, timeout=2.0):
-                return time.monotonic() - start
-        except HTTPError as error:
-            last = f"status {error.code}"
-        except (OSError, HTTPException) as error:
-            last = str(error)
-        time.sleep(0.05)
-    raise Unavailable(
-        f"{url}: required an answer within {within_s:g} s, received {last}", required="a ready service"
-    )
 
 
 def _print(line: str) -> None:

@@ -11,13 +11,16 @@ from types import MappingProxyType
 import numpy as np
 
 from safestart.collision_avoidance.warm import warm as avoidance
+from safestart.constraints.corridor import corridor_of
 from safestart.engines.base import Problem
-from safestart.engines.registry import ENGINE_NAMES, engine
+from safestart.engines.load import engine
+from safestart.engines.registry import ENGINES
 from safestart.levelset.warm import warm as compile_levelset
 from safestart.model.scenario import Grid, Scenario
 from safestart.passive_safety.warm import warm as passive_safety
 from safestart.runtime.progress import Context
-from safestart.simulation.worlds import CwhWorld
+from safestart.simulation.planar import watched
+from safestart.simulation.plant import plant_of
 
 _PROBLEM = Problem(Scenario.of(3.0, 0.1), Grid(3, 3, 60.0), horizon=4.0, dt=2.0)
 
@@ -25,7 +28,8 @@ _PROBLEM = Problem(Scenario.of(3.0, 0.1), Grid(3, 3, 60.0), horizon=4.0, dt=2.0)
 def _flights() -> None:
     engine("monte_carlo").solve(_PROBLEM, Context())
     start = np.array([0.0, 30.0, 0.0, 0.0, 0.0, 0.0])
-    CwhWorld(_PROBLEM.scenario, start, _PROBLEM.dt).fly(np.zeros(2))
+    scenario = _PROBLEM.scenario
+    watched(plant_of(scenario), [corridor_of(scenario.corridor)], start, _PROBLEM.dt).fly(np.zeros(3))
 
 
 def _level_sets() -> None:
@@ -35,7 +39,7 @@ def _level_sets() -> None:
 
 
 def _sets() -> None:
-    for name in ENGINE_NAMES:
+    for name in ENGINES:
         if name not in ("monte_carlo", "hamilton_jacobi"):
             engine(name).solve(_PROBLEM, Context())
 

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
 from safestart.model.scenario import Floats
+from safestart.runtime.kernels import compiled
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def meet_margins(positions: Floats, unit: Floats, vertices: Floats, margin: Floats) -> None:
     """Write the margin (P,) in metres of the polygon moved by each of ``positions`` (P, 2).
 

@@ -15,9 +15,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from safestart.model.scenario import Floats
+from safestart.runtime.kernels import compiled
 
 FINE = 1e-8
 """Accuracy (m) sought for margins near zero, so that the sign is right."""
@@ -28,7 +28,7 @@ BLOCK = 64
 DRIFT = 4
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _collapse(series: Floats, x: float, out: Floats) -> None:
     """Chebyshev sum over the rows of ``series`` at x in [-1, 1], into ``out``."""
     before, now = 1.0, x
@@ -40,7 +40,7 @@ def _collapse(series: Floats, x: float, out: Floats) -> None:
         before, now = now, 2.0 * x * now - before
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _turn(raw: Floats, theta: float, out: Floats) -> None:
     """Fourier terms of S in the LVLH angle phi = pi/2 - a + theta, rewritten in a."""
     c1, s1 = -math.cos(2.0 * theta), -math.sin(2.0 * theta)
@@ -52,7 +52,7 @@ def _turn(raw: Floats, theta: float, out: Floats) -> None:
         c, s = c * c1 - s * s1, s * c1 + c * s1
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _f(a: float, x: float, y: float, waves: Floats) -> tuple[float, float, float, float, float]:
     """f, df/da, d2f/da2, and S and dS/da, at one angle of one smooth piece."""
     sine, cosine = math.sin(a), math.cos(a)
@@ -70,7 +70,7 @@ def _f(a: float, x: float, y: float, waves: Floats) -> tuple[float, float, float
     return along + v, x * cosine - y * sine + d, dd - along, v, d
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _polish(a: float, low: float, high: float, x: float, y: float, waves: Floats) -> float:
     """Angle of the local minimum of one smooth piece inside [low, high]: Newton, safeguarded by bisection."""
     for _ in range(60):
@@ -89,7 +89,7 @@ def _polish(a: float, low: float, high: float, x: float, y: float, waves: Floats
     return a
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _least(
     qx: float, qy: float, half: float, nodes: Floats, scan: Floats, waves: Floats
 ) -> tuple[float, float]:
@@ -125,7 +125,7 @@ def _least(
     return best, where
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _margin_at(
     t: float, px: float, py: float, horizon: float, omega: float, half: float, hold: float,
     value: Floats, slope: Floats, nodes: Floats, trig: Floats, raw: Floats, waves: Floats, scan: Floats,
@@ -152,7 +152,7 @@ def _margin_at(
     return best, dx * math.sin(a) + dy * math.cos(a) + growing - omega * turning
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _climb(
     k: int, best: float, at: float, bend: float, times: Floats, px: float, py: float,
     horizon: float, omega: float, half: float, hold: float,
@@ -204,7 +204,7 @@ def _climb(
     return best, at
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def reach_margins(
     points: Floats, times: Floats, horizon: float, omega: float, half: float, hold: float, bend: Floats,
     value: Floats, slope: Floats, nodes: Floats, trig: Floats, margin: Floats, when: Floats,

@@ -9,15 +9,14 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
-from safestart.simulation.truth import AT_NODES, CONTINUOUS
+from safestart.runtime.kernels import compiled
+from safestart.simulation.noise import AT_NODES, CONTINUOUS
 
 _AT_NODES, _CONTINUOUS = AT_NODES, CONTINUOUS
 _BISECTIONS = 50
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@compiled(error_model="numpy", inline="always")
 def distance(normals, offsets, x, d, count):  # type: ignore[no-untyped-def]
     """Least distance (m) of the position in x to the faces with unit normals (d, F) and offsets (F,)."""
     least = math.inf
@@ -31,7 +30,7 @@ def distance(normals, offsets, x, d, count):  # type: ignore[no-untyped-def]
     return least
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def slopes(normals, offsets, x, d, count, omega, step, out):  # type: ignore[no-untyped-def]
     """Distances ``out[0]`` and their rates times ``step`` ``out[1]`` of each face that turns at ``omega``."""
     for i in range(count):
@@ -44,15 +43,7 @@ def slopes(normals, offsets, x, d, count, omega, step, out):  # type: ignore[no-
         out[1, i] = rate * step
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def delivered(truth, ux, uy, magnitude, direction):  # type: ignore[no-untyped-def]
-    """In-plane thrust as the thrusters deliver it: scaled and turned."""
-    scale = 1.0 + truth.magnitude_sigma * magnitude
-    cos, sin = math.cos(truth.direction_sigma * direction), math.sin(truth.direction_sigma * direction)
-    return scale * (cos * ux - sin * uy), scale * (sin * ux + cos * uy)
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def advance(  # type: ignore[no-untyped-def]
     k, x, ux, uy, uz, phi, gamma, faces, offsets, omega, step, check, before, after, log_state
 ):
@@ -108,7 +99,7 @@ def advance(  # type: ignore[no-untyped-def]
     return margin, math.inf
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def cubic_root(left, begin, right, end, at):  # type: ignore[no-untyped-def]
     """Where in [0, at] the cubic through (left, begin) and (right, end) crosses zero; it is negative at ``at``."""
     rise = right - left

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from functools import cache
 from typing import Any, Literal
 
 from pydantic import BaseModel
 
 from safestart.errors import NotFound
+from safestart.processes import views
 from safestart.processes.base import ProcessSpec
 from safestart.processes.registry import process
 from safestart_service.documents.dialects import common
@@ -38,6 +40,7 @@ def summary(spec: ProcessSpec, base: str) -> dict[str, Any]:
         "keywords": list(spec.keywords),
         "jobControlOptions": [*(["sync-execute"] if spec.light else []), "async-execute", "dismiss"],
         "outputTransmission": ["value"],
+        "safestart:view_kinds": views.kinds(spec.views),
         "links": [
             link(here, "self", "this process"),
             link(f"{here}/execution", EXECUTE_REL, "execute it"),
@@ -47,7 +50,15 @@ def summary(spec: ProcessSpec, base: str) -> dict[str, Any]:
 
 def description(spec: ProcessSpec, base: str) -> dict[str, Any]:
     """Full description of a process."""
-    return {**summary(spec, base), **_interface(spec)}
+    return {**summary(spec, base), **_interface(spec), **_looks(spec), **spec.extensions}
+
+
+def _looks(spec: ProcessSpec) -> dict[str, Any]:
+    """How a page shows the outputs: additions to the standard, under names of our own."""
+    return {
+        "safestart:tables": [asdict(table) for table in spec.tables],
+        "safestart:views": views.documents(spec.views),
+    }
 
 
 def output_ids(spec: ProcessSpec) -> tuple[str, ...]:

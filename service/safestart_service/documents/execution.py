@@ -11,11 +11,10 @@ from pydantic import Field, create_model
 
 from safestart.errors import InvalidInput, invalid
 from safestart.processes.base import ProcessSpec, WireModel
-from safestart.processes.go_no_go.spec import GoNoGoInputs
 from safestart.processes.registry import process
 from safestart.runtime.progress import Context
 from safestart_service.documents.describe import output_ids
-from safestart_service.documents.formats import ogc_values
+from safestart_service.documents.formats.ogc import ogc_values
 from safestart_service.http.body import parse_body
 
 _QUALIFIED = {"value", "mediaType", "encoding", "schema"}
@@ -42,6 +41,7 @@ class ExecuteRequest(WireModel):
     response: Literal["document", "raw"] = Field(
         "document", description="raw (the bare value) needs exactly one entry in outputs, and sync execution."
     )
+    inputs: Any
 
 
 @cache
@@ -98,10 +98,10 @@ def check_outputs(spec: ProcessSpec, request: ExecuteRequest, *, sync: bool) -> 
         )
 
 
-def check_states(inputs: WireModel, max_states: int) -> None:
+def check_states(spec: ProcessSpec, inputs: WireModel, max_states: int) -> None:
     """Raise ``InvalidInput`` beyond the number of states that this service is set to take."""
-    if isinstance(inputs, GoNoGoInputs) and len(inputs.states) > max_states:
-        raise invalid("states", f"at most {max_states} items", len(inputs.states))
+    if spec.states and len(getattr(inputs, spec.states)) > max_states:
+        raise invalid(spec.states, f"at most {max_states} items", len(getattr(inputs, spec.states)))
 
 
 def run_now(spec: ProcessSpec, inputs: WireModel, context: Context) -> dict[str, Any]:

@@ -9,12 +9,12 @@ from fastapi.openapi.utils import get_openapi
 from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
 
+from safestart.processes.go_no_go.one_start import GoNoGoAnswer
 from safestart.processes.registry import PROCESS_IDS, process
 from safestart.runtime.access import Role
 from safestart_service.access.gate import needed_role
 from safestart_service.documents import deprecation, schemas
 from safestart_service.documents.execution import execute_model
-from safestart_service.documents.instant import GoNoGoAnswer
 from safestart_service.documents.problems import MEDIA_TYPE, Problem
 
 REF = "#/components/schemas/"
@@ -140,8 +140,11 @@ def build(app: FastAPI) -> dict[str, Any]:
     ]
     outputs = [*ANSWERS, *(spec.outputs for spec in specs)]
     components: dict[str, Any] = document.setdefault("components", {}).setdefault("schemas", {})
-    for models, mode in ((inputs, "validation"), (outputs, "serialization")):
-        _, found = models_json_schema([(model, mode) for model in models], ref_template=REF + "{model}")
+    described = [
+        models_json_schema([(model, "validation") for model in inputs], ref_template=REF + "{model}"),
+        models_json_schema([(model, "serialization") for model in outputs], ref_template=REF + "{model}"),
+    ]
+    for _, found in described:
         for name, schema in found["$defs"].items():
             if components.setdefault(name, schema) != schema:
                 raise AssertionError(f"two different schemas are called {name}")

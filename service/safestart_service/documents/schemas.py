@@ -5,7 +5,7 @@ from __future__ import annotations
 from datetime import datetime
 from typing import Any, Literal
 
-from pydantic import BaseModel, Field
+from pydantic import BaseModel, ConfigDict, Field
 from pydantic.json_schema import SkipJsonSchema
 
 from safestart.processes.base import WireModel
@@ -47,6 +47,9 @@ class ProcessSummary(BaseModel):
     jobControlOptions: list[Literal["sync-execute", "async-execute", "dismiss"]]
     outputTransmission: list[Literal["value", "reference"]]
     links: list[Link]
+    view_kinds: list[str] = Field(
+        alias="safestart:view_kinds", description="Kinds of the views that a page shows its outputs by."
+    )
 
 
 class ProcessList(BaseModel):
@@ -74,16 +77,53 @@ class OutputDescription(BaseModel):
     json_schema: dict[str, Any] = Field(alias="schema")
 
 
+class TableDescription(BaseModel):
+    """Lists side by side as a table, or maps over two axes."""
+
+    name: str
+    columns: list[str]
+    axes: list[str]
+
+
+class ViewDescription(BaseModel):
+    """A view of the outputs; what else it has depends on its kind."""
+
+    model_config = ConfigDict(extra="allow")
+
+    kind: str
+
+
+# A field that may be absent and is never null: the default that stands for its absence is no part of the schema.
+_ABSENT: dict[str, Any] = {"json_schema_extra": lambda schema: schema.pop("default", None)}
+
+
+class EngineDescription(BaseModel):
+    """An engine of the benchmark, as pages show it."""
+
+    name: str = Field(description="What inputs, rows and arrays call it.")
+    title: str
+    colour: str = Field(description="#RRGGBB, legible on light and on dark.")
+    summary: str
+
+
 class ProcessDescription(ProcessSummary):
     """A process with JSON schemas of its inputs and outputs."""
 
     inputs: dict[str, InputDescription]
     outputs: dict[str, OutputDescription]
     example: dict[str, Any] = Field(description="Inputs to start from.")
-
-
-# A field that may be absent and is never null: the default that stands for its absence is no part of the schema.
-_ABSENT: dict[str, Any] = {"json_schema_extra": lambda schema: schema.pop("default", None)}
+    tables: list[TableDescription] = Field(
+        alias="safestart:tables", description="Tables of the outputs that are no lists of objects."
+    )
+    views: list[ViewDescription] = Field(
+        alias="safestart:views", description="How a page shows the outputs, the most important first."
+    )
+    engines: list[EngineDescription] | SkipJsonSchema[None] = Field(
+        None,
+        alias="safestart:engines",
+        description="The engines that it compares, in the order of their runs; absent for other processes.",
+        **_ABSENT,
+    )
 
 
 class StatusInfo(BaseModel):

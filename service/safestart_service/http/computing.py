@@ -1,27 +1,56 @@
-"""Answers computed while the client waits, beside the event loop: few at once, and so many in line."""
+"""Answers computed while the client waits, beside the event loop: few at once, and so many in line.
+
+An answer that nobody waits for any more is not computed: a page asks again with every move of a slider.
+"""
 
 from __future__ import annotations
 
 import asyncio
+import threading
 from collections.abc import Callable
-from typing import ParamSpec, TypeVar
+from contextlib import suppress
+from dataclasses import replace
+from typing import TypeVar
 
 from fastapi import Request
+from starlette.requests import ClientDisconnect
 
+from safestart.errors import Cancelled, SafestartError
+from safestart.runtime.progress import Context
 from safestart_service.access.callers import Callers
 from safestart_service.state import services
 
-Asked = ParamSpec("Asked")
 Answer = TypeVar("Answer")
 
 
-async def computed(
-    request: Request, work: Callable[Asked, Answer], *args: Asked.args, **kwargs: Asked.kwargs
-) -> Answer:
-    """Do the work in a thread; raises ``RateLimited`` where too much is in line.
+async def computed(request: Request, work: Callable[[Context], Answer]) -> Answer:
+    """Do the work in a thread; raises ``RateLimited`` where too much is in line, ``ClientDisconnect`` for who left.
 
-    What is in line is done even if its client has left, so a caller could fill the line for hours.
+    The context that the work is given says that it is cancelled once the client has left. Work still in line is then
+    not begun; a process that asks its context, as it must, ends early.
     """
-    line: Callers = services(request).computing
+    found = services(request)
+    line: Callers = found.computing
+    left = threading.Event()
+
+    def wanted() -> Answer:
+        if left.is_set():
+            raise Cancelled("the caller left")
+        return work(replace(found.context, cancelled=left.is_set))
+
     with line.place(request):
-        return await asyncio.to_thread(work, *args, **kwargs)
+        watch = asyncio.create_task(_leaves(request, left))
+        try:
+            return await asyncio.to_thread(wanted)
+        except Cancelled:
+            raise ClientDisconnect from None
+        finally:
+            watch.cancel()
+
+
+async def _leaves(request: Request, left: threading.Event) -> None:
+    """Wait for the client to leave; the body has been read, or there is none."""
+    with suppress(SafestartError):  # of a body that nobody asked for
+        while (await request.receive())["type"] != "http.disconnect":
+            pass
+        left.set()

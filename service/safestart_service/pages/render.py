@@ -75,7 +75,9 @@ def _static_file(name: str) -> tuple[bytes, str, str]:
 
 @cache
 def _names() -> frozenset[str]:
-    return frozenset(path.name for path in (_HERE / "static").iterdir() if path.suffix in _TYPES) | {_PLOTLY}
+    here = _HERE / "static"
+    found = (path.relative_to(here).as_posix() for path in here.rglob("*") if path.suffix in _TYPES)
+    return frozenset(found) | {_PLOTLY}
 
 
 def static(request: Request, name: str) -> Response:

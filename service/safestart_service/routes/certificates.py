@@ -11,7 +11,6 @@ from safestart_service.documents.openapi import answer, json_body, refusals
 from safestart_service.http.answers import Json
 from safestart_service.http.body import parse_body, read_body
 from safestart_service.http.computing import computed
-from safestart_service.state import services
 
 router = APIRouter(tags=["instant answers"])
 
@@ -25,5 +24,6 @@ router = APIRouter(tags=["instant answers"])
 async def certificates(request: Request) -> Response:
     """Synchronization radius, safe fraction of the corridor, mask and margin of every grid point."""
     body = await read_body(request)
-    context = services(request).context
-    return await computed(request, lambda: Json(run_now(SPEC, parse_body(CertificateInputs, body), context)))
+    return await computed(
+        request, lambda context: Json(run_now(SPEC, parse_body(CertificateInputs, body), context))
+    )

@@ -62,7 +62,7 @@ async def compare(request: Request) -> Response:
     )
 
 
-@router.get("/static/{name}", include_in_schema=False)
+@router.get("/static/{name:path}", include_in_schema=False)
 async def static(request: Request, name: str) -> Response:
     """Scripts, style sheets and icon of the pages."""
     return pages.static(request, name)

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import Response
 
 from safestart.errors import NotFound
+from safestart.processes.go_no_go import run
+from safestart.processes.go_no_go.method_registry import METHODS, PROVING
+from safestart.processes.go_no_go.one_start import ONE_START, GoNoGoAnswer
 from safestart.processes.go_no_go.spec import SPEC, GoNoGoInputs, GoNoGoOutputs
+from safestart.runtime.progress import Context
 from safestart_service.documents.execution import check_states, run_now
-from safestart_service.documents.instant import GoNoGoAnswer, GoNoGoQuery, flat_answer
 from safestart_service.documents.openapi import answer, content, json_body, refusals
 from safestart_service.http.answers import Json
 from safestart_service.http.body import parse_body, read_body
@@ -18,21 +21,33 @@ from safestart_service.http.computing import computed
 from safestart_service.http.lean import query_route
 from safestart_service.state import services
 
+if TYPE_CHECKING:
+    from pydantic import BaseModel as GoNoGoQuery
+else:
+    GoNoGoQuery = ONE_START.query("GoNoGoQuery", "One operating point and one start, flat.")
+_SILENT = Context()
 
-async def _answer(request: Request, query: GoNoGoQuery) -> Response:
-    # The closed form takes microseconds; a cone program would hold up every other request.
-    if query.method == "closed_form":
-        return Json(flat_answer(query))
-    document = await computed(request, flat_answer, query, services(request).context)
-    if document["verdict"] != "UNDECIDED":
+
+def _document(inputs: GoNoGoInputs, context: Context) -> dict[str, Any]:
+    return run.answer(inputs, context).document_of_one()
+
+
+def _instant(inputs: GoNoGoInputs) -> dict[str, Any] | None:
+    """The document that takes microseconds; a cone program would hold up every other request."""
+    return _document(inputs, _SILENT) if METHODS[inputs.method].at_once else None
+
+
+async def _answer(request: Request, inputs: GoNoGoInputs) -> Response:
+    document = await computed(request, lambda context: _document(inputs, context))
+    if METHODS[inputs.method].proves and document["verdict"] != "UNDECIDED":
         document["proof_url"] = f"/go-no-go/proof?{request.url.query}"
     return Json(document)
 
 
-async def _proof(request: Request, query: GoNoGoQuery) -> Response:
-    asked = query.model_copy(update={"method": "exact" if query.method == "closed_form" else query.method})
-    asked = asked.model_copy(update={"proofs": True})
-    document = await computed(request, flat_answer, asked, services(request).context)
+async def _proof(request: Request, inputs: GoNoGoInputs) -> Response:
+    method = inputs.method if METHODS[inputs.method].proves else PROVING
+    asked = inputs.model_copy(update={"method": method, "proofs": True})
+    document = await computed(request, lambda context: _document(asked, context))
     if document["proof"] is None:
         raise NotFound(
             f"there is no proof: {document['reason']}",
@@ -42,8 +57,8 @@ async def _proof(request: Request, query: GoNoGoQuery) -> Response:
     return Json(document["proof"], headers={"Content-Disposition": 'attachment; filename="proof.json"'})
 
 
-one = APIRouter(tags=["instant answers"], route_class=query_route(GoNoGoQuery, _answer))
-proof = APIRouter(tags=["instant answers"], route_class=query_route(GoNoGoQuery, _proof))
+one = APIRouter(tags=["instant answers"], route_class=query_route(ONE_START.parse, _answer, _instant))
+proof = APIRouter(tags=["instant answers"], route_class=query_route(ONE_START.parse, _proof))
 many = APIRouter(tags=["instant answers"])
 
 
@@ -52,13 +67,13 @@ many = APIRouter(tags=["instant answers"])
     summary="Go/no-go for one start",
     responses={200: answer(GoNoGoAnswer, "The verdict and every margin it rests on."), **refusals(422)},
 )
-async def go_no_go_one(request: Request, query: Annotated[GoNoGoQuery, Query()]) -> Response:
+async def go_no_go_one(_query: Annotated[GoNoGoQuery, Query()]) -> Response:
     """May a chaser at rest at this point start its approach?
 
     By the paper's closed form, where NO_GO means not certified and GO is no proof, or with ``method=exact`` by a cone
     program that proves either. A start outside the corridor is NO_GO; ``violated_faces`` says where.
     """
-    return await _answer(request, query)
+    raise AssertionError("its route class answers")
 
 
 @proof.get(
@@ -69,13 +84,13 @@ async def go_no_go_one(request: Request, query: Annotated[GoNoGoQuery, Query()])
         **refusals(404, 422),
     },
 )
-async def go_no_go_proof(request: Request, query: Annotated[GoNoGoQuery, Query()]) -> Response:
+async def go_no_go_proof(_query: Annotated[GoNoGoQuery, Query()]) -> Response:
     """The proof of the exact answer to the same question, as a file for ``safestart verify``.
 
     It is computed anew from the question (milliseconds), so the link holds as long as the service does. 404 when the
     start is UNDECIDED.
     """
-    return await _proof(request, query)
+    raise AssertionError("its route class answers")
 
 
 @many.post(
@@ -89,9 +104,9 @@ async def go_no_go_many(request: Request) -> Response:
     body = await read_body(request)
     found = services(request)
 
-    def respond() -> Response:
+    def respond(context: Context) -> Response:
         inputs = parse_body(GoNoGoInputs, body)
-        check_states(inputs, found.settings.max_states)
-        return Json(run_now(SPEC, inputs, found.context))
+        check_states(SPEC, inputs, found.settings.max_states)
+        return Json(run_now(SPEC, inputs, context))
 
     return await computed(request, respond)

@@ -12,6 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from safestart.processes.base import ProcessSpec
 from safestart.processes.registry import PROCESS_IDS, process
 from safestart.runtime.access import Caller, Role
+from safestart.runtime.progress import Context
 from safestart_service.access.gate import caller
 from safestart_service.documents.describe import description, known_process, summary
 from safestart_service.documents.execution import (
@@ -110,12 +111,12 @@ async def execute(
     sync = spec.light and not wants_async
     found, base, by = services(request), base_url(request), caller(request)
 
-    def respond() -> Response:
+    def respond(context: Context) -> Response:
         asked: Any = parse_request(spec.id, body)
         check_outputs(spec, asked, sync=sync)
-        check_states(asked.inputs, found.settings.max_states)
+        check_states(spec, asked.inputs, found.settings.max_states)
         if sync:
-            return Json(selected(run_now(spec, asked.inputs, found.context), asked))
+            return Json(selected(run_now(spec, asked.inputs, context), asked))
         found.access.require_submit(request)
         return _submit(found, spec, asked, idempotency_key, base, wants_async, by)
 
@@ -125,7 +126,7 @@ async def execute(
 def _submit(
     found: Services,
     spec: ProcessSpec,
-    asked: ExecuteRequest | Any,
+    asked: ExecuteRequest,
     key: str | None,
     base: str,
     wants_async: bool,

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from fastapi import APIRouter, Path, Query, Request
 from fastapi.responses import Response
 
-from safestart_service.documents import formats
 from safestart_service.documents.arrays import arrays_of
+from safestart_service.documents.formats.base import Format
+from safestart_service.documents.formats.registry import BY_NAME, BY_TYPE, FORMATS, tag_of
 from safestart_service.documents.jobs_view import known_job, result_document
 from safestart_service.documents.openapi import REF, content, refusals
-from safestart_service.documents.schemas import ResultDocument
 from safestart_service.http.answers import Json, base_url, entity_tag, not_modified
 from safestart_service.http.negotiation import chosen
 from safestart_service.routes.jobs import JobId
@@ -19,10 +19,23 @@ from safestart_service.state import services
 
 router = APIRouter(tags=["results"])
 
+
+def _body(form: Format) -> dict[str, Any]:
+    """What the API's description says of a form."""
+    if form.model is not None:
+        return {"schema": {"$ref": REF + form.model.__name__}}
+    return {"schema": {"type": "object"} if form.document else _FILE}
+
+
 _CACHE = "private, no-cache"
 _ETAG = "SHA-256 of the content."
 _FILE: dict[str, Any] = {"type": "string", "format": "binary"}
-Format = Literal["record", "ogc", "csv", "npz", "parquet"]
+_NAMES = list(BY_NAME)
+_WITH_ROWS = [form.name for form in FORMATS if form.rows]
+if TYPE_CHECKING:
+    FormatName = str
+else:
+    FormatName = Literal[tuple(_NAMES)]
 # Types a browser may show; everything else is a download, so that nothing a worker stored can act as a page.
 _SHOWN = ("image/png", "image/jpeg", "application/json", "text/csv", "text/plain")
 
@@ -35,11 +48,7 @@ _SHOWN = ("image/png", "image/jpeg", "application/json", "text/csv", "text/plain
             "description": "By Accept: the record (for whoever takes anything), outputs by id as OGC API - Processes "
             "1.0 has them (application/json), or a table or arrays of the outputs.",
             "headers": {"ETag": {"description": _ETAG, "schema": {"type": "string"}}},
-            "content": {
-                formats.RECORD: {"schema": {"$ref": REF + ResultDocument.__name__}},
-                formats.OGC: {"schema": {"type": "object"}},
-                **{kind: {"schema": _FILE} for kind in (formats.CSV, formats.NPZ, formats.PARQUET)},
-            },
+            "content": {form.media_type: _body(form) for form in FORMATS},
         },
         **refusals(304, 404, 406, 422, 503),
     },
@@ -48,28 +57,31 @@ def results(
     request: Request,
     jobID: JobId,
     format: Annotated[
-        Format | None, Query(description="Instead of Accept, for links: record, ogc, csv, npz or parquet.")
+        FormatName | None,
+        Query(description=f"Instead of Accept, for links: {', '.join(_NAMES[:-1])} or {_NAMES[-1]}."),
     ] = None,
     table: Annotated[
         str | None,
-        Query(max_length=100, description="Which table of the outputs (csv, parquet); absent: the first."),
+        Query(
+            max_length=100,
+            description=f"Which table of the outputs ({', '.join(_WITH_ROWS)}); absent: the first.",
+        ),
     ] = None,
 ) -> Response:
     """The stored result; 404 ``result-not-ready`` until the job is successful."""
-    kind = formats.BY_NAME[format] if format else chosen(request.headers.get("accept"), formats.OFFERED)
+    form = BY_NAME[format] if format else BY_TYPE[chosen(request.headers.get("accept"), list(BY_TYPE))]
     found = services(request)
     known_job(found, jobID)
     record = result_document(found, jobID, base_url(request))
-    tag = entity_tag(record["sha256"] + formats.tag_of(kind, table))
+    tag = entity_tag(record["sha256"] + tag_of(form, table))
     known = not_modified(request, tag)
     if known is not None:
         known.headers["Vary"] = "Accept"
         return known
     headers = {"ETag": tag, "Cache-Control": _CACHE, "Vary": "Accept"}
-    if kind not in formats.JSON:
-        ending = formats.NAME[kind]
-        headers["Content-Disposition"] = f'attachment; filename="{jobID}.{ending}"'
-    return Response(formats.encoded(record, kind, table), headers=headers, media_type=kind)
+    if not form.document:
+        headers["Content-Disposition"] = f'attachment; filename="{jobID}.{form.name}"'
+    return Response(form.encode(record, table), headers=headers, media_type=form.media_type)
 
 
 @router.get(

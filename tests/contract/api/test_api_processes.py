@@ -33,6 +33,15 @@ def test_process_list_and_description(client):
     assert required["grid"]["minOccurs"] == 0
 
 
+def test_the_benchmark_says_what_its_engines_look_like(client):
+    described = client.get("/processes/benchmark").json()
+    shown = described["safestart:engines"]
+    assert [engine["name"] for engine in shown] == described["inputs"]["engines"]["schema"]["default"]
+    assert {"name", "title", "colour", "summary"} == set(shown[0])
+    assert {engine["name"]: engine["title"] for engine in shown}["forward"] == "forward (outer)"
+    assert "safestart:engines" not in client.get("/processes/go-no-go").json()
+
+
 def test_descriptions_accept_their_own_examples(client):
     import jsonschema
 

@@ -102,7 +102,8 @@ def test_pages(queue):
 def test_files_of_the_pages(client):
     for name, kind in (
         ("safestart.css", "text/css"),
-        ("explore.js", "text/javascript"),
+        ("pages/explore.js", "text/javascript"),
+        ("logic/store.js", "text/javascript"),
         ("plotly.min.js", "text/javascript"),
     ):
         answer = client.get(f"/static/{name}")

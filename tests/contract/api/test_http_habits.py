@@ -12,12 +12,14 @@ import numpy as np
 import pytest
 
 from safestart.errors import SafestartError
-from safestart_service.documents.formats import OFFERED, RECORD, ogc_results
+from safestart_service.documents.formats.ogc import ogc_results
+from safestart_service.documents.formats.registry import BY_TYPE
 from safestart_service.http.negotiation import chosen
 from tests.contract.api.service_client import POINT, assert_problem, finish, submit
 from tests.contract.store.store_backends import pass_time
 from tests.waiting import PATIENCE_S
 
+RECORD = "application/vnd.safestart.result+json"
 OUTPUTS = {
     "rows": [
         {
@@ -66,13 +68,13 @@ def done(queue):
     ],
 )
 def test_negotiation(accept, expected):
-    assert chosen(accept, OFFERED) == expected
+    assert chosen(accept, list(BY_TYPE)) == expected
 
 
 @pytest.mark.parametrize("accept", ["image/png", "text/csv;q=0", "text/csv;q=none", "nonsense", ";;,"])
 def test_nothing_acceptable(accept):
     with pytest.raises(SafestartError, match="Accept: required one of") as refused:
-        chosen(accept, OFFERED)
+        chosen(accept, list(BY_TYPE))
     assert refused.value.status == 406
 
 

@@ -12,7 +12,7 @@ import pytest
 
 from safestart.processes.execute import execute
 from safestart.processes.registry import PROCESS_IDS, process
-from safestart_service.documents.formats import CSV, NPZ, PARQUET, encoded
+from safestart_service.documents.formats.registry import BY_NAME
 from safestart_service.documents.tables import tables_of
 
 STATES = [{"x_m": 5, "y_m": 40}, {"x_m": 0, "y_m": 140}, {"x_m": 90, "y_m": 20}]
@@ -25,8 +25,8 @@ def record_of(name: str, **inputs: Any) -> dict[str, Any]:
 
 def read(record: dict[str, Any], table: str | None = None) -> list[dict[str, Any]]:
     """The table as CSV has it; Parquet has the same columns and as many rows."""
-    rows = list(csv.DictReader(io.StringIO(encoded(record, CSV, table).decode())))
-    columnar = pq.read_table(io.BytesIO(encoded(record, PARQUET, table)))
+    rows = list(csv.DictReader(io.StringIO(BY_NAME["csv"].encode(record, table).decode())))
+    columnar = pq.read_table(io.BytesIO(BY_NAME["parquet"].encode(record, table)))
     assert (columnar.column_names, columnar.num_rows) == (list(rows[0]), len(rows))
     return rows
 
@@ -101,5 +101,5 @@ def test_lists_of_which_nothing_is_said_are_no_table() -> None:
     broken = {"x_m": [1.0], "y_m": [1.0], "mask": [[True]], "margin_m": [[1.0], [2.0]]}
     assert tables_of(broken, process("certificate").tables) == {}, "of another version"
     record = {"outputs": {"verdict": ["GO"], "margin_m": [1.0]}}
-    with np.load(io.BytesIO(encoded(record, NPZ, None)), allow_pickle=False) as found:
+    with np.load(io.BytesIO(BY_NAME["npz"].encode(record, None)), allow_pickle=False) as found:
         assert set(found) == {"margin_m"}

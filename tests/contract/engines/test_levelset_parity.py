@@ -14,6 +14,7 @@ from safestart.engines.base import Problem
 from safestart.engines.hamilton_jacobi import HamiltonJacobi
 from safestart.engines.hj.frame import Frame, coefficients, system_matrix
 from safestart.engines.hj.model import LinearMotion
+from safestart.engines.hj.options import HamiltonJacobiInput
 from safestart.engines.hj.peer import _edge
 from safestart.levelset import Ball, Input, Kind, Lattice, Linear, Options, Scheme, solve
 from safestart.levelset.adapter import Tabulated
@@ -121,9 +122,9 @@ def test_the_engine_answers_the_same_with_either_solver(kind: SetKind) -> None:
     """In float32, with a turning corridor (tube) and a standing one."""
     answers = []
     for solver in ("fused", "hj_reachability"):
-        options = {"hamilton_jacobi": {"solver": solver, "shape": [15, 15, 7, 7], "frame": "lvlh"}}
-        problem = Problem(Scenario.of(3.0, 0.1), Grid(21, 21, 60.0), 20.0, kind=kind, options=options)
-        result = HamiltonJacobi().solve(problem, Context())
+        options = HamiltonJacobiInput(accuracy="low", solver=solver, nodes_xy=15, nodes_v=7, frame="lvlh")
+        problem = Problem(Scenario.of(3.0, 0.1), Grid(21, 21, 60.0), 20.0, kind=kind)
+        result = HamiltonJacobi(options).solve(problem, Context())
         assert result.detail["solver"] == solver
         answers.append(result)
     ours, theirs = (result.arrays["margin_unrestricted"] for result in answers)

@@ -109,7 +109,7 @@ def test_the_service_loads_no_engine(tmp_path):
     code = f"""
 import sys
 import safestart_service.app as app
-heavy = {{"numba", "scipy", "matplotlib", "jax", "dask", "distributed", "hj_reachability", "safestart.engines"}}
+heavy = {{"numba", "scipy", "matplotlib", "jax", "dask", "distributed", "hj_reachability", "safestart.engines.base"}}
 assert not heavy & set(sys.modules), heavy & set(sys.modules)
 assert "sqlalchemy" not in sys.modules
 from tests.contract.api.service_client import HEAVY, POINT, service

@@ -81,7 +81,7 @@ def test_the_atlas_of_a_job_answers_single_starts(tmp_path: Path, monkeypatch: p
         def solve(*_: object, **__: object) -> None:
             raise AssertionError("solved although an atlas is there")
 
-        monkeypatch.setattr("safestart.processes.go_no_go.proved.decide", solve)
+        monkeypatch.setattr("safestart.processes.go_no_go.methods.exact.decide_start", solve)
         one = client.get("/go-no-go", params=POINT | SLIVER | {"method": "auto"}).json()
         assert one["verdict"] == "NO_GO"
         proof = client.get(one["proof_url"])

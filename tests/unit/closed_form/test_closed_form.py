@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from safestart.attitude.body_frame import body_to_lvlh
 from safestart.closed_form.paper import certify, certify_grid, range_limit
 from safestart.constraints.corridor import FACES, corridor_of
-from safestart.dynamics.cwh import feedforward
 from safestart.errors import InvalidInput
 from safestart.model.scenario import CorridorShape, Grid, Rest, Scenario
+from tests.unit.dynamics.plain_cwh import feedforward
 
 rates = st.floats(0.0, 10.0)
 thrusts = st.floats(1e-3, 1.0)

@@ -8,18 +8,21 @@ from safestart.collision_avoidance.bounds.certified import lower, upper
 from safestart.collision_avoidance.bounds.closest_approach import closest
 from safestart.collision_avoidance.capture import arrival_times, compare, level_set
 from safestart.collision_avoidance.encounters.adversary import ADVERSARIES, adversary, until
-from safestart.collision_avoidance.encounters.encounter import Clock, fly
+from safestart.collision_avoidance.encounters.clock import Clock
+from safestart.collision_avoidance.encounters.encounter import fly, lost
 from safestart.collision_avoidance.encounters.escape import MODES
 from safestart.collision_avoidance.encounters.escape import fly as escape
-from safestart.collision_avoidance.encounters.feedback import EVASIVE, RECOVERY, Slot, command, limited
 from safestart.collision_avoidance.encounters.observation import Sight
 from safestart.collision_avoidance.encounters.pilots import PILOTS, pilot
+from safestart.collision_avoidance.encounters.slot import EVASIVE, RECOVERY, Slot
 from safestart.collision_avoidance.encounters.starts import certified_unsafe, near_boundary
 from safestart.collision_avoidance.encounters.supervisor import Guards, Mode, Supervisor
 from safestart.collision_avoidance.game import Game
-from safestart.collision_avoidance.inputs import InputSet
 from safestart.collision_avoidance.tube import solve_tube
 from safestart.collision_avoidance.tube_settings import TubeSettings
+from safestart.constraints.thrust import InputSet
+from safestart.control.escape import Burn
+from safestart.control.pd import Pd, PdGains, pd_thrust
 from safestart.errors import Cancelled, InvalidInput
 from safestart.levelset import Lattice, Options, Scheme
 from safestart.runtime.progress import Context
@@ -27,7 +30,7 @@ from safestart.runtime.progress import Context
 U, D, W, T = 0.1, 0.05, 0.0011, 60.0
 GAME = Game(W, InputSet("box", (U, U)), InputSet("box", (D, D)), 100.0)
 DISKS = Game(W, InputSet("disk", (U,)), InputSet("disk", (D,)), 100.0)
-SLOT = Slot()
+SLOT, CLOCK = Slot(), Clock(1.0, T)
 
 
 @pytest.fixture(scope="module")
@@ -50,10 +53,13 @@ def rates(game: Game, push) -> object:
 
 def test_pd_law_is_cut_off_by_channel_or_by_size() -> None:
     state = np.array([400.0, 5.0, 0.0, 0.1])
-    assert command(state, SLOT, RECOVERY, GAME.control) == pytest.approx([0.06, -0.0025])
-    assert command(state, SLOT, EVASIVE, GAME.control) == pytest.approx([0.1, -0.0069])
-    assert limited(np.array([0.3, 0.4]), DISKS.control) == pytest.approx([0.06, 0.08])
-    assert limited(np.zeros(2), DISKS.control) == pytest.approx([0.0, 0.0])
+    centre = np.array(SLOT.centre)
+    assert pd_thrust(state, centre, RECOVERY, GAME.control) == pytest.approx([0.06, -0.0025])
+    assert pd_thrust(state, centre, EVASIVE, GAME.control) == pytest.approx([0.1, -0.0069])
+    assert DISKS.control.cut(np.array([0.3, 0.4])) == pytest.approx([0.06, 0.08])
+    assert DISKS.control.cut(np.zeros(2)) == pytest.approx([0.0, 0.0])
+    law = Pd(GAME.axes, SLOT.centre, EVASIVE, GAME.control)
+    assert law.command(0, GAME.to_lvlh(state)).thrust == pytest.approx([-0.0069, 0.1, 0.0])
 
 
 @pytest.mark.parametrize("game", [GAME, DISKS])
@@ -64,7 +70,7 @@ def test_arrival_in_the_slot_is_that_of_an_integrator(game: Game) -> None:
     for start, time in zip(starts, found, strict=True):
 
         def push(_: float, x: np.ndarray) -> np.ndarray:
-            return command(x, SLOT, RECOVERY, game.control)
+            return pd_thrust(x, np.array(SLOT.centre), RECOVERY, game.control)
 
         looks = np.arange(0.0, 1400.0, 0.5)
         dense = solve_ivp(rates(game, push), (0.0, 1400.0), start, rtol=1e-8, atol=1e-8, t_eval=looks)
@@ -94,21 +100,22 @@ def test_level_set_of_capture_against_flights() -> None:
 
 def test_escape_modes_and_what_the_paper_says_of_them() -> None:
     """Braking does not keep the altitude and does not fall behind for long: it ends up ahead."""
-    flown = {mode.name: escape(GAME, mode, np.zeros(4), 60.0, 5760.0) for mode in MODES}
+    flown = {mode.name: escape(GAME, mode, np.zeros(6), 60.0, 5760.0) for mode in MODES}
+    states = {name: GAME.from_lvlh(one.path.states) for name, one in flown.items()}
     burn = solve_ivp(rates(GAME, lambda t, x: np.array([0.0, U])), (0, 60.0), np.zeros(4), rtol=1e-10)
-    assert flown["mode1"].states[6] == pytest.approx(burn.y[:, -1], abs=1e-6)
+    assert states["mode1"][6] == pytest.approx(burn.y[:, -1], abs=1e-6)
     brake = flown["mode3"]
-    assert brake.states[60, 0] < -500.0
+    assert states["mode3"][60, 0] < -500.0
     assert brake.altitude_m < -1000.0
     assert brake.drift_m_s == pytest.approx(3 * U * 60.0, rel=0.01)
-    assert brake.states[-1, 0] > 0.0
+    assert states["mode3"][-1, 0] > 0.0
     # An impulse comes back where 4 sin(w t) = 3 w t.
     assert brake.overtakes_s == pytest.approx(1.2757 / W + 30.0, abs=15.0)
     # Radial burns leave no drift: half an orbit back, and after a whole one at the start again.
     assert flown["mode1"].drift_m_s == flown["mode2"].drift_m_s == 0.0
-    assert flown["mode1"].states[:, 0].min() < -10_000.0
-    assert np.abs(flown["mode1"].states[-1, :2]).max() < 400.0
-    assert brake.states[-1, 0] == pytest.approx(brake.drift_m_s * 5730.0, rel=0.1)
+    assert states["mode1"][:, 0].min() < -10_000.0
+    assert np.abs(states["mode1"][-1, :2]).max() < 400.0
+    assert states["mode3"][-1, 0] == pytest.approx(brake.drift_m_s * 5730.0, rel=0.1)
 
 
 def test_closest_approach_of_a_free_motion() -> None:
@@ -152,43 +159,45 @@ def test_separation_between_samples_is_not_overlooked(sight: Sight) -> None:
     push = np.array([0.1, -0.1])
     flown = fly(
         sight,
-        start,
-        lambda m: np.broadcast_to(push, (1, 2)),
+        GAME.to_lvlh(start),
+        Burn(GAME.thrust_to_lvlh(push)),
         lambda m, u: 0.0 * u,
         Clock(2.0, 60.0),
-        keep_path=True,
+        keep_paths=True,
     )
+    path = GAME.from_lvlh(flown.paths[0].states)
     dense = solve_ivp(rates(GAME, lambda t, x: push), (0, 60.0), start[0], max_step=0.05, rtol=1e-10)
     true = np.hypot(*dense.y[:2]).min()
-    assert true - 0.3 < flown.separation_m[0] <= true + 1e-6
-    assert np.hypot(*flown.path[:, 0, :2].T).min() > true + 0.01
-    assert flown.states[0] == pytest.approx(dense.y[:, -1], abs=1e-5)
-    assert flown.delta_v_m_s[0] == pytest.approx(12.0)
+    assert true - 0.3 < flown.margin[0] <= true + 1e-6
+    assert np.hypot(*path[:, :2].T).min() > true + 0.01
+    assert path[-1] == pytest.approx(dense.y[:, -1], abs=1e-5)
+    assert flown.delta_v[0] == pytest.approx(12.0)
+    assert flown.peak[0] == pytest.approx(np.hypot(0.1, 0.1))
 
 
 def test_certified_evasion_holds_what_coasting_and_the_gradient_lose(sight: Sight, hard: np.ndarray) -> None:
     """Hard starts outside the unsafe set: nothing is lost; the other pilots lose some to the same adversaries."""
-    lost = {}
+    breached = {}
     for name in ("certified", "hj", "mode1", "pd", "coast"):
         for other in ADVERSARIES:
             opponent = adversary(other, GAME, T, len(hard), 3, 10)
-            flights = fly(sight, hard, pilot(name, GAME, SLOT), opponent, Clock(1.0, T))
-            lost[name, other] = int(flights.lost(GAME.keep_out_m).sum())
-    assert [lost["certified", other] for other in ADVERSARIES] == [0] * len(ADVERSARIES)
-    assert 0 < lost["hj", "worst"] < 0.2 * len(hard)
-    assert lost["mode1", "worst"] > 0.5 * len(hard)
-    assert lost["pd", "worst"] > 0.5 * len(hard)
-    assert lost["coast", "none"] == len(hard)
-    assert (lower(GAME, hard, T, goal_m=1e-6) > 0.0).all()
+            flights = fly(sight, hard, pilot(name, sight, CLOCK, SLOT), opponent, CLOCK)
+            breached[name, other] = int(lost(flights, GAME.keep_out_m).sum())
+    assert [breached["certified", other] for other in ADVERSARIES] == [0] * len(ADVERSARIES)
+    assert 0 < breached["hj", "worst"] < 0.2 * len(hard)
+    assert breached["mode1", "worst"] > 0.5 * len(hard)
+    assert breached["pd", "worst"] > 0.5 * len(hard)
+    assert breached["coast", "none"] == len(hard)
+    assert (lower(GAME, GAME.from_lvlh(hard), T, goal_m=1e-6) > 0.0).all()
 
 
 def test_certified_unsafe_starts_are_all_lost_to_the_mirror(sight: Sight) -> None:
     inside = certified_unsafe(sight, 60, 2, Context())
-    assert (np.linalg.norm(inside[:, :2], axis=1) > GAME.keep_out_m).all()
+    assert (np.linalg.norm(inside[:, :3], axis=1) > GAME.keep_out_m).all()
     for name in PILOTS:
         opponent = adversary("mirror", GAME, T, len(inside), 3, 10)
-        flights = fly(sight, inside, pilot(name, GAME, SLOT), opponent, Clock(1.0, T))
-        assert flights.lost(GAME.keep_out_m).all(), name
+        flights = fly(sight, inside, pilot(name, sight, CLOCK, SLOT), opponent, CLOCK)
+        assert lost(flights, GAME.keep_out_m).all(), name
 
 
 @pytest.mark.parametrize("other", ["worst", "mirror", "pursuit", "random"])
@@ -196,8 +205,9 @@ def test_adversaries_stay_in_their_set(sight: Sight, hard: np.ndarray, other: st
     opponent = adversary(other, GAME, T, len(hard), 3, 5)
     pushes = []
     for step in range(12):
-        moment = sight.look(step, hard, T)
-        pushes.append(opponent(moment, pilot("hj", GAME, SLOT)(moment)))
+        moment = sight.look(step, GAME.from_lvlh(hard), T)
+        thrust = pilot("hj", sight, CLOCK, SLOT).command(step, hard).thrust
+        pushes.append(opponent(moment, GAME.thrust_from_lvlh(thrust)))
     assert np.abs(pushes).max() <= D * (1.0 + 1e-12)
     if other == "random":
         assert (pushes[0] == pushes[4]).all()
@@ -206,17 +216,18 @@ def test_adversaries_stay_in_their_set(sight: Sight, hard: np.ndarray, other: st
 
 def test_supervisor_goes_through_its_modes(sight: Sight) -> None:
     """A threat that ends: nominal to evasive to recovery to nominal, and separation is kept."""
-    start = np.array([[420.0, 3.0, -5.5, 0.1], [1000.0, 0.0, 0.0, 0.0]])
+    start = GAME.to_lvlh(np.array([[420.0, 3.0, -5.5, 0.1], [1000.0, 0.0, 0.0, 0.0]]))
     guards = Guards(sight.tube.grid_error_m, 10.0)
-    supervisor = Supervisor(sight, SLOT, guards, 1.0)
+    clock = Clock(1.0, 1800.0, receding=True)
+    supervisor = Supervisor(sight, SLOT, guards, clock)
     opponent = until(adversary("worst", GAME, T, 2, 0, 10), 120)
-    flights = fly(sight, start, supervisor, opponent, Clock(1.0, 1800.0, receding=True))
-    assert not flights.lost(GAME.keep_out_m).any()
+    flights = fly(sight, start, supervisor, opponent, clock, keep_paths=True)
+    assert not lost(flights, GAME.keep_out_m).any()
     assert supervisor.switches[Mode.NOMINAL, Mode.EVASIVE] >= 1
     assert supervisor.switches[Mode.EVASIVE, Mode.RECOVERY] >= 1
     assert supervisor.switches[Mode.RECOVERY, Mode.NOMINAL] >= 1
     assert (supervisor.modes == Mode.NOMINAL).all()
-    assert SLOT.holds(flights.states).all()
+    assert all(SLOT.holds(GAME.from_lvlh(path.states[-1])) for path in flights.paths)
 
 
 def test_refusals_and_dismissal(sight: Sight, hard: np.ndarray) -> None:
@@ -226,10 +237,12 @@ def test_refusals_and_dismissal(sight: Sight, hard: np.ndarray) -> None:
         Slot(half=(50.0, 25.0, 0.0, 0.01))
     with pytest.raises(InvalidInput, match="level_m"):
         Guards(float("inf"), 10.0)
-    coast, idle = pilot("coast", GAME, SLOT), adversary("none", GAME, T, 1, 0, 1)
+    coast, idle = pilot("coast", sight, CLOCK, SLOT), adversary("none", GAME, T, 1, 0, 1)
     with pytest.raises(InvalidInput, match="starts"):
-        fly(sight, np.zeros((1, 6)), coast, idle, Clock(1.0, T))
+        fly(sight, np.zeros((1, 4)), coast, idle, CLOCK)
+    with pytest.raises(InvalidInput, match="speed"):
+        PdGains((1e-4, 1e-4), (1e-2,))
     with pytest.raises(Cancelled):
-        fly(sight, hard[:1], coast, idle, Clock(1.0, T), Context(cancelled=lambda: True))
+        fly(sight, hard[:1], coast, idle, CLOCK, Context(cancelled=lambda: True))
     with pytest.raises(InvalidInput, match="encounters"):
         near_boundary(sight, 10, 1e-9, 1, Context())

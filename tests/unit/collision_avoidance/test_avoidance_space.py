@@ -1,14 +1,16 @@
 """The avoid game in space: a value from two small grids that promises no more than the bounds allow."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from safestart.collision_avoidance.bounds.certified import lower, upper
 from safestart.collision_avoidance.game import Game
-from safestart.collision_avoidance.inputs import InputSet
-from safestart.collision_avoidance.space import SpaceTube, solve_space
-from safestart.collision_avoidance.tube import Answer
+from safestart.collision_avoidance.space import SpaceTube
+from safestart.collision_avoidance.tube import Answer, solve_tube
 from safestart.collision_avoidance.tube_settings import TubeSettings
+from safestart.constraints.thrust import InputSet
 from safestart.errors import InvalidInput
 
 GAME = Game(0.0011, InputSet("ball", (0.1,)), InputSet("ball", (0.05,)), 100.0)
@@ -19,7 +21,10 @@ STATES = np.random.default_rng(4).uniform(-0.8, 0.8, (1500, 6)) * ENDS
 
 @pytest.fixture(scope="module")
 def tube() -> SpaceTube:
-    return solve_space(GAME, T, TubeSettings(shape=(21, 9), half=(400.0, 5.0), kept=3))
+    settings = TubeSettings(shape=(21, 9), half=(400.0, 5.0), kept=3)
+    finer = replace(settings, shape=(84, 36))
+    plane = solve_tube(GAME.restricted(0, 2), T, settings)
+    return SpaceTube(GAME, plane, solve_tube(GAME.restricted(2, 3), T, finer))
 
 
 def test_the_larger_of_two_values_is_no_promise_too_much(tube: SpaceTube) -> None:

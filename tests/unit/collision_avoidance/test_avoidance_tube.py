@@ -6,9 +6,9 @@ import pytest
 from safestart.collision_avoidance.bounds.certified import lower, upper
 from safestart.collision_avoidance.bounds.directions import covering
 from safestart.collision_avoidance.game import Game, Players
-from safestart.collision_avoidance.inputs import InputSet
 from safestart.collision_avoidance.tube import Answer, Tube, solve_tube
 from safestart.collision_avoidance.tube_settings import TubeSettings
+from safestart.constraints.thrust import InputSet
 from safestart.errors import InvalidInput
 from safestart.levelset import optimal_inputs
 

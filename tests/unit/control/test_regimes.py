@@ -9,9 +9,10 @@ import pytest
 from safestart.attitude.body_frame import body_to_lvlh, lvlh_to_body, rotation, transport
 from safestart.control.gains import PAPER, PRESETS, TUNED, Gains, preset
 from safestart.control.regimes import CLOSE, FAR, HOLD, control_law, nominal_command
-from safestart.dynamics.cwh import feedforward, system_matrix
+from safestart.dynamics.cwh import system_matrix
 from safestart.errors import InvalidInput
 from safestart.model.scenario import Scenario
+from tests.unit.dynamics.plain_cwh import feedforward
 
 
 def compiled(

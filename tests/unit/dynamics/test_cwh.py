@@ -68,13 +68,6 @@ def test_planar_is_the_block_of_the_spatial() -> None:
     )
 
 
-def test_feedforward_cancels_the_relative_acceleration() -> None:
-    rng = np.random.default_rng(1)
-    states = rng.normal(size=(50, 6))
-    natural = states @ cwh.system_matrix(1.1e-3)[3:].T
-    np.testing.assert_allclose(cwh.feedforward(1.1e-3, states[:, :3], states[:, 3:]), -natural, atol=1e-18)
-
-
 @pytest.mark.parametrize(("n", "tau"), [(-1e-3, 1.0), (float("nan"), 1.0), (1e-3, float("inf"))])
 def test_bad_input_is_refused(n: float, tau: float) -> None:
     with pytest.raises(InvalidInput):

@@ -8,9 +8,8 @@ import pytest
 from benchmarks.peers.literal_forward import literal_map
 from safestart.engines.backward import Backward
 from safestart.engines.base import Problem
-from safestart.engines.forward import Forward, constants, target_vertices, template
+from safestart.engines.forward import Forward, constants, template
 from safestart.engines.sampled import steps
-from safestart.errors import InvalidInput
 from safestart.model.scenario import (
     Bools,
     Chaser,
@@ -24,8 +23,7 @@ from safestart.model.scenario import (
 )
 from safestart.runtime.progress import Context
 from safestart.sets.cone import directions
-
-VERTEX = {"forward": {"criterion": "vertex"}}
+from tests.unit.engines.vertex_twin import target_vertices, vertex_margin
 
 
 def unrestricted(problem: Problem) -> Floats:
@@ -43,10 +41,10 @@ class TestLiteralRecursion:
     @pytest.mark.parametrize("rest", Rest)
     @pytest.mark.parametrize("rate", [0.0, 3.0, 5.0])
     def test_verdicts_and_supports(self, rate: float, rest: Rest) -> None:
-        problem = Problem(Scenario.of(rate, 0.1), rest=rest, options=VERTEX)
+        problem = Problem(Scenario.of(rate, 0.1), rest=rest)
         cells = slice(3, None, 23)
         verdicts, supports = literal_map(problem, cells)
-        ours = unrestricted(problem).ravel()[cells]
+        ours = vertex_margin(problem).ravel()[cells]
         np.testing.assert_array_equal(ours >= 0.0, verdicts)
         (step,) = steps(problem)
         lvlh = problem.points().reshape(-1, 2)[cells] @ step.drift.T
@@ -54,7 +52,7 @@ class TestLiteralRecursion:
         np.testing.assert_allclose(collapsed, supports, rtol=1e-11, atol=1e-9)
 
     def test_both_verdicts_occur(self) -> None:
-        ours = unrestricted(Problem(Scenario.of(3.0, 0.1), options=VERTEX))
+        ours = vertex_margin(Problem(Scenario.of(3.0, 0.1)))
         assert 50 < (ours >= 0.0).sum() < 900
 
 
@@ -80,23 +78,16 @@ class TestVertexCriterion:
     def test_implies_that_the_polygon_meets_the_corridor(self) -> None:
         for rate in (0.0, 1.0, 3.0, 5.0):
             scenario = Scenario.of(rate, 0.1)
-            vertex, meets = unrestricted(Problem(scenario, options=VERTEX)), unrestricted(Problem(scenario))
+            vertex, meets = vertex_margin(Problem(scenario)), unrestricted(Problem(scenario))
             assert not ((vertex >= 0.0) & (meets < -1e-9)).any()
 
     def test_is_not_a_necessary_condition(self) -> None:
         """The paper calls it one; starts that truly reach the corridor fail it, in the middle of the cone."""
         problem = Problem(Scenario.of(1.0, 0.1))
         truly, _ = masks(problem)
-        vertex = unrestricted(Problem(Scenario.of(1.0, 0.1), options=VERTEX)) >= 0.0
+        vertex = vertex_margin(problem) >= 0.0
         assert (truly & ~vertex).sum() > 100
 
     def test_target_is_the_corridor_cut_at_the_grid(self) -> None:
         expected = [[-2.5, 0.5], [2.5, 0.5], [226.75, 150.0], [-226.75, 150.0]]
         np.testing.assert_allclose(target_vertices(CorridorShape(), 150.0), expected)
-
-
-@pytest.mark.parametrize("value", ["edge", "", None, 3])
-def test_unknown_criterion_is_refused(value: object) -> None:
-    problem = Problem(Scenario.of(1.0, 0.1), options={"forward": {"criterion": value}})
-    with pytest.raises(InvalidInput, match="meets, vertex"):
-        Forward().solve(problem, Context())

@@ -1,5 +1,7 @@
 """The velocity-aware target of the level set: its function, its limits, and the set against cone programs."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -8,6 +10,7 @@ from safestart.engines.base import EngineResult, Problem, ResultCode
 from safestart.engines.hamilton_jacobi import HamiltonJacobi
 from safestart.engines.hj.domain import size_domain
 from safestart.engines.hj.frame import Frame
+from safestart.engines.hj.options import HamiltonJacobiInput
 from safestart.engines.hj.settings import Settings
 from safestart.engines.hj.target import TargetValues, mismatch, target_at
 from safestart.errors import InvalidInput
@@ -15,31 +18,20 @@ from safestart.model.scenario import Grid, Rest, Scenario, SetKind
 from safestart.runtime.progress import Context
 from tests.unit.engines.match_twin import reaches
 
-SMALL = [17, 17, 9, 9]
+SMALL = HamiltonJacobiInput(accuracy="low", nodes_xy=17, nodes_v=9)
 
 
 def _problem(
     rate: float = 3.0,
-    match: object = 0.5,
     kind: SetKind = SetKind.TUBE,
     grid: Grid | None = None,
     horizon: float = 10.0,
-    **options: object,
 ) -> Problem:
-    settings = {"shape": SMALL} | options | ({} if match is None else {"match": match})
-    return Problem(
-        Scenario.of(rate, 0.1),
-        grid or Grid(21, 21, 40.0),
-        horizon,
-        2.0,
-        Rest.LVLH,
-        kind,
-        options={"hamilton_jacobi": settings},
-    )
+    return Problem(Scenario.of(rate, 0.1), grid or Grid(21, 21, 40.0), horizon, 2.0, Rest.LVLH, kind)
 
 
-def _solve(problem: Problem) -> EngineResult:
-    result = HamiltonJacobi().solve(problem, Context())
+def _solve(problem: Problem, match: float | None = 0.5, options: HamiltonJacobiInput = SMALL) -> EngineResult:
+    result = HamiltonJacobi(options, match=match).solve(problem, Context())
     assert result.code is ResultCode.OK, result.message
     return result
 
@@ -58,16 +50,14 @@ def test_a_co_rotating_point_of_the_corridor_is_in_the_target_in_both_frames() -
 
 def test_target_values_are_the_larger_of_distance_and_mismatch() -> None:
     problem = _problem()
-    settings = Settings.of(problem)
-    assert settings.match == 0.5
-    domain = size_domain(problem, settings)
+    settings = Settings.of(problem, SMALL, 0.5)
+    domain = size_domain(problem, settings.frame)
     values = TargetValues.of(problem, domain, settings)
     x, y, vx, vy = domain.axes(settings.shape)
     for i, j, k, m in ((3, 13, 2, 6), (8, 10, 4, 4), (8, 11, 4, 3), (16, 0, 8, 8)):
         state = np.array([x[i], y[j], vx[k], vy[m]])
         assert values.first[i, j, k, m] == pytest.approx(float(target_at(problem, settings, state)))
-    plain = Settings.of(_problem(match=None))
-    assert plain.match is None
+    plain = Settings.of(problem, SMALL)
     assert (values.first >= TargetValues.of(problem, domain, plain).first).all()
     # tau times the match is the most that can be to spare.
     assert -15.0 <= values.low <= values.first.min()
@@ -78,12 +68,10 @@ def test_target_values_are_the_larger_of_distance_and_mismatch() -> None:
 )
 def test_asking_for_more_gives_less(frame: str, kind: SetKind) -> None:
     """Inside the position-only set, and larger for a looser match; a match that every speed meets asks for nothing."""
-    loose, tight = (
-        _solve(_problem(match=match, kind=kind, frame=frame)).arrays["margin_unrestricted"]
-        for match in (2.0, 0.5)
+    problem, options = _problem(kind=kind), SMALL.model_copy(update={"frame": frame})
+    loose, tight, free, anything = (
+        _solve(problem, match, options).arrays["margin_unrestricted"] for match in (2.0, 0.5, None, 900.0)
     )
-    free = _solve(_problem(match=None, kind=kind, frame=frame)).arrays["margin_unrestricted"]
-    anything = _solve(_problem(match=900.0, kind=kind, frame=frame)).arrays["margin_unrestricted"]
     assert (tight <= loose + 1e-2).all()
     assert (loose <= free + 1e-2).all()
     assert (tight < free - 1.0).any()
@@ -97,11 +85,12 @@ def test_without_tumble_rest_matches_at_once() -> None:
 
 def test_against_cone_programs() -> None:
     """No start too many; of 50 a coarse grid finds 39 (31 x 31 x 13 x 13 with very_high: 44)."""
-    problem = _problem(grid=Grid(21, 21, 80.0), horizon=20.0, shape=[25, 25, 11, 11], accuracy="high")
+    problem = _problem(grid=Grid(21, 21, 80.0), horizon=20.0)
+    options = HamiltonJacobiInput(accuracy="high", nodes_xy=25, nodes_v=11)
     inside = problem.inside()
     expected = np.zeros(inside.shape, dtype=bool)
     expected[inside] = reaches(problem.scenario, problem.points()[inside], 20.0, 0.5)
-    found = _solve(problem).mask
+    found = _solve(problem, options=options).mask
     assert found is not None
     assert expected.sum() == 50
     assert not (found & ~expected).any()
@@ -109,6 +98,6 @@ def test_against_cone_programs() -> None:
 
 
 @pytest.mark.parametrize("match", [0.0, -1.0, float("nan"), "fast", True, 2e3])
-def test_bad_matches_are_refused(match: object) -> None:
+def test_bad_matches_are_refused(match: Any) -> None:
     with pytest.raises(InvalidInput, match="match"):
-        HamiltonJacobi().solve(_problem(match=match), Context())
+        HamiltonJacobi(match=match)

@@ -15,7 +15,7 @@ from safestart.exact.decide import Answer, Verdict, decide
 from safestart.exact.question import Question
 from safestart.exact.watch import watch_of
 from safestart.model.scenario import Floats, Scenario
-from safestart.optim.conic import Solved
+from safestart.optim.largest_margin import Solved
 from tests.unit.exact.linear_model import rows
 
 SWEEP = [(0.02, 1.0, 30.0), (0.05, 2.0, 50.0), (0.10, 3.0, 50.0), (0.10, 2.0, 100.0), (0.05, 5.0, 30.0)]

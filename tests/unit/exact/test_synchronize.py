@@ -18,7 +18,7 @@ from safestart.exact.decide import decide
 from safestart.exact.prove import proof_of
 from safestart.exact.question import Goal, Question
 from safestart.model.scenario import Chaser, CorridorShape, Floats, Scenario, Target
-from safestart.optim.conic import Solved
+from safestart.optim.largest_margin import Solved
 from safestart.proofs.single import check
 from tests.unit.exact.socp_polygons import margin
 

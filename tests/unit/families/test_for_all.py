@@ -7,6 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from safestart.dynamics.cwh import Cwh
 from safestart.errors import InvalidInput
 from safestart.exact import search
 from safestart.exact.decide import Verdict, decide
@@ -16,7 +17,8 @@ from safestart.families.between import chord_gap, half_angle, nodes, reach, turn
 from safestart.families.decide import decide_for_all
 from safestart.families.members import Family, signs
 from safestart.model.scenario import Floats, Scenario
-from safestart.optim.conic import Solved
+from safestart.optim.largest_margin import Solved
+from safestart.optim.prediction import prediction_of
 from tests.unit.families.family_twin import distances, draw
 
 
@@ -264,10 +266,8 @@ def test_reach_bounds_flights_and_their_second_derivative_in_the_mean_motion() -
 
 
 def _path(question: Question, n: float, state: Floats, thrust: Floats) -> Floats:
-    from safestart.exact.motion import motion_tables
-
-    tables = motion_tables(n, question.dt, question.steps, question.dimensions, 1)
-    out: Floats = tables.flight(state, thrust)[:, 1, : question.dimensions]
+    prediction = prediction_of(Cwh(n), question.dt, question.steps, question.dimensions, 1)
+    out: Floats = prediction.flight(state, thrust)[:, 1, : question.dimensions]
     return out
 
 

@@ -17,7 +17,7 @@ from safestart.passive_safety.question import Question, Verdict
 from safestart.passive_safety.verify import verify
 from safestart.processes.execute import execute, merge
 from safestart.processes.registry import process
-from safestart.processes.safe_abort_map.parts import places, split
+from safestart.processes.safe_abort_map.study import places, split
 from safestart.processes.sharding import Part
 from safestart.runtime.progress import Context
 
@@ -87,7 +87,7 @@ def test_shards_run_apart_give_the_same_map() -> None:
     inputs = spec.parse(QUICK)
     assert spec.sharding is not None
     parts = spec.sharding.parts(inputs)
-    assert [len(part["places"]) for part in parts] == [2, 1]
+    assert [(part["first"], part["count"]) for part in parts] == [(0, 2), (2, 1)]
     done: list[Part] = [spec.sharding.run_part(part, Context()) for part in reversed(parts)][::-1]
     whole = execute("safe-abort-map", QUICK)
     again = merge("safe-abort-map", QUICK, done, datetime.now(UTC))
@@ -112,7 +112,7 @@ def test_grid_leaves_out_what_is_not_a_start() -> None:
 def test_the_variant_is_part_of_every_shard() -> None:
     spec = process("safe-abort-map")
     kinds = [spec.parse(QUICK), spec.parse(QUICK | {"model": "nonlinear", "guard": "circle"})]
-    first, second = (split(kind)[0]["common"] for kind in kinds)
+    first, second = (split(kind)[0]["inputs"] for kind in kinds)
     assert first != second
     assert second["model"] == "nonlinear"
 

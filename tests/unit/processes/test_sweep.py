@@ -57,7 +57,7 @@ def test_the_parts_hold_every_case_once(per_cell: int, controllers: list[str]) -
 @pytest.mark.parametrize("distribution", ["grid", "monte_carlo", "latin_hypercube"])
 def test_starts_lie_in_the_corridor_at_their_range(distribution: str) -> None:
     asked = inputs(distribution=distribution, cases=200, cases_per_cell=3, r0_m=[0.6, 3.0, 100.0])
-    groups = [c for p in SHARDING.parts(asked) for c in cases_of(asked, p["number"], p["pieces"])]
+    groups = [c for p in SHARDING.parts(asked) for c in cases_of(asked, p["pieces"])]
     points = np.concatenate([c.points for c in groups])
     assert sorted(np.concatenate([c.numbers for c in groups])) == list(range(len(points)))
     ranges = np.hypot(*points.T)
@@ -75,7 +75,7 @@ def test_the_starts_do_not_depend_on_what_is_flown() -> None:
     found = []
     for controllers in (["filter"], ["sequence"]):
         asked = inputs(controllers=controllers, cases_per_cell=130, omega_t_deg_s=[1, 3], a_max_m_s2=[0.1])
-        groups = [c for p in SHARDING.parts(asked) for c in cases_of(asked, p["number"], p["pieces"])]
+        groups = [c for p in SHARDING.parts(asked) for c in cases_of(asked, p["pieces"])]
         order = np.argsort(np.concatenate([c.numbers for c in groups]))
         found.append(np.concatenate([c.points for c in groups])[order])
     np.testing.assert_array_equal(*found)
@@ -85,7 +85,7 @@ def test_the_starts_do_not_depend_on_what_is_flown() -> None:
 def test_a_latin_hypercube_is_stratified() -> None:
     asked = inputs(distribution="latin_hypercube", cases=100, r0_m=[10.0, 110.0])
     (part,) = SHARDING.parts(asked)
-    ranges = np.array([math.hypot(*c.points[0]) for c in cases_of(asked, 0, part["pieces"])])
+    ranges = np.array([math.hypot(*c.points[0]) for c in cases_of(asked, part["pieces"])])
     assert sorted(np.floor(ranges - 10.0).astype(int)) == list(range(100))
 
 
@@ -186,7 +186,7 @@ def test_noise_belongs_to_the_case_and_not_to_the_shard() -> None:
     }
     asked = inputs(**FILTER, cases_per_cell=4, omega_t_deg_s=[2], a_max_m_s2=[0.1], truth=noise)
     (part,) = SHARDING.parts(asked)
-    (cases,) = cases_of(asked, 0, part["pieces"])
+    (cases,) = cases_of(asked, part["pieces"])
     whole = fly_all(asked, "filter", cases, lambda done: None)
     from safestart.processes.sweep.fleet import fly_one
 

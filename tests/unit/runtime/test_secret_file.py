@@ -34,7 +34,13 @@ def test_the_file_fills_in_the_password_whatever_is_in_it(secret):
 
 
 @pytest.mark.parametrize(
-    "given", ["postgresql://a:own@database/b", "sqlite:////tmp/a.sqlite3", "no url at all"]
+    "given",
+    [
+        "postgresql://a:own@database/b",
+        "postgresql://database/a@b",
+        "sqlite:////tmp/a@b.sqlite3",
+        "no url at all",
+    ],
 )
 def test_what_has_a_password_or_can_have_none_stays(given, secret):
     assert url(given, secret) == given

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-import http.server
 import os
 import signal
 import subprocess
 import sys
-import threading
-import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import psutil
 import pytest
 
-from safestart.errors import Unavailable
-from safestart.runtime.supervise import describe, wait_ready
+from safestart.runtime.supervise import describe
 from tests.waiting import PATIENCE_S, until
 
 # Writes its pid and that of a child of its own, then waits; ends in order on SIGTERM unless told to be stubborn.
@@ -148,29 +144,3 @@ def test_a_command_that_does_not_exist_is_named(supervise) -> None:
 def test_exit_codes_in_words() -> None:
     assert describe(3) == "exit code 3"
     assert describe(-9) == "signal 9, SIGKILL"
-
-
-def test_wait_ready_waits_for_an_answer_in_the_200s() -> None:
-    answers = iter([503, 200])
-
-    class Handler(http.server.BaseHTTPRequestHandler):
-        def do_GET(self) -> None:
-            self.send_response(next(answers))
-            self.end_headers()
-
-        def log_message(self, *_: object) -> None: ...
-
-    server = http.server.HTTPServer(("127.0.0.1", 0), Handler)
-    threading.Thread(target=server.serve_forever, daemon=True).start()
-    assert wait_ready(f"http://127.0.0.1:{server.server_port}/", PATIENCE_S) < PATIENCE_S
-    server.shutdown()
-    server.server_close()
-
-
-def test_wait_ready_says_what_it_met() -> None:
-    with pytest.raises(Unavailable, match=r"http://127.0.0.1:9/: required an answer within 0.2 s"):
-        wait_ready("http://127.0.0.1:9/", 0.2)
-    start = time.monotonic()
-    with pytest.raises(Unavailable):
-        wait_ready("http://127.0.0.1:9/", 3600.0, alive=lambda: False)
-    assert time.monotonic() - start < PATIENCE_S, "nothing is waited for that cannot come"

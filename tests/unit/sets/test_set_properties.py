@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from safestart.engines.base import Problem
-from safestart.engines.registry import engine
+from safestart.engines.load import engine
 from safestart.model.scenario import Bools, Chaser, Floats, Grid, Rest, Scenario, SetKind, Target
 from safestart.runtime.progress import Context
 

@@ -14,7 +14,8 @@ from cryptography.hazmat.primitives import hashes, serialization
 from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.x509.oid import NameOID
 from distributed import Security
-from distributed.comm import CommClosedError, normalize_address
+from distributed.comm.addressing import normalize_address
+from distributed.comm.core import CommClosedError
 
 from safestart.errors import InvalidInput, SafestartError, Unavailable
 

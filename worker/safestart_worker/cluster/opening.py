@@ -84,8 +84,9 @@ def _embedded(processes: int, security: Security) -> LocalCluster:
 
 async def _short_cut(cluster: LocalCluster) -> str:
     """Address of the scheduler within this process: half of all messages are between it and us, and need no TLS."""
-    await cluster.scheduler.listen("inproc://", allow_offload=False)
-    address: str = cluster.scheduler.listeners[-1].contact_address
+    scheduler: Any = cluster.scheduler
+    await scheduler.listen("inproc://", allow_offload=False)
+    address: str = scheduler.listeners[-1].contact_address
     return address
 
 

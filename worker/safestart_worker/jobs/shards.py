@@ -13,13 +13,13 @@ from collections import deque
 from collections.abc import Callable, Coroutine
 from datetime import UTC, datetime
 from functools import partial
-from typing import Any, TypeVar, cast
+from typing import Any, TypeVar
 
 from distributed import Future
 
 from safestart.errors import Cancelled, SafestartError, Unavailable
 from safestart.processes.base import ProcessSpec
-from safestart.processes.sharding import Part, Sharding, content
+from safestart.processes.sharding import Part, content
 from safestart.records.provenance import source
 from safestart.store.jobs.repository import JobRepository
 from safestart.store.records import Claim
@@ -52,7 +52,7 @@ class Sharded:
     ) -> None:
         assert spec.sharding is not None
         self._claim, self._key, self._cluster, self._journal = claim, key, cluster, journal
-        self._jobs, self._spec, self._sharding = jobs, spec, cast(Sharding, spec.sharding)
+        self._jobs, self._spec, self._sharding = jobs, spec, spec.sharding
         self._most = most
         self._started = datetime.now(UTC)
         self._begin = time.monotonic()

@@ -15,12 +15,12 @@ from functools import lru_cache
 
 import numpy as np
 
-from safestart.avoidance.admissible import INSIDE, inner_radii, realisable, square_limits
+from safestart.collision_avoidance.bounds.admissible import INSIDE, inner_radii, realisable, square_limits
 from safestart.collision_avoidance.bounds.closing_kernel import closest_certain
 from safestart.collision_avoidance.bounds.directions import covering, guesses
 from safestart.collision_avoidance.bounds.witness_kernel import farthest
 from safestart.collision_avoidance.game import Game
-from safestart.collision_avoidance.inputs import InputSet
+from safestart.constraints.thrust import InputSet
 from safestart.errors import invalid
 from safestart.model.scenario import Bools, Floats, number
 
@@ -131,11 +131,6 @@ def witness(game: Game, states: Floats, horizon_s: float, *, effort: int = EFFOR
 def unavoidable(game: Game, states: Floats, horizon_s: float) -> Bools:
     """Whether loss of separation within the horizon is proved for every u, (...)."""
     return np.asarray(upper(game, states, horizon_s) <= 0.0)
-
-
-def avoidable(game: Game, states: Floats, horizon_s: float, *, effort: int = EFFORT) -> Bools:
-    """Whether a control exists that is proved to keep the distance against every d, (...)."""
-    return np.asarray(lower(game, states, horizon_s, goal_m=1e-6, effort=effort) > 0.0)
 
 
 def _search(

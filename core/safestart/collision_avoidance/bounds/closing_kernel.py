@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from safestart.model.scenario import Floats
+from safestart.runtime.kernels import compiled
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def closest_certain(
     states: Floats,
     drift: Floats,

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from safestart.model.scenario import Floats
+from safestart.runtime.kernels import compiled
 
 Whole = NDArray[np.int64]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _fly(
     start: Floats, step: Floats, push: Floats, controls: Floats, sag: Floats, path: Floats, near: Floats
 ) -> float:
@@ -55,7 +55,7 @@ def _fly(
     return bound
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _turn(
     step: Floats, push: Floats, near: Floats, blur: float, parts: Whole, radii: Floats, slope: Floats,
     costate: Floats, spare: Floats,
@@ -99,7 +99,7 @@ def _turn(
                 slope[j, k] = radii[g] * slope[j, k] / size if size > 0.0 else 0.0
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _admissible(controls: Floats, parts: Whole, limits: Floats) -> bool:
     """Whether all ``controls`` (J, m) are surely within their balls: sums of squares in doubles against ``limits``."""
     for j in range(len(controls)):
@@ -112,7 +112,7 @@ def _admissible(controls: Floats, parts: Whole, limits: Floats) -> bool:
     return True
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def farthest(
     states: Floats,
     step: Floats,

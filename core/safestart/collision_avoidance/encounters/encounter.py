@@ -1,92 +1,63 @@
-"""Closed-loop encounters: N flights at once, exact between samples, and the least separation at all times."""
+"""Closed-loop encounters: N flights at once, exact between samples, and the least separation at all times.
+
+It is the loop of :mod:`safestart.simulation.loop` for many flights in step, with the other player's push; no flight
+ends at a violation, for the separation is what is asked for. Inside, states are in the game's axes.
+"""
 
 from __future__ import annotations
-
-import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from safestart.collision_avoidance.bounds.closest_approach import segment_distance
 from safestart.collision_avoidance.encounters.adversary import Adversary
+from safestart.collision_avoidance.encounters.clock import Clock
 from safestart.collision_avoidance.encounters.observation import Sight
-from safestart.collision_avoidance.encounters.pilots import Pilot
+from safestart.control.controller import Controller
 from safestart.errors import invalid
 from safestart.model.scenario import Bools, Floats
 from safestart.runtime.progress import Context
+from safestart.simulation.record import Path, Record
 
 
-@dataclass(frozen=True, slots=True)
-class Clock:
-    """``duration_s`` in steps of one control period of ``period_s``; commands and pushes are held for a period.
-
-    ``receding`` keeps the whole horizon ahead at every step (a supervisor on watch); otherwise the game ends with the
-    horizon and the time to go runs down (the game that the value function is about).
-    """
-
-    period_s: float
-    duration_s: float
-    receding: bool = False
-
-    def __post_init__(self) -> None:
-        if not 0.0 < self.period_s <= self.duration_s < math.inf:
-            raise invalid("period_s", "0 < period_s <= duration_s", (self.period_s, self.duration_s))
-
-    @property
-    def steps(self) -> int:
-        """Whole periods."""
-        return math.floor(self.duration_s / self.period_s + 1e-9)
-
-
-@dataclass(frozen=True, slots=True)
-class Flights:
-    """Result of N encounters.
-
-    ``separation_m`` (N,): the least distance, no larger than the true one at any time, sampled or between;
-    ``delta_v_m_s`` (N,): channels of a box add up, of a disk its size counts; ``states`` (N, 2 m) at the end;
-    ``path`` (K + 1, N, 2 m) when asked for.
-    """
-
-    separation_m: Floats
-    delta_v_m_s: Floats
-    states: Floats
-    path: Floats | None
-
-    def lost(self, distance_m: float) -> Bools:
-        """Which came within ``distance_m``, (N,)."""
-        return np.asarray(self.separation_m <= distance_m)
+def lost(flown: Record, distance_m: float) -> Bools:
+    """Which encounters came within ``distance_m``, (N,)."""
+    return np.asarray(flown.margin <= distance_m)
 
 
 def fly(
     sight: Sight,
     starts: Floats,
-    pilot: Pilot,
+    pilot: Controller,
     opponent: Adversary,
     clock: Clock,
     context: Context | None = None,
     *,
-    keep_path: bool = False,
-) -> Flights:
-    """Fly ``starts`` (N, 2 m). Raises ``InvalidInput`` for another shape and ``Cancelled`` between steps.
+    keep_paths: bool = False,
+) -> Record:
+    """Fly ``starts`` (N, 6), LVLH. Raises ``InvalidInput`` for another shape and ``Cancelled`` between steps.
 
-    Between samples a path leaves its chord by no more than h^2 / 8 of its acceleration, which is subtracted.
+    ``margin`` (N,) of the record is the separation: the least distance, m, no larger than the true one at any time,
+    sampled or between. Between samples a path leaves its chord by no more than h^2 / 8 of its acceleration, which is
+    subtracted. Of ``delta_v`` the channels of a box add up, of a disk its size counts. The pilot is asked for all
+    flights at once.
     """
     game, m = sight.game, sight.game.channels
-    if starts.ndim != 2 or starts.shape[1] != 2 * m:
-        raise invalid("starts", f"an array of shape (N, {2 * m})", starts.shape)
+    if starts.ndim != 2 or starts.shape[1] != 6:
+        raise invalid("starts", "an array of shape (N, 6)", starts.shape)
     context = context or Context()
     phi, gamma = game.transition(clock.period_s), game.held_input(clock.period_s)
     matrix = game.matrix()[m:]
-    states = np.array(starts, dtype=np.float64)
+    pilot.begin(starts)
+    states = game.from_lvlh(np.asarray(starts, dtype=np.float64))
     least = np.linalg.norm(states[:, :m], axis=1)
-    spent = np.zeros(len(states))
-    path = [states]
+    spent, peak = np.zeros(len(states)), np.zeros(len(states))
+    path, held = [game.to_lvlh(states)], []
     horizon = sight.tube.horizon_s
     for step in range(clock.steps):
         context.step(step, clock.steps, "periods")
-        to_go = horizon if clock.receding else max(horizon - step * clock.period_s, 0.0)
-        moment = sight.look(step, states, to_go)
-        u = pilot(moment)
+        moment = sight.look(step, states, clock.to_go(step, horizon))
+        thrust = pilot.command(step, game.to_lvlh(states)).thrust
+        u = game.thrust_from_lvlh(thrust)
         total = u + opponent(moment, u)
         after = states @ phi.T + total @ gamma.T
         # The acceleration changes little within a period: its larger end and a tenth stand for all of it.
@@ -95,7 +66,24 @@ def fly(
         least = np.minimum(least, np.maximum(segment_distance(states[:, :m], after[:, :m]) - sag, 0.0))
         for part in game.control.parts:
             spent += np.linalg.norm(u[:, part.begin : part.end], axis=1) * clock.period_s
+        peak = np.maximum(peak, np.linalg.norm(u, axis=1))
         states = after
-        if keep_path:
-            path.append(states)
-    return Flights(least, spent, states, np.array(path) if keep_path else None)
+        if keep_paths:
+            path.append(game.to_lvlh(states))
+            held.append(thrust)
+    count = len(states)
+    return Record(
+        least,
+        np.full(count, np.inf),
+        spent,
+        peak,
+        np.full(count, clock.steps),
+        np.zeros(count, np.int64),
+        _paths(clock, np.array(path), np.array(held)) if keep_paths else (),
+    )
+
+
+def _paths(clock: Clock, states: Floats, thrust: Floats) -> tuple[Path, ...]:
+    """Of states (K + 1, N, 6) and thrust (K, N, 3): views."""
+    times: Floats = clock.period_s * np.arange(len(states), dtype=np.float64)
+    return tuple(Path(times, states[:, n], thrust[:, n]) for n in range(states.shape[1]))

@@ -9,6 +9,7 @@ import numpy as np
 
 from safestart.collision_avoidance.game import Game
 from safestart.model.scenario import Floats
+from safestart.simulation.record import Path
 
 # Speeds (m/s) under this are rounding: a free motion without secular drift comes back to where it was.
 _STILL = 1e-6
@@ -33,15 +34,15 @@ MODES = (
 
 @dataclass(frozen=True, slots=True)
 class Escape:
-    """Flight of one mode: times (K,) in s, states (K, 4), and what became of it at the end.
+    """Flight of one mode, and what became of it at the end.
 
-    ``drift_m_s`` is the mean tangential speed after the burn, 0 where the motion repeats with every orbit;
-    ``altitude_m`` the mean radial position; ``overtakes_s`` when it comes back past its start, tangentially (inf: not).
+    Over each step the path's thrust is the mean of what was delivered. ``drift_m_s`` is the mean tangential speed after
+    the burn, 0 where the motion repeats with every orbit; ``altitude_m`` the mean radial position; ``overtakes_s`` when
+    it comes back past its start, tangentially (inf: not).
     """
 
     mode: Mode
-    times: Floats
-    states: Floats
+    path: Path
     drift_m_s: float
     altitude_m: float
     overtakes_s: float
@@ -50,11 +51,13 @@ class Escape:
 def fly(
     game: Game, mode: Mode, start: Floats, burn_s: float, duration_s: float, step_s: float = 10.0
 ) -> Escape:
-    """Burn at full thrust for ``burn_s`` seconds from ``start`` (4,), then drift; Player 2 does nothing.
+    """Burn at full thrust for ``burn_s`` seconds from ``start`` (6,), LVLH, then drift; Player 2 does nothing.
 
-    The mean drift and altitude follow from the state at the end of the burn: of a free motion the radial
-    position swings about 4 y + 2 vx / w, and the mean tangential speed is -1.5 w times that.
+    In closed form: every state straight from the start, which a burn of any length allows. The mean drift and altitude
+    follow from the state at the end of the burn: of a free motion the radial position swings about 4 y + 2 vx / w,
+    and the mean tangential speed is -1.5 w times that.
     """
+    begin = game.from_lvlh(start)
     push = game.control.extreme(np.array(mode.direction))
     count = max(2, round(duration_s / step_s))
     step = duration_s / count
@@ -63,17 +66,18 @@ def fly(
     burnt = min(burn_s, duration_s)
     for k, time in enumerate(times):
         thrust, coast = min(time, burnt), max(time - burnt, 0.0)
-        ended = game.transition(thrust) @ start + game.held_input(thrust) @ push
+        ended = game.transition(thrust) @ begin + game.held_input(thrust) @ push
         states[k] = game.transition(coast) @ ended
-    ended = game.transition(burnt) @ start + game.held_input(burnt) @ push
+    ended = game.transition(burnt) @ begin + game.held_input(burnt) @ push
     w = game.mean_motion
     # 4 y + 2 vx / w is the guiding centre's altitude; without rotation the drift is the speed itself.
     altitude = 4.0 * ended[1] + 2.0 * ended[2] / w if w > 0.0 else ended[1]
     drift = -1.5 * w * altitude if w > 0.0 else ended[2]
     drift = drift if abs(drift) > _STILL else 0.0
-    return Escape(
-        mode, times, states, float(drift), float(altitude), _overtakes(times, states[:, 0] - start[0])
-    )
+    share = np.clip((burnt - times[:-1]) / step, 0.0, 1.0)
+    path = Path(times, game.to_lvlh(states), game.thrust_to_lvlh(share[:, None] * push))
+    overtakes = _overtakes(times, states[:, 0] - begin[0])
+    return Escape(mode, path, float(drift), float(altitude), overtakes)
 
 
 def _overtakes(times: Floats, moved: Floats) -> float:

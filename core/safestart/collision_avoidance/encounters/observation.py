@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -12,41 +13,57 @@ from safestart.collision_avoidance.tube import Tube
 from safestart.model.scenario import Bools, Floats
 
 
-@dataclass(frozen=True, slots=True)
 class Moment:
-    """Step ``step`` of N encounters: ``to_go`` seconds of the game are left.
+    """Step ``step`` of N encounters at ``states`` (N, 2 m): ``to_go`` seconds of the game are left.
 
-    ``states`` (N, 2 m); ``value`` (N,) in m and ``gradient`` (N, 2 m) there; ``covered`` (N,): read off the lattice.
+    The value function is read when somebody asks for it, and then once.
     """
 
-    step: int
-    to_go: float
-    states: Floats
-    value: Floats
-    gradient: Floats
-    covered: Bools
+    def __init__(self, sight: Sight, step: int, to_go: float, states: Floats) -> None:
+        self._sight, self.step, self.to_go, self.states = sight, step, to_go, states
+
+    @cached_property
+    def _reading(self) -> tuple[Floats, Floats]:
+        return self._sight.read(self.states, self.to_go)
+
+    @property
+    def value(self) -> Floats:
+        """The value (N,), m."""
+        return self._reading[0]
+
+    @property
+    def gradient(self) -> Floats:
+        """Its gradient (N, 2 m)."""
+        return self._reading[1]
 
     def only(self, chosen: Bools) -> Moment:
         """The same of the chosen encounters."""
-        return Moment(
-            self.step,
-            self.to_go,
-            self.states[chosen],
-            self.value[chosen],
-            self.gradient[chosen],
-            self.covered[chosen],
-        )
+        some = Moment(self._sight, self.step, self.to_go, self.states[chosen])
+        some.__dict__["_reading"] = self.value[chosen], self.gradient[chosen]
+        return some
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(eq=False)
 class Sight:
     """Reads a tube at any state: beyond its lattice a closed form stands in, which is no more than the value."""
 
     game: Game
     tube: Tube
+    _last: Moment | None = None
 
     def look(self, step: int, states: Floats, to_go: float) -> Moment:
-        """The moment at states (N, 2 m) with ``to_go`` seconds left."""
+        """The moment at states (N, 2 m) with ``to_go`` seconds left. Whoever looks twice sees the same reading."""
+        last = self._last
+        if (
+            last is None
+            or (last.step, last.to_go) != (step, to_go)
+            or not np.array_equal(last.states, states)
+        ):
+            self._last = last = Moment(self, step, to_go, states)
+        return last
+
+    def read(self, states: Floats, to_go: float) -> tuple[Floats, Floats]:
+        """Value (N,) and gradient (N, 2 m) at states (N, 2 m)."""
         covered = self.tube.covers(states)
         value, gradient = np.empty(len(states)), np.empty(states.shape)
         if covered.any():
@@ -54,4 +71,4 @@ class Sight:
         if not covered.all():
             beyond = closest(self.game, states[~covered], to_go, self.tube.horizon_s)
             value[~covered], gradient[~covered] = beyond.bound, beyond.slope
-        return Moment(step, to_go, states, value, gradient, covered)
+        return value, gradient

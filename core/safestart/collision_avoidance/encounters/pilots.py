@@ -9,18 +9,20 @@ elsewhere.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
 from safestart.collision_avoidance.bounds.certified import witness
+from safestart.collision_avoidance.encounters.clock import Clock
 from safestart.collision_avoidance.encounters.escape import MODES
-from safestart.collision_avoidance.encounters.feedback import EVASIVE, Slot, command
-from safestart.collision_avoidance.encounters.observation import Moment
+from safestart.collision_avoidance.encounters.observation import Moment, Sight
+from safestart.collision_avoidance.encounters.slot import EVASIVE, Slot
 from safestart.collision_avoidance.game import Game
+from safestart.control.controller import Command, Controller
+from safestart.control.escape import Burn
+from safestart.control.pd import Pd
 from safestart.model.scenario import Floats
-
-Pilot = Callable[[Moment], Floats]
-"""u (N, m) at a moment."""
 
 TITLES = {
     "certified": "HJ joined with the certified bound",
@@ -33,23 +35,42 @@ TITLES = {
 PILOTS = tuple(name for name in TITLES if name != "supervisor")
 
 
-def pilot(name: str, game: Game, slot: Slot, fuel_price: float = 0.0) -> Pilot:
-    """The memoryless pilot of that name.
+@dataclass(frozen=True, slots=True)
+class Watching:
+    """The controller of a ``law`` that gives u (N, m) at a moment, for one state or many."""
+
+    sight: Sight
+    clock: Clock
+    law: Callable[[Moment], Floats]
+
+    def begin(self, state: Floats) -> None:
+        """It remembers nothing."""
+
+    def command(self, k: int, state: Floats) -> Command:
+        """See :class:`safestart.control.controller.Controller`."""
+        sight = self.sight
+        seen = np.atleast_2d(sight.game.from_lvlh(state))
+        push = self.law(sight.look(k, seen, self.clock.to_go(k, sight.tube.horizon_s)))
+        return Command(sight.game.thrust_to_lvlh(push).reshape(*state.shape[:-1], 3))
+
+
+def pilot(name: str, sight: Sight, clock: Clock, slot: Slot, fuel_price: float = 0.0) -> Controller:
+    """The pilot of that name, for one state or many; none remembers anything.
 
     ``hj`` raises the value as fast as it can, and coasts where that is not worth ``fuel_price`` (m per m/s); a
     mode burns at full thrust all the time; ``pd`` follows the evasive PD law to the slot.
     """
+    game = sight.game
     if name == "certified":
-        return lambda moment: evade(game, moment)
+        return Watching(sight, clock, lambda moment: evade(game, moment))
     if name == "hj":
-        return lambda moment: climb(game, moment, fuel_price)
+        return Watching(sight, clock, lambda moment: climb(game, moment, fuel_price))
     if name == "pd":
-        return lambda moment: command(moment.states, slot, EVASIVE, game.control)
+        return Pd(game.axes, slot.centre, EVASIVE, game.control)
     for mode in MODES:
         if mode.name == name:
-            push = game.control.extreme(np.array(mode.direction))
-            return lambda moment: np.broadcast_to(push, (len(moment.states), game.channels))
-    return lambda moment: np.zeros((len(moment.states), game.channels))
+            return Burn(game.thrust_to_lvlh(game.control.extreme(np.array(mode.direction))))
+    return Burn(np.zeros(3))
 
 
 def climb(game: Game, moment: Moment, fuel_price: float = 0.0) -> Floats:

@@ -1,4 +1,7 @@
-"""Starts of encounters: near the boundary of the unsafe set from outside, wholly inside it, or on the way to it."""
+"""Starts of encounters: near the boundary of the unsafe set from outside, wholly inside it, or on the way to it.
+
+They are looked for in the game's axes and given in LVLH.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +24,7 @@ Accept = Callable[[Floats], Bools]
 
 
 def near_boundary(sight: Sight, count: int, band_m: float, seed: int, context: Context) -> Floats:
-    """``count`` starts (count, 2 m), uniform in the lattice's box, kept if hard and not lost.
+    """``count`` starts (count, 6), LVLH, uniform in the lattice's box, kept if hard and not lost.
 
     Kept: 0 < value <= band; a free motion (no one thrusts) that comes within the keep-out distance inside the
     horizon, so that Player 1 must act; and outside the unsafe set by the tube's answer (proved safe at the state, or a
@@ -41,7 +44,7 @@ def near_boundary(sight: Sight, count: int, band_m: float, seed: int, context: C
 
 
 def certified_unsafe(sight: Sight, count: int, seed: int, context: Context) -> Floats:
-    """``count`` starts (count, 2 m) outside the keep-out distance, proved lost whatever Player 1 does.
+    """``count`` starts (count, 6) outside the keep-out distance, proved lost whatever Player 1 does.
 
     Uniform in the lattice's box among those; raises as :func:`near_boundary`.
     """
@@ -57,7 +60,7 @@ def certified_unsafe(sight: Sight, count: int, seed: int, context: Context) -> F
 def approaching(
     sight: Sight, radius_m: float, speed_m_s: float, count: int, level_m: float, seed: int, context: Context
 ) -> Floats:
-    """``count`` planar starts (count, 4) of a supervised flight: uniform in a disk of ``radius_m``.
+    """``count`` planar starts (count, 6) of a supervised flight: uniform in a disk of ``radius_m``.
 
     At a speed up to ``speed_m_s``, aimed to pass within two keep-out distances; the value is above ``level_m``.
     Raises as :func:`near_boundary`.
@@ -77,7 +80,7 @@ def approaching(
         outside: Bools = np.linalg.norm(states[:, :2], axis=1) > keep_out
         return outside & (sight.look(0, states, sight.tube.horizon_s).value > level_m)
 
-    return _collect(draw, accept, count, "approaching starts", context)
+    return sight.game.to_lvlh(_collect(draw, accept, count, "approaching starts", context))
 
 
 def _coasting_lost(sight: Sight, states: Floats) -> Bools:
@@ -96,7 +99,7 @@ def _draw(sight: Sight, count: int, accept: Accept, seed: int, what: str, contex
     def draw(size: int) -> Floats:
         return rng.uniform(lattice.low, lattice.high, size=(size, lattice.ndim))
 
-    return _collect(draw, accept, count, what, context)
+    return sight.game.to_lvlh(_collect(draw, accept, count, what, context))
 
 
 def _collect(

@@ -8,9 +8,12 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from safestart.collision_avoidance.encounters.feedback import RECOVERY, Gains, Slot, command
+from safestart.collision_avoidance.encounters.clock import Clock
 from safestart.collision_avoidance.encounters.observation import Moment, Sight
 from safestart.collision_avoidance.encounters.pilots import evade
+from safestart.collision_avoidance.encounters.slot import RECOVERY, Slot
+from safestart.control.controller import Command
+from safestart.control.pd import PdGains, pd_thrust
 from safestart.model.scenario import Bools, Floats, number
 
 Modes = NDArray[np.int8]
@@ -39,7 +42,7 @@ class Guards:
 
 @dataclass(slots=True)
 class Supervisor:
-    """Player 1 under supervision; one object flies one batch of encounters, since it remembers their modes.
+    """Player 1 under supervision, for many flights in step; ``modes`` (N,) are theirs now.
 
     Nominal and recovery fly the PD law to the slot. Their guard looks one control period ahead: if the command,
     held for the period against the worst push, leads to a value at or under the level, the evasion begins now and
@@ -50,17 +53,21 @@ class Supervisor:
     sight: Sight
     slot: Slot
     guards: Guards
-    period_s: float
-    gains: Gains = RECOVERY
+    clock: Clock
+    gains: PdGains = RECOVERY
     modes: Modes = field(default_factory=lambda: np.empty(0, dtype=np.int8))
     switches: NDArray[np.int64] = field(default_factory=lambda: np.zeros((3, 3), dtype=np.int64))
 
-    def __call__(self, moment: Moment) -> Floats:
-        """u (N, 2) at a moment; switches modes first."""
-        if moment.step == 0:
-            self.modes = np.full(len(moment.states), Mode.NOMINAL, dtype=np.int8)
+    def begin(self, state: Floats) -> None:
+        """All flights (N, 6) are nominal; ``switches`` counts on."""
+        self.modes = np.full(len(state), Mode.NOMINAL, dtype=np.int8)
+
+    def command(self, k: int, state: Floats) -> Command:
+        """See :class:`safestart.control.controller.Controller`; ``state`` (N, 6). Switches modes first."""
         game = self.sight.game
-        steady = command(moment.states, self.slot, self.gains, game.control)
+        seen = game.from_lvlh(state)
+        moment = self.sight.look(k, seen, self.clock.to_go(k, self.sight.tube.horizon_s))
+        steady = pd_thrust(seen, np.array(self.slot.centre), self.gains, game.control)
         ahead = self._ahead(moment, steady)
         threatened = ahead <= self.guards.level_m
         clear = ~threatened & (moment.value > self.guards.level_m + self.guards.clearance_m)
@@ -71,15 +78,16 @@ class Supervisor:
         self._switch(Mode.NOMINAL, Mode.EVASIVE, threatened)
         evading = self.modes == Mode.EVASIVE
         steady[evading] = evade(game, moment.only(evading))
-        return steady
+        return Command(game.thrust_to_lvlh(steady))
 
     def _ahead(self, moment: Moment, steady: Floats) -> Floats:
         """Value (N,) after one period of the command against the push that lowers it fastest."""
         game = self.sight.game
         worst = game.disturbance.extreme(-moment.gradient[:, game.channels :])
-        states = moment.states @ game.transition(self.period_s).T
-        states += (steady + worst) @ game.held_input(self.period_s).T
-        return self.sight.look(moment.step, states, moment.to_go).value
+        period = self.clock.period_s
+        states = moment.states @ game.transition(period).T
+        states += (steady + worst) @ game.held_input(period).T
+        return self.sight.read(states, moment.to_go)[0]
 
     def _switch(self, before: Mode, after: Mode, where: Bools) -> None:
         chosen = (self.modes == before) & where

@@ -8,7 +8,6 @@ is counted with the grid's error.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -25,7 +24,7 @@ TOLERANCE = 1e-6
 
 def exact_answer(problem: Problem, context: Context) -> EngineResult:
     """The exact set of the same problem, computed in silence; it still stops when the job is dismissed."""
-    return Exact().solve(replace(problem, options={}), Context(cancelled=context.cancelled))
+    return Exact().solve(problem, Context(cancelled=context.cancelled))
 
 
 def count_errors(problem: Problem, settings: Settings, field: Floats, exact: EngineResult) -> dict[str, Any]:

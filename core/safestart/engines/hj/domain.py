@@ -15,7 +15,7 @@ import numpy as np
 from safestart.attitude.body_frame import transport
 from safestart.engines.base import Problem
 from safestart.engines.hj.frame import Frame, coefficients
-from safestart.engines.hj.settings import ENGINE, Settings, Shape
+from safestart.engines.hj.settings import Settings, Shape
 from safestart.engines.region import start_velocity
 from safestart.errors import invalid
 from safestart.model.scenario import Floats, SetKind
@@ -32,11 +32,11 @@ MIN_SPEED = 1e-3
 class Domain:
     """Symmetric box: ``half`` (4,) half widths of (x, y, vx, vy) in m and m/s.
 
-    ``padded_for`` is the time in seconds of full thrust that the padding allows for, None for an explicit box.
+    ``padded_for`` is the time in seconds of full thrust that the padding allows for.
     """
 
     half: Floats
-    padded_for: float | None
+    padded_for: float
 
     def spacing(self, shape: Shape) -> Floats:
         """Node spacing (4,) in m and m/s."""
@@ -59,30 +59,14 @@ def start_states(problem: Problem, frame: Frame) -> Floats:
     return np.concatenate([points, velocity], axis=-1)
 
 
-def size_domain(problem: Problem, settings: Settings) -> Domain:
-    """Box for a problem: the settings' own, or one with room for T' = min(T, sqrt(r / a_max)) of full thrust.
+def size_domain(problem: Problem, frame: Frame) -> Domain:
+    """Box with room for T' = min(T, sqrt(r / a_max)) of full thrust.
 
     r is the radius of the farthest start. Half widths are r + a T'^2 / 2 and omega_t r + a T' in the body frame;
     in LVLH, with s the speed of the fastest start and n the mean motion, r + s T' + a T'^2 / 2 and s + a T', both
     with what the gravity gradient 3 n^2 x adds. Past sqrt(r / a_max), when thrust alone moves the chaser by r / 2,
     a wider box loses more by its spacing than it gains by its padding.
-    Raises ``InvalidInput`` when an explicit box does not hold every start.
     """
-    if settings.domain is None:
-        return _roomy(problem, settings.frame)
-    x, y, v = settings.domain
-    half = np.array([x, y, v, v])
-    need = np.abs(start_states(problem, settings.frame)).reshape(-1, 4).max(axis=0)
-    if (need > half).any():
-        wanted = {"x_m": need[0], "y_m": need[1], "v_m_s": max(need[2], need[3])}
-        shown = ", ".join(f"{name} >= {value:.6g}" for name, value in wanted.items())
-        raise invalid(
-            f"options.{ENGINE}.domain", f"to hold every start: {shown}", [float(h) for h in half[:3]]
-        )
-    return Domain(half, None)
-
-
-def _roomy(problem: Problem, frame: Frame) -> Domain:
     states = start_states(problem, frame)
     a = problem.scenario.chaser.max_acceleration
     radius = _radius(states)
@@ -130,7 +114,7 @@ def count_steps(problem: Problem, domain: Domain, settings: Settings) -> tuple[i
     steps = max(1, math.ceil(problem.horizon * rate / courant))
     if steps > MAX_STEPS:
         raise invalid(
-            f"options.{ENGINE}",
+            "hamilton_jacobi",
             f"a grid and horizon that need at most {MAX_STEPS} time steps",
             f"spacing {spacing.tolist()} over {problem.horizon:g} s: {steps} steps",
         )
@@ -171,11 +155,7 @@ def warnings(problem: Problem, domain: Domain, settings: Settings) -> list[str]:
         found.append(
             f"first-order dissipation spreads the value over {smear:.2g} half widths of the velocity axes"
         )
-    roomy = _roomy(problem, settings.frame)
-    if domain.padded_for is None and (domain.half < 0.95 * roomy.half).any():
-        wanted = ", ".join(f"{half:.4g}" for half in roomy.half[:3])
-        found.append(f"the box cuts the motion off: half widths of {wanted} (m, m, m/s) would not")
-    if domain.padded_for is not None and domain.padded_for < horizon:
+    if domain.padded_for < horizon:
         found.append(
             f"the box allows for {domain.padded_for:.3g} s of thrust, not {horizon:g} s: starts that need a "
             "longer way out are cut off"

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from safestart.attitude.body_frame import into_body
 from safestart.engines.base import Problem
 from safestart.engines.hj.domain import Domain
 from safestart.engines.hj.frame import Frame, system_matrix
-from safestart.engines.hj.settings import Settings
+from safestart.engines.hj.settings import BOUNDARY, PRECISION, Settings
 from safestart.engines.hj.target import faces, mismatch
 from safestart.levelset import Ball, Input, Kind, Lattice, Linear, March, Options, Scheme
 from safestart.levelset.warm import warm
@@ -22,7 +23,7 @@ _SCHEMES = {
 
 
 class FusedSolver:
-    """Value function on the lattice, stepped backwards in stretches from the horizon (float32 or float64).
+    """Value function on the lattice, stepped backwards in stretches from the horizon (float32).
 
     ``compile_s`` is what compilation, or loading it from the cache, took.
     """
@@ -30,9 +31,9 @@ class FusedSolver:
     def __init__(
         self, problem: Problem, domain: Domain, settings: Settings, terminal: Floats, courant: float
     ) -> None:
-        self.compile_s = warm(settings.precision)
+        self.compile_s = warm(PRECISION)
         scenario = problem.scenario
-        lattice = Lattice.of(-domain.half, domain.half, settings.shape, settings.boundary)
+        lattice = Lattice.of(-domain.half, domain.half, settings.shape, BOUNDARY)
         thrust = Ball(np.zeros(2), scenario.chaser.max_acceleration)
         motion = Linear(
             system_matrix(scenario.target, settings.frame), (Input(np.eye(4)[:, 2:], thrust, "min"),)
@@ -48,7 +49,7 @@ class FusedSolver:
         def turned(time: float) -> Floats:
             """l at a time on the nodes: l(R(-omega_t t) p), (nx, ny, 1, 1), or the velocity-aware one."""
             c, s = np.cos(rate * time), np.sin(rate * time)
-            along, across = c * x + s * y, c * y - s * x
+            along, across = into_body(c, s, x, y)
             levels = [a * along + b * across + d for a, b, d in rows]
             highest: Floats = np.maximum.reduce(levels)
             distance = highest[:, :, None, None]
@@ -62,7 +63,7 @@ class FusedSolver:
             np.ascontiguousarray(terminal),
             problem.horizon,
             Kind.TUBE if tube and not turns else Kind.FIXED,
-            Options(_SCHEMES[settings.accuracy], precision=settings.precision, courant=courant),
+            Options(_SCHEMES[settings.accuracy], precision=PRECISION, courant=courant),
             cap=turned if turns else None,
         )
 

@@ -40,17 +40,11 @@ def _edge(values: Any, width: int) -> Any:
     return jnp.pad(values, width, "edge")
 
 
-_BOUNDARIES = {
-    "edge": _edge,
-    "extrapolate_away_from_zero": hj.boundary_conditions.extrapolate_away_from_zero,
-}
-
-
 def make_lattice(domain: Domain, settings: Settings) -> hj.Grid:
     """Grid of the library over a box, axes (x, y, vx, vy)."""
     box = hj.sets.Box(jnp.asarray(-domain.half, jnp.float32), jnp.asarray(domain.half, jnp.float32))
     return hj.Grid.from_lattice_parameters_and_boundary_conditions(
-        box, settings.shape, boundary_conditions=(_BOUNDARIES[settings.boundary],) * 4
+        box, settings.shape, boundary_conditions=(_edge,) * 4
     )
 
 
@@ -139,7 +133,7 @@ _lock = threading.Lock()
 
 def _program(settings: Settings, sweep: Sweep, arguments: tuple[Any, ...]) -> tuple[Any, float]:
     """Compiled :func:`_advance` and the seconds its compilation took (0 when it was there already)."""
-    key = (settings.shape, settings.accuracy, settings.boundary, sweep, settings.match is None)
+    key = (settings.shape, settings.accuracy, sweep, settings.match is None)
     with _lock:
         if key in _programs:
             _programs.move_to_end(key)

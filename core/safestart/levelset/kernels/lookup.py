@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from safestart.model.scenario import Floats
+from safestart.runtime.kernels import compiled
 
 Whole = NDArray[np.int64]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled(error_model="numpy")
 def lookup(
     values: Floats, shape: Whole, low: Floats, spacing: Floats, periodic: Whole, states: Floats, out: Floats
 ) -> None:

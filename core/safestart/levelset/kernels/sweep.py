@@ -14,17 +14,8 @@ The parts that it is made of are in the other files named ``..._kernel``.
 
 from __future__ import annotations
 
-from types import ModuleType
-
 import numpy as np
-from numba import njit
 
-from safestart.levelset import numbers
-from safestart.levelset.kernels import border as border_kernel
-from safestart.levelset.kernels import derivative as derivative_kernel
-from safestart.levelset.kernels import hamiltonian as hamiltonian_kernel
-from safestart.levelset.kernels import jit_options as kernel
-from safestart.levelset.kernels import table as table_kernel
 from safestart.levelset.kernels.border import close, stencil
 from safestart.levelset.kernels.derivative import derivatives
 from safestart.levelset.kernels.hamiltonian import add_inputs, blend, first_blend, godunov
@@ -32,168 +23,151 @@ from safestart.levelset.kernels.jit_options import FAST, Whole
 from safestart.levelset.kernels.table import entry
 from safestart.levelset.numbers import ALWAYS, FIRST, GODUNOV, LAX_FRIEDRICHS, SLACK, TUBE
 from safestart.model.scenario import Floats
-from safestart.runtime.stamp import source_stamp
-
-SOURCES: tuple[ModuleType, ...] = (
-    border_kernel,
-    derivative_kernel,
-    hamiltonian_kernel,
-    kernel,
-    numbers,
-    table_kernel,
-)
-"""Modules of what the kernel calls: their text is part of its cache key."""
+from safestart.runtime.kernels import compiled
 
 
-def _build(stamp: int):  # type: ignore[no-untyped-def]
-    @njit(cache=True, nogil=True, error_model="numpy", fastmath=FAST)
-    def sweep(
-        v: Floats,
-        first: Floats,
-        out: Floats,
-        weights: Floats,
-        shape: Whole,
-        strides: Whole,
-        plan: Whole,
-        boundary: Whole,
-        scale: Floats,
-        where: Whole,
-        data: Floats,
-        groups: Whole,
-        channels: Whole,
-        entries: Whole,
-        bounds: Floats,
-        clamp_where: Whole,
-        clamp: Floats,
-        begin: int,
-        end: int,
-    ) -> None:
-        """Blocks [begin, end) of one stage: out <- a first + b (v + dt H), then cut off between floor and cap.
+@compiled(error_model="numpy", fastmath=FAST)
+def sweep(
+    v: Floats,
+    first: Floats,
+    out: Floats,
+    weights: Floats,
+    shape: Whole,
+    strides: Whole,
+    plan: Whole,
+    boundary: Whole,
+    scale: Floats,
+    where: Whole,
+    data: Floats,
+    groups: Whole,
+    channels: Whole,
+    entries: Whole,
+    bounds: Floats,
+    clamp_where: Whole,
+    clamp: Floats,
+    begin: int,
+    end: int,
+) -> None:
+    """Blocks [begin, end) of one stage: out <- a first + b (v + dt H), then cut off between floor and cap.
 
-        ``weights`` (a, b, dt); ``plan`` (outer axes, block length, pitch, ghosts, scheme, flux, set, clamps: 1 cap,
-        2 floor, 3 both); ``shape``, ``strides`` (in ``v``), ``boundary`` and ``scale`` (1 / spacing) by axis;
-        ``where`` and ``data`` the tables of :mod:`safestart.levelset.tables` (drift, spread and kink of each axis,
-        then the gains). ``out`` may be ``first``, not ``v``.
-        """
-        stamp  # noqa: B018  (the cell is part of numba's cache key)
-        outer, length, pitch, width = plan[0], plan[1], plan[2], plan[3]
-        scheme, flux, kind, clamps = plan[4], plan[5], plan[6], plan[7]
-        axes = len(shape)
-        size, ends = np.uint64(length), length // pitch
-        real = v.dtype.type
-        a, b, dt = weights[0], weights[1], weights[2]
-        zero = real(0.0)
-        least, most = real(-np.inf), real(np.inf)
-        if kind == TUBE:
-            most = zero
-        elif kind == ALWAYS:
-            least = zero
-        total, left, right = np.empty(length, v.dtype), np.empty(length, v.dtype), np.empty(length, v.dtype)
-        share, norm = np.empty(length, v.dtype), np.empty(length, v.dtype)
-        mean = np.empty(axes * length, v.dtype)
-        spare = np.empty((2 * width + 1) * length, v.dtype)
-        at = np.empty(7, np.uint64)
-        index = np.empty(outer, np.int64)
-        fused = scheme == FIRST and flux == LAX_FRIEDRICHS
-        # Axes that an input moves: the others need not keep their mean slope.
-        moved = np.zeros(axes, np.bool_)
-        for axis in entries:
-            moved[axis] = True
-        for block in range(begin, end):
-            rest = block
-            for k in range(outer - 1, -1, -1):
-                index[k] = rest % shape[k]
-                rest //= shape[k]
-            center = SLACK + block * length
+    ``weights`` (a, b, dt); ``plan`` (outer axes, block length, pitch, ghosts, scheme, flux, set, clamps: 1 cap,
+    2 floor, 3 both); ``shape``, ``strides`` (in ``v``), ``boundary`` and ``scale`` (1 / spacing) by axis;
+    ``where`` and ``data`` the tables of :mod:`safestart.levelset.tables` (drift, spread and kink of each axis,
+    then the gains). ``out`` may be ``first``, not ``v``.
+    """
+    outer, length, pitch, width = plan[0], plan[1], plan[2], plan[3]
+    scheme, flux, kind, clamps = plan[4], plan[5], plan[6], plan[7]
+    axes = len(shape)
+    size, ends = np.uint64(length), length // pitch
+    real = v.dtype.type
+    a, b, dt = weights[0], weights[1], weights[2]
+    zero = real(0.0)
+    least, most = real(-np.inf), real(np.inf)
+    if kind == TUBE:
+        most = zero
+    elif kind == ALWAYS:
+        least = zero
+    total, left, right = np.empty(length, v.dtype), np.empty(length, v.dtype), np.empty(length, v.dtype)
+    share, norm = np.empty(length, v.dtype), np.empty(length, v.dtype)
+    mean = np.empty(axes * length, v.dtype)
+    spare = np.empty((2 * width + 1) * length, v.dtype)
+    at = np.empty(7, np.uint64)
+    index = np.empty(outer, np.int64)
+    fused = scheme == FIRST and flux == LAX_FRIEDRICHS
+    # Axes that an input moves: the others need not keep their mean slope.
+    moved = np.zeros(axes, np.bool_)
+    for axis in entries:
+        moved[axis] = True
+    for block in range(begin, end):
+        rest = block
+        for k in range(outer - 1, -1, -1):
+            index[k] = rest % shape[k]
+            rest //= shape[k]
+        center = SLACK + block * length
+        for j in range(size):
+            total[j] = zero
+        for axis in range(axes):
+            # Off the block's axes a block is one run; along its second axis every row near an end is its own.
+            across = axis < axes - 1
+            inner = axis >= outer and across
+            count, stride = (ends, pitch) if inner else (shape[axis], strides[axis])
+            rate, rates = entry(where, axis, index, data)
+            kink, kinks = entry(where, (2 * axes if flux == GODUNOV else axes) + axis, index, data)
+            to = np.uint64(axis * length)
+            row = 0
+            while row < ends:
+                rows = ends
+                if inner:
+                    rows = ends - 2 * width if row >= width and row < ends - width else 1
+                run = rows * pitch
+                copied = False
+                if across:
+                    place = row if inner else index[axis]
+                    copied = stencil(
+                        v,
+                        center + row * pitch,
+                        place,
+                        count,
+                        stride,
+                        boundary[axis],
+                        width,
+                        spare,
+                        run,
+                        at,
+                    )
+                else:
+                    for q in range(2 * width + 1):
+                        at[q] = np.uint64(center + q - width)
+                source = spare if copied else v
+                if fused:
+                    first_blend(
+                        source, at, scale[axis], rate, kink, data, rates, kinks, total, mean,
+                        np.uint64(row * pitch), to, np.uint64(run), moved[axis],
+                    )  # fmt: skip
+                else:
+                    part, span = np.uint64(row * pitch), np.uint64(run)
+                    derivatives(scheme, source, at, scale[axis], left, right, part, span)
+                row += rows
+            if flux == GODUNOV:
+                godunov(left, right, rate, kink, data, rates, kinks, total, size)
+            elif not fused:
+                blend(left, right, rate, kink, data, rates, kinks, total, mean, to, size, moved[axis])
+        if flux == LAX_FRIEDRICHS:
+            add_inputs(
+                groups,
+                channels,
+                entries,
+                bounds,
+                where,
+                data,
+                axes,
+                index,
+                mean,
+                share,
+                norm,
+                total,
+                length,
+            )
+        start = np.uint64(center)
+        # Comparisons are turned so that NaN survives: it must be seen, not cut off.
+        if a == zero:
             for j in range(size):
-                total[j] = zero
-            for axis in range(axes):
-                # Off the block's axes a block is one run; along its second axis every row near an end is its own.
-                across = axis < axes - 1
-                inner = axis >= outer and across
-                count, stride = (ends, pitch) if inner else (shape[axis], strides[axis])
-                rate, rates = entry(where, axis, index, data)
-                kink, kinks = entry(where, (2 * axes if flux == GODUNOV else axes) + axis, index, data)
-                to = np.uint64(axis * length)
-                row = 0
-                while row < ends:
-                    rows = ends
-                    if inner:
-                        rows = ends - 2 * width if row >= width and row < ends - width else 1
-                    run = rows * pitch
-                    copied = False
-                    if across:
-                        place = row if inner else index[axis]
-                        copied = stencil(
-                            v,
-                            center + row * pitch,
-                            place,
-                            count,
-                            stride,
-                            boundary[axis],
-                            width,
-                            spare,
-                            run,
-                            at,
-                        )
-                    else:
-                        for q in range(2 * width + 1):
-                            at[q] = np.uint64(center + q - width)
-                    source = spare if copied else v
-                    if fused:
-                        first_blend(
-                            source, at, scale[axis], rate, kink, data, rates, kinks, total, mean,
-                            np.uint64(row * pitch), to, np.uint64(run), moved[axis],
-                        )  # fmt: skip
-                    else:
-                        part, span = np.uint64(row * pitch), np.uint64(run)
-                        derivatives(scheme, source, at, scale[axis], left, right, part, span)
-                    row += rows
-                if flux == GODUNOV:
-                    godunov(left, right, rate, kink, data, rates, kinks, total, size)
-                elif not fused:
-                    blend(left, right, rate, kink, data, rates, kinks, total, mean, to, size, moved[axis])
-            if flux == LAX_FRIEDRICHS:
-                add_inputs(
-                    groups,
-                    channels,
-                    entries,
-                    bounds,
-                    where,
-                    data,
-                    axes,
-                    index,
-                    mean,
-                    share,
-                    norm,
-                    total,
-                    length,
-                )
-            start = np.uint64(center)
-            # Comparisons are turned so that NaN survives: it must be seen, not cut off.
-            if a == zero:
-                for j in range(size):
-                    rise = most if total[j] > most else total[j]
-                    rise = least if rise < least else rise
-                    out[start + j] = v[start + j] + dt * rise
-            else:
-                for j in range(size):
-                    rise = most if total[j] > most else total[j]
-                    rise = least if rise < least else rise
-                    out[start + j] = a * first[start + j] + b * (v[start + j] + dt * rise)
-            if clamps & 1:
-                level, levels = entry(clamp_where, 0, index, clamp)
-                for j in range(size):
-                    bound = level + clamp[levels + j]
-                    out[start + j] = bound if out[start + j] > bound else out[start + j]
-            if clamps & 2:
-                level, levels = entry(clamp_where, 1, index, clamp)
-                for j in range(size):
-                    bound = level + clamp[levels + j]
-                    out[start + j] = bound if out[start + j] < bound else out[start + j]
-            close(out, center, length, pitch, width, boundary[axes - 1])
-
-    return sweep
-
-
-sweep = _build(source_stamp(*SOURCES))
+                rise = most if total[j] > most else total[j]
+                rise = least if rise < least else rise
+                out[start + j] = v[start + j] + dt * rise
+        else:
+            for j in range(size):
+                rise = most if total[j] > most else total[j]
+                rise = least if rise < least else rise
+                out[start + j] = a * first[start + j] + b * (v[start + j] + dt * rise)
+        if clamps & 1:
+            level, levels = entry(clamp_where, 0, index, clamp)
+            for j in range(size):
+                bound = level + clamp[levels + j]
+                out[start + j] = bound if out[start + j] > bound else out[start + j]
+        if clamps & 2:
+            level, levels = entry(clamp_where, 1, index, clamp)
+            for j in range(size):
+                bound = level + clamp[levels + j]
+                out[start + j] = bound if out[start + j] < bound else out[start + j]
+        close(out, center, length, pitch, width, boundary[axes - 1])

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from safestart.model.scenario import Floats
+from safestart.runtime.kernels import compiled
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def _rates(z: Floats, gain: Floats, drift: Floats, out: Floats) -> None:
     """``drift``: 3n^2, 2n, mu, r; mu > 0 for Kepler's motion, else Clohessy-Wiltshire-Hill. ``gain``: K / m (2, 4)."""
     x, y, vx, vy = z
@@ -30,7 +30,7 @@ def _rates(z: Floats, gain: Floats, drift: Floats, out: Floats) -> None:
         out[3] -= gain[1, j] * z[j]
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def _step(
     z: Floats, h: float, gain: Floats, drift: Floats, a: Floats, b: Floats, k: Floats, out: Floats
 ) -> None:
@@ -50,7 +50,7 @@ def _step(
         out[i] = z[i] + h * total
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def _depth(z: Floats, faces: Floats, limits: Floats, circle: float) -> float:
     """Excess over the guard: a circle of radius ``circle`` if that is positive, else the faces."""
     if circle > 0.0:
@@ -61,7 +61,7 @@ def _depth(z: Floats, faces: Floats, limits: Floats, circle: float) -> float:
     return most
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def fly(
     starts: Floats,
     aborts: Floats,

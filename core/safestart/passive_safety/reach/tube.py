@@ -78,7 +78,7 @@ class Tube:
         """
         a = matrix(self.motion)
         once = np.abs(rows) @ np.abs(a)
-        return tube_kernel.upper(
+        bounds: Floats = tube_kernel.upper(
             np.ascontiguousarray(rows),
             np.stack([rows @ a, rows @ a @ a]),
             np.stack([once, once @ np.abs(a)]),
@@ -91,6 +91,7 @@ class Tube:
             _NOTABLE,
             SLACK,
         )
+        return bounds
 
     def node_upper(self, rows: Floats, node: int) -> Floats:
         """Upper bounds (r,) of ``rows`` times the state at one node."""

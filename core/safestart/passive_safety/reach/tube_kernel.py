@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from safestart.model.scenario import Floats
+from safestart.runtime.kernels import compiled
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def _support(row: Floats, centre: Floats, gens: Floats) -> tuple[float, float]:
     """Value at the centre and half-width of ``row`` (4,) over one zonotope: ``centre`` (4,), ``gens`` (g, 4)."""
     wide = 0.0
@@ -18,7 +18,7 @@ def _support(row: Floats, centre: Floats, gens: Floats) -> tuple[float, float]:
     return middle, wide
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def _weighed(terms: Floats, sizes: Floats) -> float:
     """|terms| . sizes, each (4,)."""
     total = 0.0
@@ -27,7 +27,7 @@ def _weighed(terms: Floats, sizes: Floats) -> float:
     return float(total)
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def _over(
     k: int,
     row: int,
@@ -58,7 +58,7 @@ def _over(
     return float(max(0.0, least))
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def upper(
     rows: Floats,
     derivatives: Floats,

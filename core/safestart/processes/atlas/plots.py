@@ -10,9 +10,10 @@ from matplotlib.patches import Patch, Polygon
 
 from safestart.atlas.atlas import Atlas
 from safestart.closed_form.paper import certify_grid
+from safestart.engines.registry import engine_spec
 from safestart.model.scenario import Grid, Scenario
 from safestart.processes.base import Artifact
-from safestart.processes.plotting import PALETTE, draw_corridor, figure, png
+from safestart.processes.plotting import draw_corridor, figure, png
 
 _GO, _NO_GO = "#56B4E9", "#E69F00"
 _FINE = 400
@@ -30,17 +31,21 @@ def atlas_map(scenario: Scenario, grid: Grid, atlas: Atlas) -> Artifact:
     axes.contourf(x, y, upper, levels=[-np.inf, 0.0], colors=[_NO_GO], alpha=0.35).set_clip_path(outline)
     if len(atlas.rim) >= 3:
         corners = np.array([witness.start for witness in atlas.rim])
-        axes.add_patch(Polygon(corners, facecolor=_GO, alpha=0.75, edgecolor=PALETTE["exact"], linewidth=1.2))
+        axes.add_patch(
+            Polygon(corners, facecolor=_GO, alpha=0.75, edgecolor=engine_spec("exact").colour, linewidth=1.2)
+        )
         axes.plot(*atlas.deepest.start, marker="+", color="black", markersize=9, linestyle="none")
     certified = certify_grid(scenario, fine).margin
-    line = axes.contour(x, y, certified, levels=[0.0], colors=[PALETTE["analytical"]], linewidths=2.0)
+    line = axes.contour(
+        x, y, certified, levels=[0.0], colors=[engine_spec("analytical").colour], linewidths=2.0
+    )
     line.set_clip_path(outline)
     share = f"{100 * atlas.relative_gap:.2f} %"
     drawing.legend(
         handles=[
             Patch(color=_GO, alpha=0.75, label=f"GO, proved: {atlas.inner_area:.0f} m²"),
             Patch(color=_NO_GO, alpha=0.35, label=f"NO_GO, proved (undecided between: {share})"),
-            Line2D([], [], color=PALETTE["analytical"], linewidth=2, label="closed form"),
+            Line2D([], [], color=engine_spec("analytical").colour, linewidth=2, label="closed form"),
             Line2D(
                 [],
                 [],

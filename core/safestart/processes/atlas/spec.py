@@ -5,6 +5,7 @@ from __future__ import annotations
 from pydantic import Field
 
 from safestart.processes.base import ProcessSpec, Table, WireModel
+from safestart.processes.views import Column, Facts
 from safestart.processes.wire import GridInput, ScenarioInput
 
 
@@ -52,6 +53,23 @@ SPEC = ProcessSpec(
     outputs=AtlasOutputs,
     run="safestart.processes.atlas.run:run",
     tables=(Table("inner_polygon_m", ("inner_polygon_m",)), Table("half_planes", ("half_planes",))),
+    views=(
+        Facts(
+            (
+                Column("Area proved GO [m²]", "inner_area_m2"),
+                Column("Area outside of which NO_GO is proved [m²]", "outer_area_m2"),
+                Column("Share left undecided", "relative_gap"),
+                Column("Cells proved GO", "verdict_cells.GO"),
+                Column("Cells proved NO_GO", "verdict_cells.NO_GO"),
+                Column("Cells undecided", "verdict_cells.UNDECIDED"),
+                Column("Cells certified by the closed form and proved NO_GO", "certified_outside"),
+                Column("Largest margin [m]", "deepest_margin_m"),
+                Column("at x [m]", "deepest_start_m.0"),
+                Column("at y [m]", "deepest_start_m.1"),
+                Column("Why the polygons are farther apart than usual", "message"),
+            )
+        ),
+    ),
     keywords=("exact", "proof", "safe-start region"),
     example={"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "grid": {"nx": 31, "ny": 31, "y_max_m": 150}},
 )

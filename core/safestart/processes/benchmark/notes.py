@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from typing import Any
 
 from safestart.model.scenario import SetKind
-from safestart.processes.benchmark.spec import BenchmarkInputs
+from safestart.processes.benchmark.spec import BenchmarkQuestion
 
 
-def notes(inputs: BenchmarkInputs, rows: Sequence[dict[str, Any]], contained: float | None) -> list[str]:
+def notes(inputs: BenchmarkQuestion, rows: Sequence[dict[str, Any]], contained: float | None) -> list[str]:
     """Sentences about the sets compared, drawn from the result itself."""
     by_engine = {row["engine"]: row for row in rows}
     out: list[str] = []

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,18 +12,11 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch
 
 from safestart.engines.base import EngineResult, Problem
+from safestart.engines.registry import engine_spec
 from safestart.model.scenario import Floats
 from safestart.processes.base import Artifact
-from safestart.processes.plotting import LABELS, PALETTE, draw_corridor, figure, png
+from safestart.processes.plotting import draw_corridor, figure, png
 
-_LineStyle = Literal["-", "--", ":", "-."]
-_STYLES: dict[str, _LineStyle] = {
-    "exact": "-",
-    "hamilton_jacobi": "-",
-    "backward": "--",
-    "forward": ":",
-    "monte_carlo": "-.",
-}
 _BOTH, _ONLY_ENGINE, _ONLY_REFERENCE = "#009E73", "#D55E00", "#0072B2"
 
 
@@ -47,17 +39,18 @@ def overlay_map(problem: Problem, results: Mapping[str, EngineResult]) -> Artifa
     for name, result in results.items():
         if result.mask is None:
             continue
-        label = f"{LABELS[name]}: {np.count_nonzero(result.mask)} cells"
+        spec = engine_spec(name)
+        label = f"{spec.title}: {np.count_nonzero(result.mask)} cells"
         if not result.mask.any():
             handles.append(Line2D([], [], color="none", label=label))
-        elif name == "analytical":
+        elif spec.line is None:
             drawn = axes.contourf(
-                x, y, _level(result), levels=[0.0, np.inf], colors=[PALETTE[name]], alpha=0.75
+                x, y, _level(result), levels=[0.0, np.inf], colors=[spec.colour], alpha=0.75
             )
             drawn.set_clip_path(outline)
-            handles.append(Patch(color=PALETTE[name], alpha=0.75, label=label))
+            handles.append(Patch(color=spec.colour, alpha=0.75, label=label))
         else:
-            style, colour = _STYLES[name], PALETTE[name]
+            style, colour = spec.line, spec.colour
             line = axes.contour(
                 x, y, _level(result), levels=[0.0], colors=[colour], linestyles=[style], linewidths=1.8
             )
@@ -94,9 +87,10 @@ def agreement_panels(problem: Problem, results: Mapping[str, EngineResult]) -> A
     panels = drawing.subplots(lines, columns, squeeze=False)
     for panel, name in zip(panels.flat, names, strict=False):
         _panel(panel, problem, results[name], results[reference] if reference else None)
+        panel.set_title(engine_spec(name).title, fontsize=10)
     for panel in panels.flat[len(names) :]:
         panel.set_axis_off()
-    against = LABELS[reference] if reference else "nothing"
+    against = engine_spec(reference).title if reference else "nothing"
     drawing.legend(
         handles=[
             Patch(color=_BOTH, label="in both"),
@@ -123,4 +117,3 @@ def _panel(axes: Axes, problem: Problem, result: EngineResult, reference: Engine
     cells = np.ma.masked_equal(code, 0)
     colours = ListedColormap([_BOTH, _ONLY_ENGINE, _ONLY_REFERENCE])
     axes.pcolormesh(x, y, cells, cmap=colours, vmin=0.5, vmax=3.5, shading="nearest", alpha=0.85)
-    axes.set_title(LABELS[result.engine], fontsize=10)

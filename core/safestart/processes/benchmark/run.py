@@ -9,47 +9,29 @@ import numpy as np
 
 from safestart.engines.base import EngineResult, Problem
 from safestart.engines.exact import containment_horizon
-from safestart.engines.registry import engine
+from safestart.engines.load import engine
+from safestart.engines.registry import engine_spec
 from safestart.model.metrics import ConfusionMatrix, iou, ratio, violation
 from safestart.model.scenario import Bools
 from safestart.papers.safe_start import TABLE2, TABLE2_THRUST_M_S2
 from safestart.processes.base import Artifact, ProcessOutput
 from safestart.processes.benchmark.notes import notes
 from safestart.processes.benchmark.plots import agreement_panels, overlay_map
-from safestart.processes.benchmark.spec import BenchmarkInputs
+from safestart.processes.benchmark.spec import BenchmarkQuestion
 from safestart.processes.plotting import npz
 from safestart.processes.wire import DT_S
 from safestart.runtime.progress import Context
 
-# Shares of the progress bar, roughly the share of the time.
-_WEIGHTS = {"hamilton_jacobi": 40.0, "monte_carlo": 6.0}
 _FINISH = 3.0
+"""Share of the progress bar for measures and pictures; an engine's is in its spec."""
 
 
-def problem_of(inputs: BenchmarkInputs) -> Problem:
+def problem_of(inputs: BenchmarkQuestion) -> Problem:
     """The engines' problem in SI units."""
-    hj = inputs.hamilton_jacobi
-    shape = [hj.nodes_xy, hj.nodes_xy, hj.nodes_v, hj.nodes_v]
-    return Problem(
-        inputs.scenario(),
-        inputs.grid.grid(),
-        inputs.horizon_s,
-        DT_S,
-        inputs.rest,
-        inputs.set,
-        inputs.seed,
-        {
-            "hamilton_jacobi": {
-                "accuracy": hj.accuracy,
-                "shape": shape,
-                "frame": hj.frame,
-                "solver": hj.solver,
-            }
-        },
-    )
+    return Problem(inputs.scenario(), inputs.grid.grid(), inputs.horizon_s, DT_S, inputs.rest, inputs.set)
 
 
-def run(inputs: BenchmarkInputs, context: Context) -> ProcessOutput:
+def run(inputs: BenchmarkQuestion, context: Context) -> ProcessOutput:
     """Solve, compare, draw. An engine that fails keeps its row, with its code and reason and no measures."""
     problem = problem_of(inputs)
     results = _solve(problem, inputs, context)
@@ -63,7 +45,7 @@ def run(inputs: BenchmarkInputs, context: Context) -> ProcessOutput:
         contained = containment_horizon(problem.scenario, starts, problem.rest, DT_S, start=problem.horizon)
     printed = TABLE2.get(inputs.omega_t_deg_s, {}) if inputs.a_max_m_s2 == TABLE2_THRUST_M_S2 else {}
     rows = [
-        _row(result, masks, inside, cell_area, results) | {"published": printed.get(name)}
+        _row(name, result, masks, inside, cell_area, results) | {"published": printed.get(name)}
         for name, result in results.items()
     ]
     document = {
@@ -76,19 +58,21 @@ def run(inputs: BenchmarkInputs, context: Context) -> ProcessOutput:
     return ProcessOutput(document, _artifacts(problem, results))
 
 
-def _solve(problem: Problem, inputs: BenchmarkInputs, context: Context) -> dict[str, EngineResult]:
-    total = sum(_WEIGHTS.get(name, 1.0) for name in inputs.engines) + _FINISH
+def _solve(problem: Problem, inputs: BenchmarkQuestion, context: Context) -> dict[str, EngineResult]:
+    total = sum(engine_spec(name).share for name in inputs.engines) + _FINISH
     done = 0.0
     results: dict[str, EngineResult] = {}
     for name in inputs.engines:
-        share = _WEIGHTS.get(name, 1.0)
-        results[name] = engine(name).solve(problem, context.part(done, share, total, name))
+        share = engine_spec(name).share
+        solver = engine(name, inputs.options(name))
+        results[name] = solver.solve(problem, context.part(done, share, total, name))
         done += share
         context.step(done, total, f"{name} done")
     return results
 
 
 def _row(
+    name: str,
     result: EngineResult,
     masks: Mapping[str, Bools],
     inside: Bools,
@@ -98,7 +82,7 @@ def _row(
     mask, certified = result.mask, masks.get("analytical")
     hj = results.get("hamilton_jacobi")
     row: dict[str, Any] = {
-        "engine": result.engine,
+        "engine": name,
         "code": result.code.value,
         "message": result.message,
         "cells": None if mask is None else int(np.count_nonzero(mask)),
@@ -111,8 +95,8 @@ def _row(
     }
     if mask is not None and certified is not None:
         row["confusion"] = ConfusionMatrix.of(certified, mask, inside).document()
-    for short, name in (("hj", "hamilton_jacobi"), ("exact", "exact")):
-        row |= _against(short, mask, masks.get(name))
+    for short, reference in (("hj", "hamilton_jacobi"), ("exact", "exact")):
+        row |= _against(short, mask, masks.get(reference))
     return row
 
 

@@ -2,51 +2,28 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, create_model, model_validator
 
+from safestart.engines.registry import ENGINES
 from safestart.model.scenario import Rest, SetKind
 from safestart.processes.base import ProcessSpec, WireModel
+from safestart.processes.views import Column, Comparison, Facts, Matrices, Overlay, Rows
 from safestart.processes.wire import DISTINCT, Confusion, GridInput, Horizon, ScenarioInput, Seed
 
-EngineName = Literal["analytical", "exact", "backward", "forward", "hamilton_jacobi", "monte_carlo"]
-ALL_ENGINES: tuple[EngineName, ...] = (
-    "analytical",
-    "exact",
-    "backward",
-    "forward",
-    "hamilton_jacobi",
-    "monte_carlo",
-)
+if TYPE_CHECKING:
+    EngineName = str
+else:
+    EngineName = Literal[tuple(ENGINES)]
 
 
-class HamiltonJacobiInput(WireModel):
-    """Discretisation of the level-set engine."""
-
-    accuracy: Literal["low", "medium", "high", "very_high"] = Field(
-        "very_high",
-        description="Scheme of hj-reachability; low is the fastest and loses a third of the set at 5 deg/s.",
-    )
-    solver: Literal["fused", "hj_reachability"] = Field(
-        "fused",
-        description="Who steps the value: compiled kernels, or hj-reachability (same scheme, 20 to 40 times slower).",
-    )
-    nodes_xy: int = Field(41, ge=11, le=61, description="Nodes per position axis.")
-    nodes_v: int = Field(15, ge=7, le=31, description="Nodes per velocity axis.")
-    frame: Literal["auto", "lvlh", "body"] = Field(
-        "auto",
-        description="Frame of the grid: lvlh (the corridor turns), body (paper 000; the corridor stands still), "
-        "auto: lvlh, but body for tubes of starts at rest in the body frame.",
-    )
-
-
-class BenchmarkInputs(ScenarioInput):
-    """One operating point and what to compare."""
+class BenchmarkQuestion(ScenarioInput):
+    """One operating point and what to compare, without the options of the engines."""
 
     grid: GridInput = Field(default_factory=GridInput)
     engines: Annotated[list[EngineName], DISTINCT] = Field(
-        list(ALL_ENGINES), min_length=1, max_length=6, description="Engines to run."
+        list(ENGINES), min_length=1, max_length=len(ENGINES), description="Engines to run."
     )
     horizon_s: Horizon = Field(40.0, description="Horizon of the reachable sets, s; a multiple of 2 s.")
     rest: Rest = Field(Rest.LVLH, description="Frame in which the starts are at rest.")
@@ -54,16 +31,35 @@ class BenchmarkInputs(ScenarioInput):
         SetKind.FIXED,
         description="fixed: in the corridor at the horizon; tube: at some time up to it (the whole corridor at t = 0).",
     )
-    hamilton_jacobi: HamiltonJacobiInput = Field(default_factory=HamiltonJacobiInput)
-    seed: Seed = 0
 
     @model_validator(mode="after")
-    def _affordable(self) -> BenchmarkInputs:
+    def _affordable(self) -> BenchmarkQuestion:
         if self.grid.nx * self.grid.ny > 40_401:
             raise ValueError("grid: nx * ny at most 40401 (201 x 201) for a benchmark")
         if self.grid.y_max_m <= self.corridor.r_h_m:
             raise ValueError("grid.y_max_m: more than corridor.r_h_m")
         return self
+
+    def options(self, engine: str) -> WireModel | None:
+        """The options of an engine, None where it has none."""
+        found: WireModel | None = getattr(self, engine, None)
+        return found
+
+
+_OPTIONS: dict[str, Any] = {
+    spec.name: (spec.options, Field(default_factory=spec.options))
+    for spec in ENGINES.values()
+    if spec.options
+}
+BenchmarkInputs = create_model(
+    "BenchmarkInputs",
+    __base__=BenchmarkQuestion,
+    __module__=__name__,
+    __doc__="One operating point and what to compare.",
+    **_OPTIONS,
+    seed=(Seed, 0),
+)
+"""The question with the options of every engine that has some, under the engine's name."""
 
 
 class PublishedRow(WireModel):
@@ -113,6 +109,23 @@ class BenchmarkOutputs(WireModel):
     notes: list[str]
 
 
+_ENGINE_COLUMNS = (
+    Column("engine", "engine"),
+    Column("code", "code"),
+    Column("cells", "cells"),
+    Column("area [m²]", "area_m2"),
+    Column("IoU with exact", "iou_vs_exact"),
+    Column("IoU with HJ", "iou_vs_hj"),
+    Column("area / HJ", "area_ratio_vs_hj"),
+    Column("outside exact", "violation_vs_exact"),
+    Column("run [s]", "run_s"),
+    Column("compile [s]", "compile_s"),
+    Column("faster than HJ", "speedup_vs_hj"),
+    Column("paper: IoU with HJ", "published.iou_vs_hj"),
+    Column("paper: area / HJ", "published.area_ratio"),
+    Column("paper: run [s]", "published.run_s"),
+)
+
 SPEC = ProcessSpec(
     id="benchmark",
     title="Certificate against the reachability engines",
@@ -125,6 +138,47 @@ SPEC = ProcessSpec(
     run="safestart.processes.benchmark.run:run",
     instant="safestart.processes.certificate.run:answer",
     keywords=("reachability", "Hamilton-Jacobi", "Monte Carlo", "IoU"),
+    views=(
+        Facts(
+            (
+                Column("Corridor cells", "corridor_cells"),
+                Column("Area of a cell [m²]", "cell_area_m2"),
+                Column("Certified region contained from [s]", "containment_horizon_s"),
+            )
+        ),
+        Rows("Engines", "rows", _ENGINE_COLUMNS),
+        Matrices(
+            "The certificate against each engine",
+            "Rows: the certificate's word. Columns: in the engine's set or not. Membership in a set is no verdict: an "
+            "outer set holds starts that nothing can fly. Intervals: Wilson, 95 %.",
+            path="rows.*.confusion",
+            names=("engine",),
+            heading="{0}",
+            claims=("certified", "not certified"),
+            facts=("in the set", "not in it"),
+            cells=(
+                "certified, in the set",
+                "certified, not in it",
+                "in the set, not certified",
+                "in neither",
+            ),
+            omit=("analytical",),
+        ),
+        Overlay("Agreement on the map", "maps.npz", table="rows", by="engine", certain="analytical"),
+        Comparison(
+            table="rows",
+            by="engine",
+            measures=(
+                Column("area [m²]", "area_m2"),
+                Column("IoU with exact", "iou_vs_exact"),
+                Column("IoU with Hamilton-Jacobi", "iou_vs_hj"),
+                Column("share outside exact", "violation_vs_exact"),
+                Column("run [s]", "run_s"),
+            ),
+            logarithmic=("run_s",),
+        ),
+    ),
+    extensions={"safestart:engines": [spec.document() for spec in ENGINES.values()]},
     example={
         "omega_t_deg_s": 3,
         "a_max_m_s2": 0.1,

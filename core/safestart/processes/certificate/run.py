@@ -7,13 +7,13 @@ from typing import Any
 
 from safestart.closed_form.paper import certify_grid
 from safestart.processes.base import ProcessOutput
-from safestart.processes.benchmark.spec import BenchmarkInputs
+from safestart.processes.benchmark.spec import BenchmarkQuestion
 from safestart.processes.certificate.spec import CertificateInputs
 from safestart.processes.wire import NO_SYNC_LIMIT, finite
 from safestart.runtime.progress import Context
 
 
-def answer(inputs: CertificateInputs | BenchmarkInputs) -> dict[str, Any]:
+def answer(inputs: CertificateInputs | BenchmarkQuestion) -> dict[str, Any]:
     """The certificate document of an operating point and a grid."""
     scenario, grid = inputs.scenario(), inputs.grid.grid()
     region = certify_grid(scenario, grid, inputs.rest)

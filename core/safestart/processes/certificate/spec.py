@@ -6,6 +6,7 @@ from pydantic import Field
 
 from safestart.model.scenario import Rest
 from safestart.processes.base import ProcessSpec, Table, WireModel
+from safestart.processes.views import Column, Facts
 from safestart.processes.wire import GridInput, ScenarioInput
 
 
@@ -40,6 +41,15 @@ SPEC = ProcessSpec(
     run="safestart.processes.certificate.run:run",
     light=True,
     tables=(Table("cells", ("mask", "margin_m"), axes=("y_m", "x_m")),),
+    views=(
+        Facts(
+            (
+                Column("Certified share of the corridor", "safe_fraction"),
+                Column("Synchronization radius [m]", "r_sync_m"),
+                Column("Why there is none", "r_sync_reason"),
+            )
+        ),
+    ),
     keywords=("certificate", "safe-start region"),
     example={"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "grid": {"nx": 31, "ny": 31, "y_max_m": 150}},
 )

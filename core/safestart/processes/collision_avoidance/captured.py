@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from safestart.collision_avoidance.capture import arrival_times, compare, level_set
-from safestart.collision_avoidance.encounters.feedback import RECOVERY, Slot
+from safestart.collision_avoidance.encounters.slot import RECOVERY, Slot
 from safestart.collision_avoidance.game import Game
 from safestart.levelset import Lattice, Options, Scheme
 from safestart.model.scenario import Floats

@@ -9,17 +9,21 @@ from typing import Any
 import numpy as np
 
 from safestart.collision_avoidance.encounters.adversary import adversary, until
-from safestart.collision_avoidance.encounters.encounter import Clock, Flights, fly
-from safestart.collision_avoidance.encounters.feedback import Slot
+from safestart.collision_avoidance.encounters.clock import Clock
+from safestart.collision_avoidance.encounters.encounter import fly, lost
 from safestart.collision_avoidance.encounters.observation import Sight
-from safestart.collision_avoidance.encounters.pilots import Pilot, pilot
+from safestart.collision_avoidance.encounters.pilots import pilot
+from safestart.collision_avoidance.encounters.slot import Slot
 from safestart.collision_avoidance.encounters.starts import approaching, certified_unsafe, near_boundary
 from safestart.collision_avoidance.encounters.supervisor import Guards, Mode, Supervisor
+from safestart.collision_avoidance.game import Game
+from safestart.control.controller import Controller
 from safestart.errors import InvalidInput
 from safestart.model.metrics import wilson
 from safestart.model.scenario import Floats
 from safestart.processes.collision_avoidance.spec import CollisionAvoidanceInputs
 from safestart.runtime.progress import Context
+from safestart.simulation.record import Path, Record
 
 CLEARANCE = 0.1
 """Share of the keep-out distance above the grid error at which an evasion ends."""
@@ -47,24 +51,24 @@ class Flown:
             self.notes.append(error.detail)
             return None
 
-    def add(self, starts: str, pilot: str, opponent: str, flights: Flights, sight: Sight) -> None:
+    def add(self, starts: str, pilot: str, opponent: str, flights: Record, sight: Sight) -> None:
         """Count one batch."""
         keep_out, error = sight.game.keep_out_m, sight.tube.grid_error_m
-        lost, count = int(flights.lost(keep_out).sum()), len(flights.separation_m)
-        low, high = wilson(lost, count) or (0.0, 1.0)
+        breached, count = int(lost(flights, keep_out).sum()), len(flights)
+        low, high = wilson(breached, count) or (0.0, 1.0)
         self.rows.append(
             {
                 "starts": starts,
                 "pilot": pilot,
                 "adversary": opponent,
                 "encounters": count,
-                "lost": lost,
-                "lost_beyond_error": int(flights.lost(keep_out - error).sum()),
-                "breach_probability": lost / count,
+                "lost": breached,
+                "lost_beyond_error": int(lost(flights, keep_out - error).sum()),
+                "breach_probability": breached / count,
                 "breach_low": low,
                 "breach_high": high,
-                "least_separation_m": float(flights.separation_m.min()),
-                "mean_delta_v_m_s": float(flights.delta_v_m_s.mean()),
+                "least_separation_m": float(flights.margin.min()),
+                "mean_delta_v_m_s": float(flights.delta_v.mean()),
             }
         )
 
@@ -86,12 +90,10 @@ def encounters(inputs: CollisionAvoidanceInputs, sight: Sight, slot: Slot, conte
         ),
     }  # fmt: skip
 
-    def flier(name: str) -> Pilot:
-        return (
-            Supervisor(sight, slot, guards, inputs.period_s)
-            if name == "supervisor"
-            else pilot(name, game, slot, inputs.fuel_price_s)
-        )
+    def flier(name: str, when: Clock) -> Controller:
+        if name == "supervisor":
+            return Supervisor(sight, slot, guards, when)
+        return pilot(name, sight, when, slot, inputs.fuel_price_s)
 
     batches = [
         (kind, starts, name, other)
@@ -106,11 +108,11 @@ def encounters(inputs: CollisionAvoidanceInputs, sight: Sight, slot: Slot, conte
         opponent = adversary(other, game, inputs.horizon_s, len(starts), seed + 2, hold)
         when = Clock(clock.period_s, clock.duration_s, receding=name == "supervisor")
         shown = kind == "outside" and other == inputs.adversaries[0] and name in ("certified", "hj", "pd")
-        flights = fly(sight, starts, flier(name), opponent, when, quiet, keep_path=shown)
+        flights = fly(sight, starts, flier(name, when), opponent, when, quiet, keep_paths=shown)
         flown.add(kind, name, other, flights, sight)
-        if flights.path is not None:
-            worst = np.argsort(flights.separation_m)[:SHOWN]
-            flown.paths[name] = flights.path[:, worst]
+        if shown:
+            worst = np.argsort(flights.margin)[:SHOWN]
+            flown.paths[name] = _in_game(game, [flights.paths[n] for n in worst])
     if inputs.supervised:
         context.step(len(batches), total, "supervised flights")
         _supervised(inputs, sight, slot, guards, hold, flown, quiet)
@@ -135,19 +137,24 @@ def _supervised(
     )
     if starts is None:
         return
-    supervisor = Supervisor(sight, slot, guards, inputs.period_s)
     name = inputs.adversaries[0]
     opponent = adversary(name, game, inputs.horizon_s, count, inputs.seed + 4, hold)
     quiet_from = round(inputs.threat_s / inputs.period_s)
     clock = Clock(inputs.period_s, inputs.supervised_s, receding=True)
-    flights = fly(sight, starts, supervisor, until(opponent, quiet_from), clock, quiet, keep_path=True)
+    supervisor = Supervisor(sight, slot, guards, clock)
+    flights = fly(sight, starts, supervisor, until(opponent, quiet_from), clock, quiet, keep_paths=True)
     flown.add("approaching", "supervisor", name, flights, sight)
-    assert flights.path is not None
-    flown.paths["supervisor"] = flights.path
+    paths = _in_game(game, flights.paths)
+    flown.paths["supervisor"] = paths
     flown.supervisor = {
         "nominal_to_evasive": int(supervisor.switches[Mode.NOMINAL, Mode.EVASIVE]),
         "evasive_to_recovery": int(supervisor.switches[Mode.EVASIVE, Mode.RECOVERY]),
         "recovery_to_evasive": int(supervisor.switches[Mode.RECOVERY, Mode.EVASIVE]),
         "recovery_to_nominal": int(supervisor.switches[Mode.RECOVERY, Mode.NOMINAL]),
-        "in_slot_at_the_end": int(slot.holds(flights.states).sum()),
+        "in_slot_at_the_end": int(slot.holds(paths[-1]).sum()),
     }
+
+
+def _in_game(game: Game, paths: Sequence[Path]) -> Floats:
+    """States (K + 1, N, 2 m) of N paths in the game's axes, for the pictures."""
+    return game.from_lvlh(np.stack([path.states for path in paths], axis=1))

@@ -15,7 +15,7 @@ from matplotlib.patches import Circle, Patch, Rectangle
 from safestart.collision_avoidance.bounds.certified import lower, upper
 from safestart.collision_avoidance.capture import arrival_times
 from safestart.collision_avoidance.encounters.escape import Escape
-from safestart.collision_avoidance.encounters.feedback import RECOVERY, Slot
+from safestart.collision_avoidance.encounters.slot import RECOVERY, Slot
 from safestart.collision_avoidance.game import Game, Players
 from safestart.collision_avoidance.tube import Tube
 from safestart.levelset import ValueField
@@ -188,8 +188,8 @@ def escape_picture(escapes: Sequence[Escape], burn_s: float, orbit_s: float) -> 
     near, far = drawing.subplots(1, 2)
     colours = (SAFE, "#56B4E9", LOST, "#009E73")
     for one, colour in zip(escapes, colours, strict=True):
-        x, y = one.states[:, 0], one.states[:, 1]
-        early = one.times <= 0.1 * orbit_s
+        y, x = one.path.states[:, 0], one.path.states[:, 1]
+        early = one.path.times <= 0.1 * orbit_s
         near.plot(x[early], y[early], color=colour, label=one.mode.title)
         far.plot(x / 1000.0, y / 1000.0, color=colour)
         far.plot(x[-1] / 1000.0, y[-1] / 1000.0, marker="s", markersize=5, color=colour)

@@ -10,12 +10,12 @@ import numpy as np
 
 from safestart.collision_avoidance.encounters.escape import MODES
 from safestart.collision_avoidance.encounters.escape import fly as escape
-from safestart.collision_avoidance.encounters.feedback import Slot
 from safestart.collision_avoidance.encounters.observation import Sight
+from safestart.collision_avoidance.encounters.slot import Slot
 from safestart.collision_avoidance.game import Game, Players
-from safestart.collision_avoidance.inputs import InputSet
 from safestart.collision_avoidance.tube import Tube, solve_tube
 from safestart.collision_avoidance.tube_settings import TubeSettings
+from safestart.constraints.thrust import InputSet
 from safestart.model.metrics import wilson
 from safestart.processes.base import ProcessOutput
 from safestart.processes.collision_avoidance.captured import Captured, captured
@@ -87,7 +87,7 @@ def run(inputs: CollisionAvoidanceInputs, context: Context) -> ProcessOutput:
     tube = tube_of(inputs, game, context.part(0.0, 0.4, 1.0, "value"))
     taken = captured(inputs, game, slot, context.part(0.4, 0.1, 1.0, "capture set"))
     orbit = 2.0 * math.pi / game.mean_motion if game.mean_motion > 0.0 else ORBIT_WITHOUT_ROTATION_S
-    escapes = [escape(game, mode, np.zeros(4), inputs.burn_s, orbit) for mode in MODES]
+    escapes = [escape(game, mode, np.zeros(6), inputs.burn_s, orbit) for mode in MODES]
     flown = Flown()
     if not tube.failure and inputs.players == "avoid":
         flown = encounters(inputs, Sight(game, tube), slot, context.part(0.5, 0.4, 1.0, "encounters"))

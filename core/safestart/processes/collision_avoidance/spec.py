@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 
 from safestart.model.scenario import MAX_ACCELERATION, MAX_MEAN_MOTION
 from safestart.processes.base import ProcessSpec, WireModel
+from safestart.processes.views import Column, Facts, Findings, Rows
 from safestart.processes.wire import DISTINCT, Seed, Thrust
 
 PilotName = Literal["certified", "hj", "supervisor", "mode1", "mode2", "mode3", "mode4", "pd", "coast"]
@@ -215,6 +216,55 @@ SPEC = ProcessSpec(
     inputs=CollisionAvoidanceInputs,
     outputs=CollisionAvoidanceOutputs,
     run="safestart.processes.collision_avoidance.run:run",
+    views=(
+        Findings(
+            "Findings",
+            "requirements",
+            word="verdict",
+            columns=(
+                Column("requirement", "requirement"),
+                Column("encounters", "encounters"),
+                Column("broken in", "broken"),
+                Column("probability", "probability"),
+                Column("from", "low"),
+                Column("to (95 %)", "high"),
+            ),
+        ),
+        Facts(
+            (
+                Column("Why the value cannot be trusted", "failure"),
+                Column("Largest grid error near the boundary [m]", "grid_error_m"),
+                Column("Unsafe share of the grid's box [%]", "unsafe_percent"),
+            )
+        ),
+        Rows(
+            "States asked about",
+            "states",
+            (
+                Column("answer", "answer"),
+                Column("separation above keep-out, at least [m]", "least_m"),
+                Column("at most [m]", "most_m"),
+                *(Column(f"state {k + 1}", f"state.{k}") for k in range(6)),
+            ),
+        ),
+        Rows(
+            "Encounters",
+            "encounters",
+            (
+                Column("starts", "starts"),
+                Column("pilot", "pilot"),
+                Column("adversary", "adversary"),
+                Column("encounters", "encounters"),
+                Column("lost", "lost"),
+                Column("lost beyond the grid's error", "lost_beyond_error"),
+                Column("breach probability", "breach_probability"),
+                Column("from", "breach_low"),
+                Column("to (95 %)", "breach_high"),
+                Column("least separation [m]", "least_separation_m"),
+                Column("mean delta-v [m/s]", "mean_delta_v_m_s"),
+            ),
+        ),
+    ),
     keywords=("collision avoidance", "Hamilton-Jacobi", "game", "closed loop"),
     example={"encounters": 100, "supervised": 20, "grid": {"nodes_position": 21, "nodes_speed": 11}},
 )

@@ -8,6 +8,7 @@ from pydantic import Field
 
 from safestart.model.scenario import MAX_MEAN_MOTION
 from safestart.processes.base import ProcessSpec, WireModel
+from safestart.processes.views import Column, Rows
 from safestart.processes.wire import CorridorInput, GridInput, Thrust, TumbleRate
 
 Rates = Annotated[list[TumbleRate], Field(min_length=1, max_length=50)]
@@ -46,6 +47,18 @@ SPEC = ProcessSpec(
     inputs=CoverageInputs,
     outputs=CoverageOutputs,
     run="safestart.processes.coverage.run:run",
+    views=(
+        Rows(
+            "Certified share of the corridor",
+            "cells",
+            (
+                Column("tumble rate [deg/s]", "omega_t_deg_s"),
+                Column("thrust [m/s²]", "a_max_m_s2"),
+                Column("certified [%]", "safe_percent"),
+                Column("synchronization radius [m]", "r_sync_m"),
+            ),
+        ),
+    ),
     keywords=("certificate", "trade study"),
     example={
         "omega_t_deg_s": [1, 3, 5],

@@ -8,11 +8,12 @@ import numpy as np
 
 from safestart.attitude.body_frame import body_to_lvlh, lvlh_to_body
 from safestart.constraints.corridor import corridor_of
+from safestart.dynamics.cwh import Cwh
 from safestart.exact.best_flight import best_thrust
 from safestart.exact.decide import decide
-from safestart.exact.motion import motion_tables
 from safestart.exact.question import Goal, Question
 from safestart.model.scenario import Floats, Rest
+from safestart.optim.prediction import prediction_of
 from safestart.processes.base import ProcessOutput
 from safestart.processes.flight.spec import FlightInputs
 from safestart.processes.wire import DT_S, finite
@@ -35,13 +36,11 @@ def run(inputs: FlightInputs, context: Context) -> ProcessOutput:
     state = np.concatenate([at, speed])
     answer = decide(question, state)
     thrust = best_thrust(stay, state) if answer.thrust is None else answer.thrust
-    tables = motion_tables(scenario.target.mean_motion, DT_S, len(thrust), d, _PARTS)
-    flown = tables.flight(state, thrust)
+    prediction = prediction_of(Cwh(scenario.target.mean_motion), DT_S, len(thrust), d, _PARTS)
+    flown = prediction.flight(state, thrust)
     states = np.concatenate([flown[:, :-1].reshape(-1, 2 * d), flown[-1, -1:]])
-    times = DT_S / _PARTS * np.arange(len(states))
-    body = np.array(
-        [lvlh_to_body(s[:d], s[d:], rate, t)[0] for s, t in zip(states, times.tolist(), strict=True)]
-    )
+    times: Floats = DT_S / _PARTS * np.arange(len(states), dtype=np.float64)
+    body, _ = lvlh_to_body(states[:, :d], states[:, d:], rate, times)
     corridor = corridor_of(scenario.corridor, d)
     distance: Floats = corridor.slack(body) / corridor.lengths
     when, face = np.unravel_index(int(np.argmin(distance)), distance.shape)
@@ -54,9 +53,9 @@ def run(inputs: FlightInputs, context: Context) -> ProcessOutput:
             "body_m": body.tolist(),
             "lvlh_m": states[:, :d].tolist(),
             "thrust_m_s2": [*np.repeat(thrust, _PARTS, axis=0).tolist(), thrust[-1].tolist()],
-            "faces": list(corridor.faces),
+            "faces": list(corridor.names),
             "distance_m": distance.tolist(),
-            "closest_face": corridor.faces[int(face)],
+            "closest_face": corridor.names[int(face)],
             "closest_m": float(distance[when, face]),
             "closest_s": float(times[when]),
             "delta_v_m_s": DT_S * math.fsum(np.linalg.norm(thrust, axis=1)),

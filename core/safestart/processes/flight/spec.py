@@ -8,8 +8,9 @@ from pydantic import Field
 
 from safestart.model.scenario import Rest
 from safestart.processes.base import ProcessSpec, Table, WireModel
-from safestart.processes.go_no_go.question_fields import Kind
+from safestart.processes.go_no_go.question_fields import QuestionKind
 from safestart.processes.go_no_go.spec import StateInput
+from safestart.processes.views import Column, Findings
 from safestart.processes.wire import Horizon, ScenarioInput
 
 
@@ -18,7 +19,7 @@ class FlightInputs(ScenarioInput):
 
     start: StateInput
     rest: Rest = Field(Rest.LVLH, description="Frame in which the start is at rest.")
-    question: Kind = Field(
+    question: QuestionKind = Field(
         "stay",
         description="stay: in the corridor for horizon_s. synchronize: also at rest in the hold ball at the end, "
         "within within_s; where that is no GO, the best attempt to stay is flown.",
@@ -56,6 +57,20 @@ SPEC = ProcessSpec(
     run="safestart.processes.flight.run:run",
     light=True,
     tables=(Table("flight", ("time_s", "body_m", "lvlh_m", "thrust_m_s2", "distance_m")),),
+    views=(
+        Findings(
+            "Verdict",
+            "",
+            word="verdict",
+            columns=(
+                Column("proved margin [m]", "margin_m"),
+                Column("closest [m]", "closest_m"),
+                Column("to face", "closest_face"),
+                Column("after [s]", "closest_s"),
+                Column("delta-v [m/s]", "delta_v_m_s"),
+            ),
+        ),
+    ),
     keywords=("exact", "trajectory"),
     example={"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "start": {"x_m": 5, "y_m": 40}},
 )

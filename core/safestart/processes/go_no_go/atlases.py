@@ -12,6 +12,7 @@ from safestart.errors import InvalidInput
 from safestart.exact.question import Question
 from safestart.model.scenario import MAX_RANGE
 from safestart.runtime.cache import Shelf
+from safestart.runtime.progress import Context
 
 CUTS_M = (50.0, 150.0, 500.0, 1500.0, 5000.0, MAX_RANGE)
 """Far ends an atlas may have: few, so that questions about different starts find the same one."""
@@ -21,8 +22,11 @@ _kept: OrderedDict[str, Atlas] = OrderedDict()
 _lock = threading.Lock()
 
 
-def atlas_for(question: Question, farthest: float, shelf: Shelf, *, make: bool) -> Atlas | None:
-    """The atlas that reaches ``farthest`` metres along y; None when there is none and ``make`` is False."""
+def atlas_for(question: Question, farthest: float, context: Context, *, make: bool) -> Atlas | None:
+    """The atlas that reaches ``farthest`` metres along y; None when there is none and ``make`` is False.
+
+    It is looked for on the shelf of ``context``; one that is being made is given up when that says so (``Cancelled``).
+    """
     cut = next(
         (c for c in CUTS_M if c >= farthest and c > question.scenario.corridor.hold_radius), CUTS_M[-1]
     )
@@ -31,12 +35,12 @@ def atlas_for(question: Question, farthest: float, shelf: Shelf, *, make: bool) 
         if key in _kept:
             _kept.move_to_end(key)
             return _kept[key]
-    atlas = _from(shelf, key, question, cut)
+    atlas = _from(context.shelf, key, question, cut)
     if atlas is None and make:
         from safestart.atlas.survey import build
 
-        atlas = build(question, cut)
-        shelf.keep(key, pack(atlas))
+        atlas = build(question, cut, context=context)
+        context.shelf.keep(key, pack(atlas))
     if atlas is not None:
         with _lock:
             _kept[key] = atlas

@@ -44,7 +44,7 @@ def _told(question: Question, answer: Answer) -> str:
         return (
             f"a thrust history keeps {spare} to every face for {span:g} s"
             if answer.verdict is Verdict.GO
-            else f"no thrust history stays for {span:g} s: the best ends {short} outside a face"
+            else f"no thrust history stays for {span:g} s: each is at some time at least {short} outside a face"
         )
     scales = f" (1 m/s of the speed limit counts as {SPEED_SCALE:g} m)" if fast else ""
     if answer.verdict is Verdict.GO and answer.thrust is not None:

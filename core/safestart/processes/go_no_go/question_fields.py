@@ -6,24 +6,21 @@ from typing import Literal
 
 from pydantic import Field
 
-from safestart.errors import invalid
 from safestart.model.scenario import MAX_RANGE
-from safestart.processes.go_no_go.uncertainty import HALF_WIDTHS, Widths
+from safestart.processes.go_no_go.method_registry import DEFAULT, METHODS, MethodName
+from safestart.processes.go_no_go.uncertainty import HalfWidths
 from safestart.processes.wire import Horizon
 
-Method = Literal["closed_form", "exact", "auto"]
-Kind = Literal["stay", "synchronize"]
+QuestionKind = Literal["stay", "synchronize"]
 
 
-class Asked(Widths):
-    """Method and exact question; all but the method is for exact and auto."""
+class QuestionFields(HalfWidths):
+    """Method and exact question; all but the method is for the methods that prove."""
 
-    method: Method = Field(
-        "closed_form",
-        description="closed_form: the paper's conditions, at once. exact: cone programs, proved either way. auto: the "
-        "same verdicts, by an atlas where there is one or where there are many planar starts at rest in LVLH.",
+    method: MethodName = Field(
+        DEFAULT, description=" ".join(f"{method.name}: {method.text}." for method in METHODS.values())
     )
-    question: Kind = Field(
+    question: QuestionKind = Field(
         "stay",
         description="stay: in the corridor at all times of horizon_s. synchronize: in addition at rest in the body "
         "frame inside a ball around the hold point at the end, at some time up to within_s.",
@@ -62,26 +59,3 @@ class Asked(Widths):
     )
     start_error_m_s: float = Field(0.0, ge=0, le=10, description="The same of its velocity, m/s (stay).")
     proofs: bool = Field(False, description="Return proof documents (exact, auto); at most 100 starts.")
-
-
-_NEUTRAL = {
-    "question": "stay",
-    "speed_limit_m_s": None,
-    "keep_out_m": 0.0,
-    "disturbance_m_s2": 0.0,
-    "start_error_m": 0.0,
-    "start_error_m_s": 0.0,
-    **dict.fromkeys(HALF_WIDTHS, 0.0),
-}
-
-
-def refuse_closed_form(asked: Asked) -> None:
-    """Raise ``InvalidInput`` for what the closed form cannot answer."""
-    for name, neutral in _NEUTRAL.items():
-        value = getattr(asked, name)
-        if value != neutral:
-            raise invalid(
-                "method",
-                f"exact or auto where {name} is given: the closed form does not know it",
-                asked.method,
-            )

@@ -8,8 +8,10 @@ from pydantic import Field
 
 from safestart.model.scenario import MAX_RANGE, Rest
 from safestart.processes.base import ProcessSpec, Table, WireModel
-from safestart.processes.go_no_go.question_fields import Asked, Kind, Method
+from safestart.processes.go_no_go.method_registry import MethodName
+from safestart.processes.go_no_go.question_fields import QuestionFields, QuestionKind
 from safestart.processes.go_no_go.uncertainty import Member
+from safestart.processes.views import Column, Facts, Findings
 from safestart.processes.wire import ScenarioInput
 
 MAX_STATES = 100_000
@@ -27,7 +29,7 @@ class StateInput(WireModel):
     )
 
 
-class GoNoGoInputs(ScenarioInput, Asked):
+class GoNoGoInputs(ScenarioInput, QuestionFields):
     """One operating point and up to 100 000 starts."""
 
     states: list[StateInput] = Field(min_length=1, max_length=MAX_STATES, description="Starts at rest.")
@@ -37,8 +39,8 @@ class GoNoGoInputs(ScenarioInput, Asked):
 class GoNoGoOutputs(WireModel):
     """Arrays over the states, in their order; margins per face in metres."""
 
-    method: Method
-    question: Kind
+    method: MethodName
+    question: QuestionKind
     rest: Rest
     r_sync_m: float | None = Field(description="Synchronization range limit, m; null when there is none.")
     r_sync_reason: str | None = Field(None, description="Why r_sync_m is null.")
@@ -83,6 +85,7 @@ SPEC = ProcessSpec(
     outputs=GoNoGoOutputs,
     run="safestart.processes.go_no_go.run:run",
     light=True,
+    states="states",
     tables=(
         Table(
             "states",
@@ -90,6 +93,32 @@ SPEC = ProcessSpec(
                 *("verdict", "margin_m", "face_margins_m", "range_margin_m", "binding", "violated_faces"),
                 *("reason", "end_s"),
             ),
+        ),
+    ),
+    views=(
+        Findings(
+            "Verdicts",
+            "states",
+            word="verdict",
+            columns=(
+                Column("margin [m]", "margin_m"),
+                Column("why", "reason"),
+                Column("binding", "binding"),
+                Column("faces violated at the start", "violated_faces"),
+                Column("at rest after [s]", "end_s"),
+            ),
+            basis="method",
+            unproved=("closed_form",),
+        ),
+        Facts(
+            (
+                Column("Method", "method"),
+                Column("Question", "question"),
+                Column("At rest in", "rest"),
+                Column("Synchronization radius [m]", "r_sync_m"),
+                Column("Why there is none", "r_sync_reason"),
+                Column("Faces", "faces"),
+            )
         ),
     ),
     keywords=("certificate", "go/no-go"),

@@ -18,7 +18,7 @@ HALF_WIDTHS = (
 Witness = Literal["common", "per_corner"]
 
 
-class Widths(WireModel):
+class HalfWidths(WireModel):
     """Half-widths around the values asked for; any above 0 asks for a verdict proved for all of them (exact, auto)."""
 
     omega_t_half_width_deg_s: float = Field(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from matplotlib.colors import LinearSegmentedColormap
@@ -12,11 +12,13 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch
 
 from safestart.engines.base import ResultCode
+from safestart.engines.registry import engine_spec
+from safestart.engines.spec import LineStyle
 from safestart.model.scenario import Floats
 from safestart.processes.base import Artifact
 from safestart.processes.inclusion_chain.regions import Region
 from safestart.processes.inclusion_chain.spec import CHAIN, ChainInputs
-from safestart.processes.plotting import PALETTE, draw_corridor, figure, png
+from safestart.processes.plotting import draw_corridor, figure, png
 
 _LABELS = {
     "tube": "S_tube (stays, disturbed)",
@@ -29,16 +31,15 @@ _LABELS = {
     "exact_position": "position, exact at T",
 }
 # Okabe and Ito: told apart without colour vision, and by the line.
-_LineStyle = Literal["-", "--", ":", "-."]
-_STYLES: dict[str, tuple[str, _LineStyle]] = {
+_STYLES: dict[str, tuple[str, LineStyle]] = {
     "hj_position": ("#999999", "-"),
-    "exact_position": (PALETTE["exact"], ":"),
+    "exact_position": (engine_spec("exact").colour, ":"),
     "stay": ("#CC79A7", "--"),
     "tube": ("#0072B2", "-"),
-    "hj_match": (PALETTE["hamilton_jacobi"], "-."),
+    "hj_match": (engine_spec("hamilton_jacobi").colour, "-."),
     "synchronize": ("#E69F00", "-"),
     "analytical_tube": ("#009E73", ":"),
-    "analytical": (PALETTE["analytical"], "-"),
+    "analytical": (engine_spec("analytical").colour, "-"),
 }
 _FILLED = ("hj_position", "tube", "synchronize", "analytical")
 _FULL = LinearSegmentedColormap.from_list("violation", ["#FFFFFF", "#FBE3CF", "#E68A45", "#B04A00"])

@@ -13,8 +13,9 @@ import numpy as np
 from safestart.atlas.survey import build
 from safestart.closed_form.paper import certify_grid
 from safestart.disturbance.tube import Disturbance, Tube, tube_of
-from safestart.engines.base import Problem, ResultCode
-from safestart.engines.registry import engine
+from safestart.engines.base import Engine, Problem, ResultCode
+from safestart.engines.exact import Exact
+from safestart.engines.hamilton_jacobi import HamiltonJacobi
 from safestart.exact.decide import Verdict, decide
 from safestart.exact.question import Goal, Question
 from safestart.model.scenario import Bools, Floats, Rest, Scenario, SetKind
@@ -161,12 +162,9 @@ def _one_by_one(
 
 
 def _engine(name: str, inputs: ChainInputs, corridor: Bools, context: Context) -> Region:
-    hj = inputs.hamilton_jacobi
-    shape = [hj.nodes_xy, hj.nodes_xy, hj.nodes_v, hj.nodes_v]
-    options: dict[str, Any] = {"accuracy": hj.accuracy, "shape": shape, "frame": hj.frame}
-    if name == "hj_match":
-        options["match"] = inputs.match_m_s
     exact = name == "exact_position"
+    match = inputs.match_m_s if name == "hj_match" else None
+    engine: Engine = Exact() if exact else HamiltonJacobi(inputs.hamilton_jacobi, match=match)
     problem = Problem(
         inputs.scenario(),
         inputs.grid.grid(),
@@ -174,9 +172,8 @@ def _engine(name: str, inputs: ChainInputs, corridor: Bools, context: Context) -
         DT_S,
         Rest.LVLH,
         SetKind.FIXED if exact else SetKind.TUBE,
-        options={"hamilton_jacobi": options},
     )
-    result = engine("exact" if exact else "hamilton_jacobi").solve(problem, context)
+    result = engine.solve(problem, context)
     if result.mask is None or result.margin is None:
         return _failed(name, corridor.shape, result.code, result.message, **dict(result.detail))
     detail = dict(result.detail) | {"compile_s": result.compile_s}

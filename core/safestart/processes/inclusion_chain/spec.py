@@ -6,8 +6,9 @@ from typing import Annotated, Any, Literal, get_args
 
 from pydantic import Field, model_validator
 
+from safestart.engines.hj.options import HamiltonJacobiInput
 from safestart.processes.base import ProcessSpec, WireModel
-from safestart.processes.benchmark.spec import HamiltonJacobiInput
+from safestart.processes.views import Column, Facts, Rows
 from safestart.processes.wire import DISTINCT, DT_S, LONGEST_S, GridInput, Horizon, ScenarioInput
 
 SetName = Literal[
@@ -155,6 +156,68 @@ SPEC = ProcessSpec(
     inputs=ChainInputs,
     outputs=ChainOutputs,
     run="safestart.processes.inclusion_chain.run:run",
+    views=(
+        Rows(
+            "The chain of eq. (12)",
+            "chain",
+            (
+                Column("inner", "inner"),
+                Column("outer", "outer"),
+                Column("share of the inner set outside the outer one", "violation_fraction"),
+                Column("cells", "cells"),
+            ),
+        ),
+        Rows(
+            "Counter-examples",
+            "counter_examples",
+            (
+                Column("inner", "inner"),
+                Column("outer", "outer"),
+                Column("cells", "cells"),
+                Column("x [m]", "x_m"),
+                Column("y [m]", "y_m"),
+                Column("margin in the inner set [m]", "inner_margin_m"),
+                Column("in the outer one [m]", "outer_margin_m"),
+                Column("evidence", "evidence"),
+            ),
+            explore=True,
+        ),
+        Facts(
+            (
+                Column("Certified starts of the fine grid", "sliver.certified"),
+                Column("of which none can stay", "sliver.cannot_stay"),
+                Column("worst at x [m]", "sliver.x_m"),
+                Column("y [m]", "sliver.y_m"),
+                Column("margin [m]", "sliver.margin_m"),
+                Column("Corridor cells", "corridor_cells"),
+            )
+        ),
+        Rows(
+            "Sets",
+            "sets",
+            (
+                Column("set", "name"),
+                Column("code", "code"),
+                Column("cells", "cells"),
+                Column("undecided cells", "undecided_cells"),
+                Column("area [m²]", "area_m2"),
+                Column("run [s]", "run_s"),
+                Column("message", "message"),
+            ),
+        ),
+        Rows(
+            "Horizon from which on the certified set is contained",
+            "horizon_contained_s",
+            (
+                Column("outer", "outer"),
+                Column("horizon [s]", "horizon_s"),
+                Column("looked up to [s]", "up_to_s"),
+                Column("cells never contained", "cells_never"),
+                Column("last at x [m]", "x_m"),
+                Column("y [m]", "y_m"),
+            ),
+        ),
+    ),
     keywords=("inclusion", "Hamilton-Jacobi", "tube", "synchronization"),
     example={
         "omega_t_deg_s": 3,

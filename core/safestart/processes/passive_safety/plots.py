@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -70,14 +70,21 @@ def powered_picture(answer: Verification) -> Artifact:
     return png("tubes.png", drawing)
 
 
-def drift_picture(answer: Verification) -> Artifact:
-    """Positions after an abort inside the window: as a whole, and near the target's box."""
+def drift_picture(answers: Sequence[Verification]) -> Artifact:
+    """Positions after an abort, a row for each window: as a whole, and near the target's box."""
+    drawing = figure(10.4, 0.4 + 4.4 * len(answers))
+    for (whole, close), answer in zip(drawing.subplots(len(answers), 2, squeeze=False), answers, strict=True):
+        _drift_row(whole, close, answer)
+    until = answers[0].question.horizon
+    drawing.suptitle(f"Where the chaser drifts after an abort, until {until:g} min", fontsize=11)
+    return png("after_abort.png", drawing)
+
+
+def _drift_row(whole: Axes, close: Axes, answer: Verification) -> None:
     question = answer.question
-    drawing = figure(10.4, 4.6)
-    whole, close = drawing.subplots(1, 2)
-    cells, middles = _drifts(answer)
     box = question.box
     _guard(whole, question.system.guard)
+    cells = _drifts(answer)
     for axes in (whole, close):
         _name(axes)
         for polygons, colour in cells:
@@ -91,10 +98,7 @@ def drift_picture(answer: Verification) -> Artifact:
     if example is not None:
         handles += _contact(close, answer, example)
     close.legend(handles=handles, fontsize=8, loc="upper right")
-    # The first minutes of mode 1 make wide cells: the picture shows where the middles go.
-    reach_x, reach_y = 1.1 * np.abs(middles).max(axis=0) + 10.0 * box
-    whole.set_xlim(-reach_x, reach_x)
-    whole.set_ylim(-reach_y, reach_y)
+    whole.autoscale_view()
     whole.set_aspect("auto")
     close.set_xlim(-20 * box, 20 * box)
     close.set_ylim(-20 * box, 20 * box)
@@ -102,14 +106,9 @@ def drift_picture(answer: Verification) -> Artifact:
     assert question.window is not None
     first, last = question.window
     when = f"at {first:g} min" if first == last else f"between {first:g} and {last:g} min"
-    whole.set_title("all drifts", fontsize=10)
+    whole.set_title(f"abort {when}: all drifts", fontsize=10)
     verdict = answer.findings["separation"].verdict.value
     close.set_title(f"near the target, half-width {box:g} m: {verdict}", fontsize=10)
-    drawing.suptitle(
-        f"Where the chaser drifts after an abort {when}, until {question.horizon:g} min",
-        fontsize=11,
-    )
-    return png("after_abort.png", drawing)
 
 
 def arrays(answer: Verification) -> dict[str, Floats]:
@@ -142,13 +141,12 @@ def _nodes(tube: Tube, part: slice) -> Floats:
     return outlines(0.5 * (low + high), gens)
 
 
-def _drifts(answer: Verification) -> tuple[list[tuple[Floats, str]], Floats]:
-    """Outlines of the cells of the proof with their colours, and the drifts of the bins' middles (K, 2)."""
+def _drifts(answer: Verification) -> list[tuple[Floats, str]]:
+    """Outlines of the cells of the proof, with their colours."""
     question = answer.question
     assert question.window is not None
     steps = flow_steps(question.horizon)
     cells: list[tuple[Floats, str]] = []
-    middles = [np.zeros((1, 2))]
     for tube, clock, level in drift_sources(answer.reach):
         ends = question.window, question.horizon, question.box
         leaves = prove_drift(tube, clock, *ends, level, Context()).leaves
@@ -157,10 +155,9 @@ def _drifts(answer: Verification) -> tuple[list[tuple[Floats, str]], Floats]:
             blocks, pick = np.unique(own[:, 2], return_inverse=True)
             bins = make_bins(tube, clock, int(kind[0]), blocks)
             centre, gens, box = cell_positions(bins, pick, int(kind[1]), own[:, 3], steps)
-            middles.append(centre)
             shapes = outlines(centre, np.concatenate([gens, box[:, None, :] * np.eye(2)], axis=1))
             cells.append((shapes, _DRIFT if kind[2] else _BAD))
-    return cells, np.concatenate(middles)
+    return cells
 
 
 def _contact(axes: Axes, answer: Verification, example: Mapping[str, Any]) -> list[Line2D]:

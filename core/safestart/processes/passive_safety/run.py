@@ -78,7 +78,7 @@ def run(inputs: PassiveSafetyInputs, context: Context) -> ProcessOutput:
     last = answers[-1]
     artifacts = [powered_picture(last), npz("tubes.npz", arrays(last))]
     if last.question.window is not None:
-        artifacts.insert(1, drift_picture(last))
+        artifacts.insert(1, drift_picture(answers))
     return ProcessOutput(document, tuple(artifacts))
 
 

@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 
 from safestart.processes.base import ProcessSpec, WireModel
 from safestart.processes.passive_safety.rendezvous import RendezvousInputs, TargetBox
+from safestart.processes.views import Column, Facts, Findings
 from safestart.processes.wire import Seed
 
 Minutes = Annotated[float, Field(ge=0.0, le=600.0)]
@@ -137,6 +138,43 @@ SPEC = ProcessSpec(
     inputs=PassiveSafetyInputs,
     outputs=PassiveSafetyOutputs,
     run="safestart.processes.passive_safety.run:run",
+    views=(
+        Findings(
+            "Findings",
+            "windows.findings",
+            word="findings.verdict",
+            columns=(
+                Column("requirement", "findings.requirement"),
+                Column("abort from [min]", "abort_window_min.0"),
+                Column("to [min]", "abort_window_min.1"),
+                Column("bound", "findings.bound"),
+                Column("limit", "findings.limit"),
+                Column("margin", "findings.margin"),
+                Column("unit", "findings.unit"),
+                Column("why", "findings.reason"),
+                Column("counter-example: x [m]", "findings.counter_example.x_m"),
+                Column("y [m]", "findings.counter_example.y_m"),
+                Column("vx [m/s]", "findings.counter_example.vx_m_s"),
+                Column("vy [m/s]", "findings.counter_example.vy_m_s"),
+                Column("aborts at [min]", "findings.counter_example.abort_min"),
+                Column("fails at [min]", "findings.counter_example.time_min"),
+                Column("with", "findings.counter_example.value"),
+            ),
+        ),
+        Facts(
+            (
+                Column("Every abort proved safe from 0 to [min]", "critical.proved_until_min"),
+                Column("Earliest abort found that collides [min]", "critical.counter_example.abort_min"),
+                Column("it collides at [min]", "critical.counter_example.time_min"),
+                Column("from x [m]", "critical.counter_example.x_m"),
+                Column("from y [m]", "critical.counter_example.y_m"),
+                Column("What ended the proof", "critical.reason"),
+                Column("Enters mode 2 from [min]", "crossing_first_min"),
+                Column("to [min]", "crossing_last_min"),
+                Column("through the faces", "crossed_faces"),
+            )
+        ),
+    ),
     keywords=("verification", "passive safety", "hybrid system", "abort"),
     example={"abort_windows_min": [[120, 125], [0, 240]], "box_half_width_m": 0.1, "horizon_min": 300},
 )

@@ -29,7 +29,7 @@ def arrays(document: dict[str, Any]) -> dict[str, Floats]:
 def map_picture(inputs: SafeAbortMapInputs, document: dict[str, Any]) -> Artifact:
     """Passive safety alone, and with every requirement: colour is the time up to which it is proved."""
     values = arrays(document)
-    cells = _cells(inputs)
+    boxes = _boxes(inputs, document)
     drawing = figure(11.0, 5.4)
     axes: tuple[Axes, Axes] = drawing.subplots(1, 2, sharex=True, sharey=True)
     levels = np.linspace(0.0, inputs.last_abort_min, _STEPS + 1)
@@ -40,13 +40,13 @@ def map_picture(inputs: SafeAbortMapInputs, document: dict[str, Any]) -> Artifac
     )
     for place, (name, title) in zip(axes, panels, strict=True):
         shown = PolyCollection(
-            list(cells),
+            list(boxes),
             array=np.ma.masked_invalid(values[name]),
             cmap=colours,
             norm=BoundaryNorm(levels, _STEPS),
         )
         shown.set_edgecolor("face")
-        shown.set_linewidth(0.3)
+        shown.set_linewidth(1.0)  # so that a small box is seen
         place.add_collection(shown, autolim=True)
         frame(place, Guard(inputs.guard))
         place.autoscale_view()
@@ -57,38 +57,16 @@ def map_picture(inputs: SafeAbortMapInputs, document: dict[str, Any]) -> Artifac
     what = f"{inputs.model} dynamics, {inputs.gains} gains, guard {inputs.guard}"
     grey = "; grey: no start" if np.isnan(values["safe_abort_until_min"]).any() else ""
     drawing.suptitle(
-        f"Safe-abort map, box of half-width {inputs.box_half_width_m:g} m, each start +-{inputs.half_width_m:g} m "
-        f"({what}{grey})",
+        f"Safe-abort map, box of half-width {inputs.box_half_width_m:g} m ({what}{grey})\n"
+        f"each mark is one start, proved for ±{inputs.half_width_m:g} m around it and not for what lies between",
         fontsize=11,
     )
     return png("map.png", drawing)
 
 
-def _cells(inputs: SafeAbortMapInputs) -> Floats:
-    """Corners (N, k, 2) of the patch of each start, in the order of the starts."""
-    if inputs.starts == "grid":
-        grid = inputs.grid
-        x, y = (
-            np.linspace(grid.x_from_m, grid.x_to_m, grid.nx),
-            np.linspace(grid.y_from_m, grid.y_to_m, grid.ny),
-        )
-        half = np.array([x[1] - x[0], y[1] - y[0]]) / 2.0
-        places = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 1, 2)
-        corners: Floats = places + half * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
-        return corners
-    arc = inputs.arc
-    angles, radii = (
-        np.linspace(arc.from_deg, arc.to_deg, arc.angles),
-        np.linspace(arc.inner_m, arc.outer_m, arc.rings),
-    )
-    wide = (arc.to_deg - arc.from_deg) / max(1, arc.angles - 1) / 2.0
-    deep = (
-        (arc.outer_m - arc.inner_m) / (arc.rings - 1) / 2.0
-        if arc.rings > 1
-        else max(10.0, inputs.half_width_m)
-    )
-    radius, angle = (grid.ravel()[:, None] for grid in np.meshgrid(radii, angles, indexing="ij"))
-    around = np.radians(angle + np.array([-wide, wide, wide, -wide]))
-    out = radius + np.array([-deep, -deep, deep, deep])
-    result: Floats = np.stack([out * np.cos(around), out * np.sin(around)], axis=-1)
-    return result
+def _boxes(inputs: SafeAbortMapInputs, document: dict[str, Any]) -> Floats:
+    """Corners (N, 4, 2) of the box of each start: what the proofs are about, and no more."""
+    half = inputs.half_width_m
+    places = np.stack([np.array(document["x_m"]), np.array(document["y_m"])], axis=-1).reshape(-1, 1, 2)
+    corners: Floats = places + half * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+    return corners

@@ -3,38 +3,42 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
+from safestart.campaign.case import Case
+from safestart.campaign.part import Part
 from safestart.errors import InvalidInput
 from safestart.passive_safety.abort_map import safe_until
 from safestart.passive_safety.question import Question
 from safestart.processes.base import ProcessOutput
 from safestart.processes.passive_safety.system import system_of
 from safestart.processes.plotting import npz
-from safestart.processes.safe_abort_map.parts import summary
 from safestart.processes.safe_abort_map.plots import arrays, map_picture
 from safestart.processes.safe_abort_map.spec import SafeAbortMapInputs
-from safestart.processes.sharding import Part
+from safestart.processes.safe_abort_map.study import place, study_of, summary
 from safestart.runtime.progress import Context
 
 INSIDE = "not wholly outside the guard"
 
 
 def shard(part: dict[str, Any], context: Context) -> Part:
-    """Rows (x, y, separation, requirements, reason) of the part's starts; minutes, None inside the guard."""
-    inputs = SafeAbortMapInputs.model_validate(part["common"])
-    rows: list[list[Any]] = []
-    count = len(part["places"])
-    quiet = Context(cancelled=context.cancelled)
-    for x, y in part["places"]:
-        context.step(len(rows), count, f"start {len(rows) + 1} of {count}")
-        question = _question(inputs, x, y)
-        if question is None:
-            rows.append([x, y, None, None, INSIDE])
-            continue
-        until = safe_until(question, inputs.windows, quiet)
-        rows.append([x, y, until.separation, until.requirements, until.reason])
-    return Part({"starts": rows})
+    """The limits of the part's starts."""
+    inputs = SafeAbortMapInputs.model_validate(part["inputs"])
+    return study_of(inputs).simulated(part, partial(limits, inputs), context, "start")
+
+
+def limits(inputs: SafeAbortMapInputs, case: Case, context: Context) -> dict[str, Any]:
+    """Both limits of a start, minutes; None inside the guard."""
+    question = _question(inputs, *place(dict(case.parameters)))
+    if question is None:
+        return {"safe_abort_until_min": None, "all_proved_until_min": None, "reason": INSIDE}
+    until = safe_until(question, inputs.windows, Context(cancelled=context.cancelled))
+    return {
+        "safe_abort_until_min": until.separation,
+        "all_proved_until_min": until.requirements,
+        "reason": until.reason or None,
+    }
 
 
 def merge(inputs: SafeAbortMapInputs, parts: Sequence[Part], context: Context) -> ProcessOutput:

@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.passive_safety.rendezvous import RendezvousInputs, TargetBox
 from safestart.processes.sharding import Sharding
+from safestart.processes.views import Column, Facts, Rows
 
 MAX_STARTS = 20_000
 
@@ -96,12 +97,25 @@ SPEC = ProcessSpec(
     inputs=SafeAbortMapInputs,
     outputs=SafeAbortMapOutputs,
     sharding=Sharding(
-        "safestart.processes.safe_abort_map.parts:split",
+        "safestart.processes.safe_abort_map.study:split",
         "safestart.processes.safe_abort_map.run:shard",
         "safestart.processes.safe_abort_map.run:merge",
-        "safestart.processes.safe_abort_map.parts:summary",
+        "safestart.processes.safe_abort_map.study:summary",
     ),
     tables=(Table("starts", ("x_m", "y_m", "safe_abort_until_min", "all_proved_until_min")),),
+    views=(
+        Facts((Column("Starts", "starts_done"), Column("Parts", "shards_done"))),
+        Rows(
+            "Starts",
+            "starts",
+            (
+                Column("x [m]", "x_m"),
+                Column("y [m]", "y_m"),
+                Column("every abort proved apart until [min]", "safe_abort_until_min"),
+                Column("and every requirement until [min]", "all_proved_until_min"),
+            ),
+        ),
+    ),
     keywords=("verification", "passive safety", "abort", "map"),
     example={"starts": "arc", "arc": {"rings": 2, "angles": 60}, "box_half_width_m": 0.1},
 )

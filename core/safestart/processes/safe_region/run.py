@@ -22,7 +22,7 @@ def run(inputs: SafeRegionInputs, context: Context) -> ProcessOutput:
     if inputs.y_max_m <= shape.hold_radius:
         raise invalid("y_max_m", f"more than corridor.r_h_m, {shape.hold_radius:g}", inputs.y_max_m)
     question = Question(scenario, DT_S, round(inputs.horizon_s / DT_S))
-    atlas = atlas_for(question, inputs.y_max_m, context.shelf, make=True)
+    atlas = atlas_for(question, inputs.y_max_m, context, make=True)
     assert atlas is not None  # made where there was none
     corridor = corridor_of(shape)
     half = shape.x0 + shape.c_x * (inputs.y_max_m - shape.hold_radius)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pydantic import Field
 
 from safestart.processes.base import ProcessSpec, Table, WireModel
+from safestart.processes.views import Column, Facts
 from safestart.processes.wire import Horizon, ScenarioInput
 
 
@@ -42,6 +43,18 @@ SPEC = ProcessSpec(
     run="safestart.processes.safe_region.run:run",
     light=True,
     tables=(Table("inner_polygon_m", ("inner_polygon_m",)), Table("outer_polygon_m", ("outer_polygon_m",))),
+    views=(
+        Facts(
+            (
+                Column("Area proved GO [m²]", "inner_area_m2"),
+                Column("Area outside of which NO_GO is proved [m²]", "outer_area_m2"),
+                Column("Largest margin [m]", "deepest_margin_m"),
+                Column("at x [m]", "deepest_start_m.0"),
+                Column("at y [m]", "deepest_start_m.1"),
+                Column("Why the polygons are farther apart than usual", "message"),
+            )
+        ),
+    ),
     keywords=("exact", "safe-start region"),
     example={"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "horizon_s": 60, "y_max_m": 150},
 )

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
+from safestart.campaign.case import uniform_run
 from safestart.model.scenario import Chaser, CorridorShape, Floats, Scenario, Target
 from safestart.processes.sweep.spec import SweepInputs
 from safestart.processes.sweep.split import DRAWN
+from safestart.processes.sweep.study import cells_of, drawn_of
 
 Ints = np.ndarray[tuple[int], np.dtype[np.int64]]
 
@@ -30,59 +31,44 @@ class Cases:
     points: Floats
 
 
-def cases_of(inputs: SweepInputs, number: int, pieces: list[list[int]]) -> list[Cases]:
+def cases_of(inputs: SweepInputs, pieces: list[list[int]]) -> list[Cases]:
     """The cases of one shard, one entry per scenario."""
     if inputs.distribution != "grid":
-        return _drawn(inputs, number, *pieces[0][1:])
-    shape, out = inputs.corridor.shape(), []
-    ranges = len(inputs.r0_m)
+        return _drawn(inputs, *pieces[0][1:])
+    shape, design, ranges = inputs.corridor.shape(), cells_of(inputs), len(inputs.r0_m)
+    out = []
     for point in sorted({cell // ranges for cell, _, _ in pieces}):
         numbers, cells, points = [], [], []
         for cell, first, count in pieces:
             if cell // ranges != point:
                 continue
-            r0 = inputs.r0_m[cell % ranges]
-            angles = _widest(shape, np.array([r0]))[0] * _uniform(inputs, cell, first, count)
+            r0 = design.at(cell)["r0_m"]
+            side = uniform_run(inputs.seed, (cell,), first, count, DRAWN)
+            angles = _widest(shape, np.array([r0]))[0] * side
             points.append(r0 * np.stack([np.sin(angles), np.cos(angles)], axis=1))
             numbers.append(cell * inputs.cases_per_cell + first + np.arange(count))
             cells.append(np.full(count, cell))
-        a_max = inputs.a_max_m_s2[point // len(inputs.omega_t_deg_s)]
-        omega = inputs.omega_t_deg_s[point % len(inputs.omega_t_deg_s)]
+        values = design.at(point * ranges)
+        omega, a_max = values["omega_t_deg_s"], values["a_max_m_s2"]
         scenario = scenario_of(inputs, omega, a_max)
         merged = (np.concatenate(numbers), np.concatenate(cells), np.concatenate(points))
         out.append(Cases(omega, a_max, scenario, *merged))
     return out
 
 
-def _drawn(inputs: SweepInputs, number: int, first: int, count: int) -> list[Cases]:
-    """Cases with a scenario each; a Latin hypercube is stratified within its shard."""
-    rng = _generator(inputs, number, first)
-    if inputs.distribution == "latin_hypercube":
-        from scipy.stats.qmc import LatinHypercube
-
-        unit: Any = LatinHypercube(4, rng=rng).random(count)
-    else:
-        unit = rng.uniform(size=(count, 4))
-    low = np.array([min(inputs.omega_t_deg_s), min(inputs.a_max_m_s2), min(inputs.r0_m)])
-    high = np.array([max(inputs.omega_t_deg_s), max(inputs.a_max_m_s2), max(inputs.r0_m)])
-    values = low + (high - low) * unit[:, :3]
-    angles = _widest(inputs.corridor.shape(), values[:, 2]) * (2.0 * unit[:, 3] - 1.0)
-    points = values[:, 2:] * np.stack([np.sin(angles), np.cos(angles)], axis=1)
+def _drawn(inputs: SweepInputs, first: int, count: int) -> list[Cases]:
+    """Cases with a scenario each."""
+    drawn = drawn_of(inputs).parameters(first, count)
+    ranges = np.array([values["r0_m"] for values in drawn])
+    angles = _widest(inputs.corridor.shape(), ranges) * np.array([values["side"] for values in drawn])
+    points = ranges[:, None] * np.stack([np.sin(angles), np.cos(angles)], axis=1)
     none = np.full(1, -1)
-    return [
-        Cases(omega, a_max, scenario_of(inputs, omega, a_max), np.array([first + k]), none, points[k : k + 1])
-        for k, (omega, a_max) in enumerate(values[:, :2].tolist())
-    ]
-
-
-def _uniform(inputs: SweepInputs, cell: int, first: int, count: int) -> Floats:
-    """Numbers in [-1, 1) of the cell's cases from ``first`` on, each draw from a generator of its own."""
-    draws = range(first // DRAWN, -(-(first + count) // DRAWN))
-    return np.concatenate([_generator(inputs, cell, n).uniform(-1.0, 1.0, DRAWN) for n in draws])[:count]
-
-
-def _generator(inputs: SweepInputs, *key: int) -> np.random.Generator:
-    return np.random.default_rng([inputs.seed, *key])
+    out = []
+    for k, values in enumerate(drawn):
+        omega, a_max = values["omega_t_deg_s"], values["a_max_m_s2"]
+        scenario = scenario_of(inputs, omega, a_max)
+        out.append(Cases(omega, a_max, scenario, np.array([first + k]), none, points[k : k + 1]))
+    return out
 
 
 def scenario_of(inputs: SweepInputs, omega: float, a_max: float) -> Scenario:

@@ -4,23 +4,28 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from safestart.constraints.corridor import corridor_of
+from safestart.control.controller import Controller
 from safestart.control.forecast import flight_plan
 from safestart.control.gains import Gains, preset
-from safestart.model.scenario import Bools, Floats, Rest
+from safestart.control.sequence_mpc import SequenceMpc, start_verdict
+from safestart.control.three_regimes import ThreeRegimes
+from safestart.exact.question import Question
+from safestart.model.scenario import Rest, Scenario
 from safestart.processes.sweep.cases import Cases
 from safestart.processes.sweep.judge import UNASKED, Verdicts, of
 from safestart.processes.sweep.spec import FINE_DT_S, SweepInputs
 from safestart.processes.wire import DT_S
 from safestart.simulation.compiled_loop import fly
-from safestart.simulation.pilots import FilterPilot, Flown, Pilot, SequencePilot, fly_in
-from safestart.simulation.trajectory import start_states
-from safestart.simulation.truth import Truth, draws, truth_of
-from safestart.simulation.worlds import CwhWorld, TwoBodyWorld, World
+from safestart.simulation.loop import fly as fly_slowly
+from safestart.simulation.noise import DRAWS, Drawn, Truth, draws, truth_of
+from safestart.simulation.plant import plant_of
+from safestart.simulation.record import Record
+from safestart.simulation.starts import start_states
 
 # Flights between two looks at a dismissal, some 10 ms.
 CHUNK = 500
@@ -28,22 +33,24 @@ NODES = 6
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
-    """M flights: margin (m), time of the violation (s), impulse (m/s), control steps, steps without an admissible
-    command; ``verdict`` is the exact answer where the controller knew it, else UNASKED.
-    """
+class Outcome(Record):
+    """M flights without paths; ``verdict`` (M,) is the exact answer where the controller knew it, else UNASKED."""
 
-    margin: Floats
-    violated_at: Floats
-    delta_v: Floats
-    steps: np.ndarray[tuple[int], np.dtype[np.int64]]
-    fallbacks: np.ndarray[tuple[int], np.dtype[np.int64]]
-    verdict: Verdicts
+    verdict: Verdicts = field(default_factory=lambda: np.empty(0, np.int8))
 
-    @property
-    def safe(self) -> Bools:
-        """Flown without violation, and with numbers throughout."""
-        return np.asarray((self.margin >= 0.0) & np.isinf(self.violated_at))
+    @classmethod
+    def of(cls, flown: Record, verdict: Verdicts) -> Outcome:
+        """The flights with what their controller knew of the starts."""
+        return cls(
+            flown.margin,
+            flown.violated_at,
+            flown.delta_v,
+            flown.peak,
+            flown.steps,
+            flown.fallbacks,
+            (),
+            verdict,
+        )
 
 
 def gains_of(inputs: SweepInputs) -> Gains:
@@ -92,52 +99,60 @@ def fly_all(inputs: SweepInputs, controller: str, cases: Cases, poll: Callable[[
     for first in range(0, len(starts), CHUNK):
         rows = slice(first, first + CHUNK)
         drawn = draws(truth, inputs.seed, cases.numbers[rows], steps)
-        done = fly(plan, starts[rows], truth, drawn)
-        margin = np.where(done.finite, done.margin, np.nan)
-        parts.append((margin, done.violated_at, done.delta_v, done.steps, done.infeasible))
+        parts.append(fly(plan, starts[rows], truth, drawn))
         poll(min(first + CHUNK, len(starts)))
-    margin, late, impulse, flown, fallbacks = (np.concatenate(column) for column in zip(*parts, strict=True))
-    return Outcome(margin, late, impulse, flown, fallbacks, np.full(len(starts), UNASKED, dtype=np.int8))
+    return Outcome.of(Record.joined(parts), np.full(len(starts), UNASKED, dtype=np.int8))
 
 
 def fly_one(
-    inputs: SweepInputs, controller: str, cases: Cases, row: int, pilot: Pilot | None = None
-) -> Flown:
+    inputs: SweepInputs, controller: str, cases: Cases, row: int, pilot: Controller | None = None
+) -> Record:
     """One flight with its states and commands, the same as in the sweep."""
     dt, steps, _ = timing(inputs, controller)
     truth = truth_from(inputs)
     start = start_states(cases.scenario, cases.points[row : row + 1], Rest.LVLH)[0]
     drawn = draws(truth, inputs.seed, cases.numbers[row : row + 1], steps)
-    pilot = pilot or pilot_of(inputs, controller, cases)
-    world: World
-    if inputs.truth.model == "cwh":
-        world = CwhWorld(cases.scenario, start, dt)
-    else:
-        world = TwoBodyWorld(cases.scenario, start, dt)
-    return fly_in(world, pilot, steps, dt, truth, drawn[0] if len(drawn) else np.empty((0, 6)))
+    return fly_slowly(
+        plant_of(cases.scenario, inputs.truth.model),
+        [corridor_of(cases.scenario.corridor)],
+        pilot or controller_of(inputs, controller, cases),
+        start,
+        steps,
+        dt,
+        Drawn(truth, drawn[0] if len(drawn) else np.empty((0, DRAWS))),
+    )
 
 
-def pilot_of(inputs: SweepInputs, controller: str, cases: Cases) -> Pilot:
-    """The controller of a scenario."""
-    dt, steps, nodes = timing(inputs, controller)
-    if controller == "sequence":
-        return SequencePilot(cases.scenario, dt, steps)
-    return FilterPilot(cases.scenario, gains_of(inputs), dt, steps, nodes)
+def controller_of(inputs: SweepInputs, controller: str, cases: Cases) -> Controller:
+    """The controller of that name for a scenario."""
+    return CONTROLLERS[controller](inputs, cases.scenario, *timing(inputs, controller))
+
+
+def _filter(inputs: SweepInputs, scenario: Scenario, dt: float, steps: int, nodes: int) -> Controller:
+    return ThreeRegimes(flight_plan(scenario, gains_of(inputs), dt, steps, nodes=nodes))
+
+
+def _sequence(_: SweepInputs, scenario: Scenario, dt: float, steps: int, __: int) -> Controller:
+    return SequenceMpc(Question(scenario, dt, steps))
+
+
+CONTROLLERS: dict[str, Callable[[SweepInputs, Scenario, float, int, int], Controller]] = {
+    "filter": _filter,
+    "filter_fine": _filter,
+    "sequence": _sequence,
+}
+"""The controllers that a sweep can fly, by name."""
 
 
 def _one_by_one(inputs: SweepInputs, controller: str, cases: Cases, poll: Callable[[int], None]) -> Outcome:
-    pilot = pilot_of(inputs, controller, cases)
+    pilot = controller_of(inputs, controller, cases)
     known = truth_from(inputs).position_sigma == truth_from(inputs).velocity_sigma == 0.0
-    rows: list[tuple[Any, ...]] = []
+    flights, verdicts = [], []
     for row in range(len(cases.points)):
         flown = fly_one(inputs, controller, cases, row, pilot)
+        verdict = start_verdict(flown.paths[0].commands)
         # A plan made from a noisy state says nothing about the start itself.
-        verdict = of(flown.verdict) if flown.verdict is not None and known else UNASKED
-        rows.append(
-            (flown.margin, flown.violated_at, flown.delta_v, len(flown.commands), flown.fallbacks, verdict)
-        )
+        verdicts.append(of(verdict) if verdict is not None and known else UNASKED)
+        flights.append(flown)
         poll(row + 1)
-    margin, late, impulse, steps, fallbacks, verdicts = (
-        np.array(column) for column in zip(*rows, strict=True)
-    )
-    return Outcome(margin, late, impulse, steps, fallbacks, verdicts.astype(np.int8))
+    return Outcome.of(Record.joined(flights), np.array(verdicts, dtype=np.int8))

@@ -8,35 +8,30 @@ from typing import Any
 
 import numpy as np
 
+from safestart.attitude.spin import spin_of
+from safestart.campaign.part import Part
+from safestart.campaign.records import MEDIA_TYPE
 from safestart.exact.decide import decide
 from safestart.exact.prove import proof_of
 from safestart.exact.question import Question
 from safestart.model.scenario import Floats
 from safestart.processes.base import Artifact, ProcessOutput
 from safestart.processes.plotting import npz
-from safestart.processes.sharding import Part
-from safestart.processes.sweep.aggregate import Total, public
 from safestart.processes.sweep.cases import Cases, scenario_of
 from safestart.processes.sweep.fleet import fly_one
-from safestart.processes.sweep.plots import confusion_picture, table_picture, worst_picture
-from safestart.processes.sweep.records import MEDIA_TYPE, joined
+from safestart.processes.sweep.plots import Path, confusion_picture, table_picture, worst_picture
 from safestart.processes.sweep.spec import SweepInputs
+from safestart.processes.sweep.study import study_of, summary
 from safestart.processes.wire import DT_S
 from safestart.runtime.progress import Context
-
-Path = tuple[dict[str, Any], Floats, Floats]
-"""A worst case with the times (T,) and body-frame positions (T, 2) of its flight."""
 
 
 def merge(inputs: SweepInputs, parts: Sequence[Part], context: Context) -> ProcessOutput:
     """Outputs and artifacts of a sweep."""
-    total = Total(inputs)
-    for part in parts:
-        total.add(part.document)
+    document = summary(inputs, [part.document for part in parts])
     context.step(1, 4, "sums")
-    paths = {name: [_path(inputs, name, case) for case in cases] for name, cases in total.worst.items()}
-    proof = _false_go(inputs, total)
-    document = total.outputs()
+    paths = {name: [_path(inputs, name, case) for case in cases] for name, cases in document["worst"].items()}
+    document["false_go"], proof = _proved(inputs, document["false_go"])
     context.step(2, 4, "worst flights")
     artifacts = [confusion_picture(inputs, document["confusion"])]
     if document["cells"]:
@@ -45,8 +40,8 @@ def merge(inputs: SweepInputs, parts: Sequence[Part], context: Context) -> Proce
         artifacts.append(worst_picture(inputs, paths))
         artifacts.append(npz("trajectories.npz", _arrays(paths)))
     context.step(3, 4, "pictures")
-    if any(part.data for part in parts):
-        records = joined(inputs, (part.data for part in parts))
+    records = study_of(inputs).recorded(parts)
+    if records:
         artifacts.append(Artifact("cases.parquet", MEDIA_TYPE, records))
     if proof is not None:
         artifacts.append(Artifact("false_go_proof.json", "application/json", proof))
@@ -56,12 +51,8 @@ def merge(inputs: SweepInputs, parts: Sequence[Part], context: Context) -> Proce
 def _path(inputs: SweepInputs, controller: str, case: dict[str, Any]) -> Path:
     """Fly a case once more, as in its shard."""
     cases = _single(inputs, case)
-    flown = fly_one(inputs, controller, cases, 0)
-    times, states = np.array(flown.times), np.array(flown.states)
-    angle = cases.scenario.target.tumble_rate * times
-    x, y = states[:, 0], states[:, 1]
-    body = np.stack([np.cos(angle) * x + np.sin(angle) * y, np.cos(angle) * y - np.sin(angle) * x], axis=1)
-    return case, times, body
+    path = fly_one(inputs, controller, cases, 0).paths[0]
+    return case, path.times, path.seen_from(spin_of(cases.scenario.target))[:, :2]
 
 
 def _single(inputs: SweepInputs, case: dict[str, Any]) -> Cases:
@@ -71,21 +62,21 @@ def _single(inputs: SweepInputs, case: dict[str, Any]) -> Cases:
     return Cases(case["omega_t_deg_s"], case["a_max_m_s2"], scenario, number, none, point)
 
 
-def _false_go(inputs: SweepInputs, total: Total) -> bytes | None:
-    """Put the proved bound into each false GO, worst first, and return the worst one's proof."""
+def _proved(inputs: SweepInputs, false_go: list[dict[str, Any]]) -> tuple[list[dict[str, Any]], bytes | None]:
+    """The false GOs with their proved bounds, worst first, and the worst one's proof."""
     found = []
-    for case in total.false_go:
+    for case in false_go:
         cases = _single(inputs, case)
         question = Question(cases.scenario, DT_S, inputs.steps)
         state = np.array([case["x_m"], case["y_m"], 0.0, 0.0])
         answer = decide(question, state)
-        found.append(({**public(case), "margin_m": answer.margin_m}, question, state, answer))
+        found.append(({**case, "margin_m": answer.margin_m}, question, state, answer))
     found.sort(key=lambda entry: (entry[0]["margin_m"], entry[0]["case"]))
-    total.false_go = [entry[0] for entry in found]
-    if not found:
-        return None
-    _, question, state, answer = found[0]
-    return json.dumps(proof_of(question, state, answer), indent=1).encode()
+    proof = None
+    if found:
+        _, question, state, answer = found[0]
+        proof = json.dumps(proof_of(question, state, answer), indent=1).encode()
+    return [entry[0] for entry in found], proof
 
 
 def _arrays(paths: dict[str, list[Path]]) -> dict[str, Floats]:

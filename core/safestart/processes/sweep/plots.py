@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 
+from safestart.model.scenario import Floats
 from safestart.processes.base import Artifact
 from safestart.processes.plotting import draw_corridor, figure, png
 from safestart.processes.sweep.spec import SweepInputs
 
-if TYPE_CHECKING:
-    from safestart.processes.sweep.merge import Path
-
+Path = tuple[dict[str, Any], Floats, Floats]
+"""A worst case with the times (T,) and body-frame positions (T, 2) of its flight."""
 NAMES = {
     "closed_form": "closed form",
     "exact": "exact",
@@ -50,8 +50,8 @@ def _matrix(panel: Axes, cell: Mapping[str, Any]) -> None:
             panel.text(k + 0.5, 1.5 - i, f"{counts[i, k]:,}", ha="center", va="center", fontsize=12)
     panel.set_xlim(0, 2)
     panel.set_ylim(0, 2)
-    panel.set_xticks([0.5, 1.5], ["safe", "lost"])
-    panel.set_yticks([1.5, 0.5], ["GO", "no GO"])
+    panel.set_xticks([0.5, 1.5], ["stayed", "left"])
+    panel.set_yticks([1.5, 0.5], ["certified", "not\ncertified"])
     panel.tick_params(length=0)
     rates = [("precision", cell["precision"]), ("recall", cell["recall"])]
     panel.set_xlabel(

@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 from safestart.model.scenario import MAX_MEAN_MOTION, MAX_RANGE
 from safestart.processes.base import ProcessSpec, WireModel
 from safestart.processes.sharding import Sharding
+from safestart.processes.views import Column, Facts, Flights, Matrices, Rows
 from safestart.processes.wire import (
     DISTINCT,
     DT_S,
@@ -216,6 +217,18 @@ class SweepOutputs(WireModel):
 
 HERE = "safestart.processes.sweep"
 
+_CASE = (
+    Column("case", "case"),
+    Column("tumble rate [deg/s]", "omega_t_deg_s"),
+    Column("thrust [m/s²]", "a_max_m_s2"),
+    Column("x [m]", "x_m"),
+    Column("y [m]", "y_m"),
+    Column("margin [m]", "margin_m"),
+    Column("left after [s]", "violated_at_s"),
+    Column("certified by the closed form", "certified.closed_form"),
+    Column("proved by exact", "certified.exact"),
+)
+
 SPEC = ProcessSpec(
     id="sweep",
     title="Closed-loop sweep",
@@ -230,7 +243,50 @@ SPEC = ProcessSpec(
         split=f"{HERE}.split:split",
         shard=f"{HERE}.shard:shard",
         merge=f"{HERE}.merge:merge",
-        summary=f"{HERE}.aggregate:summary",
+        summary=f"{HERE}.study:summary",
+    ),
+    views=(
+        Matrices(
+            "Each certificate against each controller",
+            "Rows: the certificate's word on the start. Columns: whether this controller's flight stayed in the "
+            "corridor. A flight that is lost from a start with a proof is the controller's failure, not a false "
+            "proof. Intervals: Wilson, 95 %.",
+            path="confusion.*.*",
+            names=("", ""),
+            heading="{0}, flown by {1}",
+            claims=("certified", "not certified"),
+            facts=("stayed", "left"),
+            cells=(
+                "certified, stayed",
+                "certified, lost in flight",
+                "stayed, not certified",
+                "not certified, left",
+            ),
+        ),
+        Facts(
+            (
+                Column("Starts", "cases"),
+                Column("of which exact leaves undecided", "undecided"),
+                Column("certified by the closed form and proved NO_GO", "false_go_count"),
+            )
+        ),
+        Flights("Worst cases", "trajectories.npz", path="worst", columns=_CASE),
+        Rows("Certified by the closed form and proved NO_GO", "false_go", _CASE, explore=True),
+        Rows(
+            "Cells",
+            "cells",
+            (
+                Column("tumble rate [deg/s]", "omega_t_deg_s"),
+                Column("thrust [m/s²]", "a_max_m_s2"),
+                Column("range [m]", "r0_m"),
+                Column("starts", "cases"),
+                Column("certified: closed form", "certified.closed_form"),
+                Column("certified: exact", "certified.exact"),
+                Column("stayed: filter", "feasible.filter"),
+                Column("stayed: fine filter", "feasible.filter_fine"),
+                Column("stayed: sequence", "feasible.sequence"),
+            ),
+        ),
     ),
     keywords=("closed loop", "Monte Carlo", "MPC", "confusion matrix"),
     example={"controllers": ["filter"], "cases_per_cell": 3, "omega_t_deg_s": [1, 3], "a_max_m_s2": [0.1]},

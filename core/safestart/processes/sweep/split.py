@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from safestart.campaign.cuts import packed, runs
 from safestart.processes.sweep.spec import SweepInputs
 
 # Cases per shard: a second or so of work.
@@ -18,30 +19,11 @@ def split(inputs: SweepInputs) -> list[dict[str, Any]]:
     ``first`` counts within the cell (grid) or over all cases. Operating points vary slowest; one is cut only where it
     has more cases than a shard holds.
     """
-    dumped = inputs.model_dump(mode="json")
-    slow = "sequence" in inputs.controllers or inputs.truth.model != "cwh"
     if inputs.distribution != "grid":
-        shards = [
-            [[0, first, min(DRAWN_OWN, inputs.cases - first)]] for first in range(0, inputs.cases, DRAWN_OWN)
-        ]
+        shards = [[[0, first, count]] for first, count in runs(inputs.cases, DRAWN_OWN)]
     else:
-        most = SLOW if slow else FAST
+        slow = "sequence" in inputs.controllers or inputs.truth.model != "cwh"
         points = len(inputs.omega_t_deg_s) * len(inputs.a_max_m_s2)
-        ranges = len(inputs.r0_m)
-        shards = []
-        shard: list[list[int]] = []
-        room = most
-        for point in range(points):
-            if ranges * inputs.cases_per_cell > room < most:
-                shards.append(shard)
-                shard, room = [], most
-            for cell in range(point * ranges, (point + 1) * ranges):
-                for first in range(0, inputs.cases_per_cell, most):
-                    count = min(most, inputs.cases_per_cell - first)
-                    if count > room:
-                        shards.append(shard)
-                        shard, room = [], most
-                    shard.append([cell, first, count])
-                    room -= count
-        shards.append(shard)
+        shards = packed(points, len(inputs.r0_m), inputs.cases_per_cell, SLOW if slow else FAST)
+    dumped = inputs.model_dump(mode="json")
     return [{"inputs": dumped, "number": number, "pieces": pieces} for number, pieces in enumerate(shards)]

@@ -7,6 +7,7 @@ from pydantic import Field, model_validator
 from safestart.model.scenario import MAX_MEAN_MOTION, Rest
 from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.coverage.spec import Rates, Thrusts
+from safestart.processes.views import Column, Rows
 from safestart.processes.wire import CorridorInput
 
 PROVED_FOR_S = 60.0
@@ -41,8 +42,8 @@ class ThrustMapOutputs(WireModel):
     a_max_m_s2: list[float]
     safe_percent: list[list[float]] = Field(description="Certified share of the corridor, percent.")
     required_a_max_m_s2: list[float | None] = Field(
-        description="Smallest thrust for which the start (0, stand_off_m) is certified and a thrust history is proved to "
-        "keep it in the corridor for 60 s; null: none up to 10 m/s^2."
+        description="Smallest thrust for which the start (0, stand_off_m) is certified and a thrust history is proved "
+        "to keep it in the corridor for 60 s; null: none up to 10 m/s^2."
     )
 
 
@@ -51,8 +52,8 @@ SPEC = ProcessSpec(
     title="What more thrust buys",
     description=(
         "Certified share of the corridor for each pair of tumble rate and thrust, and for each tumble rate the "
-        "smallest thrust that certifies a start on the corridor's axis at the wanted stand-off and is proved to keep it "
-        "in the corridor for 60 s. The share is that of the paper's conditions; not a proof next to the range limit."
+        "smallest thrust that certifies a start on the corridor's axis at the wanted stand-off and is proved to keep "
+        "it in the corridor for 60 s. The share is that of the paper's conditions; not a proof next to the range limit."
     ),
     inputs=ThrustMapInputs,
     outputs=ThrustMapOutputs,
@@ -61,6 +62,25 @@ SPEC = ProcessSpec(
     tables=(
         Table("safe_percent", ("safe_percent",), axes=("omega_t_deg_s", "a_max_m_s2")),
         Table("required_a_max_m_s2", ("omega_t_deg_s", "required_a_max_m_s2")),
+    ),
+    views=(
+        Rows(
+            "Required thrust",
+            "required_a_max_m_s2",
+            (
+                Column("tumble rate [deg/s]", "omega_t_deg_s"),
+                Column("required thrust [m/s²]", "required_a_max_m_s2"),
+            ),
+        ),
+        Rows(
+            "Certified share",
+            "safe_percent",
+            (
+                Column("tumble rate [deg/s]", "omega_t_deg_s"),
+                Column("thrust [m/s²]", "a_max_m_s2"),
+                Column("certified [%]", "safe_percent"),
+            ),
+        ),
     ),
     keywords=("certificate", "trade study"),
     example={"omega_t_deg_s": [1, 3, 5], "a_max_m_s2": [0.05, 0.1, 0.2], "stand_off_m": 40},

@@ -10,6 +10,7 @@ from safestart.model.scenario import MAX_MEAN_MOTION
 from safestart.processes.base import ProcessSpec, WireModel
 from safestart.processes.sharding import Sharding
 from safestart.processes.sweep.spec import Rates, Thrusts
+from safestart.processes.views import Column, Facts, Rows
 from safestart.processes.wire import CorridorInput, GridInput, Horizon, Seed
 
 
@@ -77,10 +78,32 @@ SPEC = ProcessSpec(
     inputs=TradeStudyInputs,
     outputs=TradeStudyOutputs,
     sharding=Sharding(
-        split=f"{_HERE}.split:split",
+        split=f"{_HERE}.study:split",
         shard=f"{_HERE}.run:shard",
         merge=f"{_HERE}.run:merge",
-        summary=f"{_HERE}.split:summary",
+        summary=f"{_HERE}.study:summary",
+    ),
+    views=(
+        Facts(
+            (
+                Column("Starts per point", "corridor_points"),
+                Column("Area of the corridor [m²]", "corridor_area_m2"),
+            )
+        ),
+        Rows(
+            "Operating points",
+            "points",
+            (
+                Column("tumble rate [deg/s]", "omega_t_deg_s"),
+                Column("thrust [m/s²]", "a_max_m_s2"),
+                Column("certified share", "certified_fraction"),
+                Column("proved GO share", "exact_fraction"),
+                Column("flown share", "flown_fraction"),
+                Column("certified starts flown", "certified_flown"),
+                Column("mean delta-v [m/s]", "mean_delta_v_m_s"),
+                Column("message", "message"),
+            ),
+        ),
     ),
     keywords=("trade study", "closed loop", "coverage"),
     example={"omega_t_deg_s": [1, 3, 5], "a_max_m_s2": [0.05, 0.1], "grid": {"nx": 21, "ny": 21}},

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from base64 import urlsafe_b64decode, urlsafe_b64encode
 from dataclasses import fields
-from datetime import datetime
 from typing import Any
 
 from sqlalchemy import Row, func, select
@@ -81,17 +80,6 @@ class JobRepository(Submissions, Claims, Shards, Queue, EventLog, Presence):
         """Number of jobs by status; every status is there."""
         with self._database.session() as session:
             return counts(session)
-
-    def waiting_since(self) -> datetime | None:
-        """When the oldest waiting job was submitted; None when none waits."""
-        query = (
-            select(JobRow.created_at)
-            .where(JobRow.status == JobStatus.ACCEPTED.value)
-            .order_by(JobRow.seq)
-            .limit(1)
-        )
-        with self._database.session() as session:
-            return session.scalar(query)
 
 
 def _entry(row: Row[Any]) -> JobEntry:

@@ -1,0 +1,58 @@
+"""Options of a command from the flat parameters of a model: name, type, default and help are the model's."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Container
+from enum import Enum
+from inspect import Parameter, Signature, signature
+from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin
+
+import typer
+
+from safestart.processes import flat
+
+Command = TypeVar("Command", bound=Callable[..., None])
+
+
+def takes(inputs: flat.Flat[Any], *, without: Container[str] = ()) -> Callable[[Command], Command]:
+    """Give a command an option for each parameter; it receives them as keyword arguments, beside its own.
+
+    Texts are taken as they come: the model says what is wrong with them.
+    """
+    options = [_option(name, one) for name, one in inputs.parameters.items() if name not in without]
+    options.sort(key=lambda option: option.default is not Parameter.empty)  # required ones first
+
+    def decorate(command: Command) -> Command:
+        own = signature(command, eval_str=True).parameters.values()
+        parameters = [*options, *(one for one in own if one.kind is Parameter.KEYWORD_ONLY)]
+        command.__signature__ = Signature(parameters)  # type: ignore[attr-defined]
+        command.__annotations__ = {one.name: one.annotation for one in parameters}
+        return command
+
+    return decorate
+
+
+def _option(name: str, parameter: flat.Parameter) -> Parameter:
+    field = parameter.field
+    kinds = [kind for kind in get_args(field.annotation) or (field.annotation,) if kind is not type(None)]
+    kind = kinds[0] if len(kinds) == 1 and kinds[0] in (bool, int, float) else str
+    words = _words(field.annotation)
+    told = typer.Option(help=parameter.text, metavar=f"[{'|'.join(words)}]" if words else None)
+    default = None if field.is_required() else field.default
+    if isinstance(default, Enum):
+        default = default.value
+    return Parameter(
+        name,
+        Parameter.KEYWORD_ONLY,
+        default=Parameter.empty if parameter.required else default,
+        annotation=Annotated[kind if parameter.required or default is not None else kind | None, told],
+    )
+
+
+def _words(annotation: Any) -> list[str]:
+    """The words that a parameter takes, where it takes words."""
+    if get_origin(annotation) is Literal:
+        return [str(word) for word in get_args(annotation)]
+    if isinstance(annotation, type) and issubclass(annotation, Enum):
+        return [str(member.value) for member in annotation]
+    return []

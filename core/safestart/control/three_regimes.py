@@ -1,0 +1,49 @@
+"""The controller of paper 000: the nominal command of three regimes, then the single-input safety filter.
+
+Flown by the thousand it is :mod:`safestart.simulation.compiled_loop`, which gives the same commands.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from safestart.control.controller import Command
+from safestart.control.forecast import Plan
+from safestart.control.regimes import REGIMES, nominal_command
+from safestart.control.safety_filter import filter_command
+from safestart.model.scenario import Floats
+
+
+class ThreeRegimes:
+    """One flight after another with the tables of ``plan``; commands are labelled with their regime.
+
+    A command is not feasible where (7) was not; it is then the fallback's. In a planar plan the thrust has no z part.
+    """
+
+    def __init__(self, plan: Plan) -> None:
+        self._plan = plan
+        self._dimensions = plan.normals.shape[1]
+        self._previous, self._range, self._fastest = np.zeros(self._dimensions), 0.0, 0.0
+
+    def begin(self, state: Floats) -> None:
+        """Nothing was commanded before; the speed cap follows from the range."""
+        plan = self._plan
+        self._previous = np.zeros(self._dimensions)
+        self._range = math.sqrt(float(state[:3] @ state[:3]))
+        self._fastest = plan.closing_factor * math.sqrt(plan.law.max_acceleration * self._range)
+
+    def command(self, k: int, state: Floats) -> Command:
+        """See :class:`safestart.control.controller.Controller`."""
+        plan = self._plan
+        cos, sin = plan.rotation[k].tolist()
+        x, y, z, vx, vy, vz = state.tolist()
+        time, law = k * plan.dt, plan.law
+        *wanted, regime = nominal_command(
+            x, y, z, vx, vy, vz, time, cos, sin, self._range, self._fastest, law
+        )
+        self._previous, feasible = filter_command(plan, k, state, np.array(wanted), self._previous)
+        thrust = np.zeros(3)
+        thrust[: self._dimensions] = self._previous
+        return Command(thrust, feasible, REGIMES[regime])

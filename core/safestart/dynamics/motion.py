@@ -1,0 +1,88 @@
+"""How a chaser moves relative to a target: the interfaces that every motion offers.
+
+States are LVLH position and velocity (x, y, z, vx, vy, vz), m and m/s; times are seconds since the flight's start.
+"""
+
+from __future__ import annotations
+
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+
+from safestart.model.scenario import Floats
+
+
+class Underway(Protocol):
+    """One chaser on its way; ``state`` (6,) is where it is now."""
+
+    state: Floats
+
+    def push(self, impulse: Floats) -> None:
+        """Change the velocity at once by ``impulse`` (3,), m/s, LVLH."""
+        ...
+
+    def fly(self, thrust: Floats, times: Floats) -> Floats:
+        """States (T, 6) at ``times`` (T,), the first of which is now, with ``thrust`` (3,) m/s^2 held in LVLH axes."""
+        ...
+
+
+class Motion(Protocol):
+    """Anything that a chaser can fly in, linear or not."""
+
+    def start(self, state: Floats) -> Underway:
+        """A chaser at ``state`` (6,) at t = 0."""
+        ...
+
+
+class RelativeMotion(Protocol):
+    """A linear motion, which may vary with time. Derive from it and give the two matrices.
+
+    Everything that predicts takes a motion by these two; ``start`` makes every linear motion fly in the loop. Motions
+    are equal, and hashed, by value (a frozen dataclass): what is tabulated for one is kept.
+    """
+
+    def transition(self, t0: float, t1: float) -> Floats:
+        """Phi(t1, t0), (6, 6): the state at t1 of a chaser that drifts from t0."""
+        ...
+
+    def held(self, t0: float, t1: float) -> Floats:
+        """(6, 3): what one unit of thrust, held in LVLH axes from t0 to t1, adds to the state at t1."""
+        ...
+
+    def start(self, state: Floats) -> Underway:
+        """A chaser at ``state`` (6,) at t = 0."""
+        return Drift(self, state)
+
+
+@runtime_checkable
+class SteadyMotion(RelativeMotion, Protocol):
+    """A linear motion in which only t1 - t0 counts: the tables of one interval serve for all of them."""
+
+    def positions(self, tau: Floats, dimensions: int) -> tuple[Floats, Floats]:
+        """Position rows of ``transition``, (J, d, 2 d), and of ``held``, (J, d, d), over J durations ``tau``, s.
+
+        d = 2 leaves out z, on which the motion in the plane does not depend.
+        """
+        ...
+
+
+class Drift:
+    """A chaser in a linear motion: every state straight from the interval's first one."""
+
+    def __init__(self, motion: RelativeMotion, state: Floats) -> None:
+        self._motion, self.state = motion, np.array(state, dtype=np.float64)
+
+    def push(self, impulse: Floats) -> None:
+        """See :class:`Underway`."""
+        self.state[3:] += impulse
+
+    def fly(self, thrust: Floats, times: Floats) -> Floats:
+        """See :class:`Underway`."""
+        begin, *later = times.tolist()
+        out = np.empty((len(times), 6))
+        out[0] = self.state
+        for row, time in enumerate(later, 1):
+            out[row] = self._motion.transition(begin, time) @ self.state
+            out[row] += self._motion.held(begin, time) @ thrust
+        self.state = out[-1].copy()
+        return out

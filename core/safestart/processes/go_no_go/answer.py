@@ -1,0 +1,74 @@
+"""The answer of go-no-go: what a method says of the starts, beside the paper's conditions there, as documents."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+from safestart.processes.go_no_go.conditions import Conditions
+from safestart.processes.go_no_go.spec import GoNoGoInputs
+from safestart.processes.wire import NO_SYNC_LIMIT, finite
+
+
+class Verdicts(NamedTuple):
+    """What a method says of S starts, a list of S each; None where the question has no such column."""
+
+    verdict: list[str]
+    margin_m: Sequence[float | None]
+    reason: list[str]
+    end_s: list[float | None] | None = None
+    examples: list[list[dict[str, Any]]] | None = None
+    proof: list[dict[str, Any] | None] | None = None
+
+
+class Answer(NamedTuple):
+    """Question, conditions and verdicts; its two documents are written here and nowhere else."""
+
+    inputs: GoNoGoInputs
+    conditions: Conditions
+    verdicts: Verdicts
+
+    def document(self) -> dict[str, Any]:
+        """``GoNoGoOutputs``: arrays over the starts."""
+        inputs, found, said = self
+        limit = finite(found.limit)
+        return {
+            "method": inputs.method,
+            "question": inputs.question,
+            "rest": inputs.rest.value,
+            "r_sync_m": limit,
+            "r_sync_reason": NO_SYNC_LIMIT if limit is None else None,
+            "faces": list(found.faces),
+            "verdict": said.verdict,
+            "margin_m": said.margin_m,
+            "face_margins_m": found.face_margin,
+            "range_margin_m": [finite(value) for value in found.range_margin],
+            "binding": found.binding,
+            "violated_faces": found.violated,
+            "reason": said.reason,
+            "end_s": said.end_s,
+            "examples": said.examples,
+            "proof": said.proof,
+        }
+
+    def document_of_one(self) -> dict[str, Any]:
+        """``GoNoGoAnswer``: the only start, flat, its face margins by name."""
+        inputs, found, said = self
+        limit = finite(found.limit)
+        return {
+            "verdict": said.verdict[0],
+            "margin_m": said.margin_m[0],
+            "range_margin_m": finite(found.range_margin[0]),
+            "binding": found.binding[0],
+            "violated_faces": found.violated[0],
+            "reason": said.reason[0],
+            "face_margins_m": dict(zip(found.faces, found.face_margin[0], strict=True)),
+            "end_s": said.end_s and said.end_s[0],
+            "examples": said.examples and said.examples[0],
+            "proof": said.proof and said.proof[0],
+            "r_sync_m": limit,
+            "r_sync_reason": NO_SYNC_LIMIT if limit is None else None,
+            "method": inputs.method,
+            "question": inputs.question,
+            "rest": inputs.rest.value,
+        }

@@ -1,0 +1,53 @@
+"""One start, flat: the question as a query string or a command line asks it, and its answer without arrays."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from pydantic import Field
+
+from safestart.model.scenario import Rest
+from safestart.processes.base import WireModel
+from safestart.processes.flat import Flat
+from safestart.processes.go_no_go.method_registry import MethodName
+from safestart.processes.go_no_go.question_fields import QuestionKind
+from safestart.processes.go_no_go.spec import GoNoGoInputs, StateInput
+from safestart.processes.go_no_go.uncertainty import Member
+from safestart.processes.wire import CorridorInput
+
+ONE_START = Flat(GoNoGoInputs, {"corridor": CorridorInput, "states": StateInput})
+
+
+class GoNoGoAnswer(WireModel):
+    """The verdict on one start, with every margin it rests on."""
+
+    verdict: Literal["GO", "NO_GO", "UNDECIDED"]
+    margin_m: float | None = Field(
+        description="Closed form: smallest margin, m; GO needs it positive. Exact: the proved bound."
+    )
+    range_margin_m: float | None = Field(description="r_sync minus range, m; null without a limit.")
+    binding: str = Field(description="What gives the smallest margin: a face or 'range'.")
+    violated_faces: list[str] = Field(
+        description="Faces of the corridor that the start itself is outside of."
+    )
+    reason: str = Field(description="The verdict in a sentence.")
+    face_margins_m: dict[str, float] = Field(description="Margin after erosion by face, m.")
+    end_s: float | None = Field(
+        None, description="When the flight of a GO is at rest in the hold ball (synchronize), s."
+    )
+    examples: list[Member] | None = Field(
+        None,
+        description="With half-widths, when UNDECIDED: members looked at, if possible one GO and one NO_GO.",
+    )
+    proof: dict[str, Any] | None = Field(
+        None, description="Proof document for `safestart verify`, when asked for."
+    )
+    proof_url: str | None = Field(
+        None,
+        description="Where a service gives the proof document alone; null for closed_form and UNDECIDED.",
+    )
+    r_sync_m: float | None = Field(description="Synchronization range limit, m; null when there is none.")
+    r_sync_reason: str | None = Field(description="Why r_sync_m is null.")
+    method: MethodName
+    question: QuestionKind
+    rest: Rest

@@ -1,0 +1,170 @@
+"""What a checked document proves, in words: the whole statement, from the numbers that the checker has read.
+
+Part of the checker. Every number stands here as the double it is, so that nobody reads a rounded one as proved; what
+is converted for the reader (degrees, seconds of a number of steps) stands in brackets behind it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from flint import fmpq
+
+from safestart.proofs.disturbed_statement import StatedDisturbed
+from safestart.proofs.family_statement import StatedForAll
+from safestart.proofs.statement import Stated
+
+_ONE_FOR_ALL = "one thrust history keeps the margin for all members of these sets"
+_PER_CORNER = (
+    "each corner of the start box has a thrust history that keeps the margin for all values of the intervals; a start "
+    "between the corners has their mixture"
+)
+_NONE = "no member of these sets has a thrust history that keeps more than the margin"
+
+
+def lines(stated: Stated) -> tuple[str, ...]:
+    """The statement about one start, a line for each part of it."""
+    found = "a thrust history keeps" if stated.verdict == "GO" else "no thrust history keeps more than"
+    return (
+        f"{found} the margin, {_margin(stated)}",
+        *_asked(stated),
+        f"tumble rate about the orbit normal, from the axes of LVLH on: {_rate(stated.w, stated.w)}",
+        f"mean motion: {_value(stated.n, stated.n)} rad/s",
+        f"thrust: at most {_value(stated.a_max, stated.a_max)} m/s^2, no disturbance",
+        *_start(stated, None),
+    )
+
+
+def lines_for_all(stated: StatedForAll) -> tuple[str, ...]:
+    """The statement about all members of a family."""
+    middle = stated.middle
+    found = {"common": _ONE_FOR_ALL, "per_corner": _PER_CORNER}.get(stated.witness, _NONE)
+    return (
+        f"{found}; the margin is {_margin(middle)}",
+        *_asked(middle),
+        f"tumble rate about the orbit normal, from the axes of LVLH on: {_rate(stated.rates[0], stated.rates[-1])}",
+        f"mean motion: {_value(stated.motions[0], stated.motions[-1])} rad/s",
+        f"thrust: at most {_value(stated.thrusts[0], stated.thrusts[1])} m/s^2, no disturbance",
+        *_start(middle, stated.box),
+    )
+
+
+def lines_disturbed(stated: StatedDisturbed) -> tuple[str, ...]:
+    """The statement about one start that withstands every disturbance within its bounds."""
+    plan, space = stated.plan, stated.plan.d == 3
+    tube = f"{_number(stated.radius)} m" + (
+        f" in the orbit plane and {_number(stated.height)} m across it" if space else ""
+    )
+    radius, hold = stated.radius, plan.shape["hold_radius_m"]
+    across = (plan.shape["c_z"] * radius + stated.height) if space else fmpq(0)
+    # Every face moved in by what the error may take: |A| radius off the sides' offsets, as roots that are rounded.
+    narrow = [f"y >= {_double(hold + radius):g}"]
+    c_x, x0 = (_double(plan.shape[key]) for key in ("c_x", "x0_m"))
+    narrow.append(f"|x| <= {x0 - _double(radius) * math.hypot(1.0, c_x):g} + {c_x:g} (y - {_double(hold):g})")
+    if space:
+        c_z, z0 = (_double(plan.shape[key]) for key in ("c_z", "z0_m"))
+        narrow.append(f"|z| <= {z0 - _double(across):g} + {c_z:g} (y - {_double(hold):g})")
+    return (
+        "a plan with feedback keeps the margin against every disturbance within these bounds; the margin is "
+        f"{_margin(plan)}",
+        *_asked(plan),
+        f"disturbance: an acceleration of at most {_number(stated.push)} m/s^2 at all times, in any direction and any "
+        "course",
+        f"start: within {_number(stated.away)} m and {_number(stated.fast)} m/s of where it is believed to be",
+        f"feedback on the state met at each step; the flight stays within {tube} of the plan, the feedback asks for at "
+        f"most {_number(stated.thrust)} m/s^2",
+        f"the plan stays in the tightened corridor (rounded), m: {', '.join(narrow)}, with "
+        f"{_double(plan.a_max - stated.thrust):g} m/s^2",
+        f"tumble rate about the orbit normal, from the axes of LVLH on: {_rate(plan.w, plan.w)}",
+        f"mean motion: {_value(plan.n, plan.n)} rad/s",
+        f"thrust: at most {_value(plan.a_max, plan.a_max)} m/s^2, plan and feedback together",
+        *_start(plan, None),
+    )
+
+
+def asked(document: Mapping[str, Any]) -> dict[str, Any]:
+    """Question and start of a document that was checked, less what a planar question does not rest on."""
+    question = document["question"]
+    unused = ("c_z", "z0_m") if question["dimensions"] == 2 else ()
+    corridor = {key: value for key, value in question["corridor"].items() if key not in unused}
+    return {"question": question | {"corridor": corridor}, "start": document["start"]}
+
+
+def _margin(stated: Stated) -> str:
+    limits, least = stated.limits, "the distance to the nearest face"
+    also = [] if limits.most is None else [f"{_number(limits.scale)} s times the speed left to the limit"]
+    if limits.hold is not None:
+        scale = f"{_number(limits.radius)} / {_number(limits.rest)}"
+        also += [
+            "at the end the distance to the edge of the hold ball",
+            f"{scale} s times the speed left to rest",
+        ]
+    return f"the least of {least}, {', '.join(also)}" if also else least
+
+
+def _asked(stated: Stated) -> list[str]:
+    """Question, corridor and limits."""
+    limits, last = stated.limits, _seconds(stated, stated.steps)
+    if limits.hold is None:
+        out = [
+            f"stay: in the corridor at all times for {stated.steps} steps of {_number(stated.dt)} s ({last})"
+        ]
+    else:
+        out = [
+            f"synchronize: in the corridor at all times until the end, which is any of the steps {stated.earliest} to "
+            f"{stated.steps} of {_number(stated.dt)} s ({_seconds(stated, stated.earliest)} to {last})",
+            f"at the end: within {_number(limits.radius)} m of {_vector(limits.hold)} m in the body frame, at most "
+            f"{_number(limits.rest)} m/s against it",
+        ]
+    out.append(f"thrust held over each step, motion {'in the orbit plane' if stated.d == 2 else 'in space'}")
+    shape = {key: _number(value) for key, value in stated.shape.items()}
+    behind = f"(y - {shape['hold_radius_m']})"
+    sides = [f"y >= {shape['hold_radius_m']}"]
+    sides += [
+        f"|{axis}| <= {shape[f'{axis}0_m']} + {shape[f'c_{axis}']} {behind}" for axis in "xz"[: stated.d - 1]
+    ]
+    out.append(f"corridor in the body frame, m: {', '.join(sides)}")
+    if limits.most is not None:
+        out.append(f"speed: at most {_number(limits.most)} m/s in LVLH at all times")
+    if limits.keep_out is not None:
+        out.append(
+            f"keep-out radius: {_number(limits.keep_out)} m around the target's centre, by the hold plane"
+        )
+    return out
+
+
+def _start(stated: Stated, box: list[fmpq] | None) -> list[str]:
+    d, out = stated.d, []
+    for name, unit, first in (("position", "m", 0), ("velocity", "m/s", d)):
+        around = "" if box is None else f" +- {_vector(box[first : first + d])}"
+        out.append(f"start, {name} in LVLH: {_vector(stated.start[first : first + d])}{around} {unit}")
+    return out
+
+
+def _seconds(stated: Stated, steps: int) -> str:
+    return f"{float(_double(stated.dt * steps)):g} s"
+
+
+def _rate(low: fmpq, high: fmpq) -> str:
+    return f"{_value(low, high)} rad/s ({_value(low, high, math.degrees(1.0))} deg/s)"
+
+
+def _value(low: fmpq, high: fmpq, factor: float | None = None) -> str:
+    """A number, or an interval where its ends differ; rounded only where it is converted."""
+    ends = [_number(e) if factor is None else f"{_double(e) * factor:.6g}" for e in (low, high)]
+    return ends[0] if low == high else f"{ends[0]} to {ends[1]}"
+
+
+def _vector(values: list[fmpq]) -> str:
+    return f"[{', '.join(_number(e) for e in values)}]"
+
+
+def _number(value: fmpq) -> str:
+    """The shortest text that reads as the same double."""
+    return repr(_double(value))
+
+
+def _double(value: fmpq) -> float:
+    return int(value.p) / int(value.q)

@@ -1,0 +1,160 @@
+"""Compiled kernels and their cache on disk: no stale code, and no broken file, ever runs.
+
+Numba freezes every global that a kernel reads, its constants and the kernels it calls, but keys its cache by the
+bytecode of the one function and the time of its one file. A changed constant or callee of another file would
+therefore run as the old machine code. The cache of a :func:`compiled` function is keyed by all of it: the source text
+behind every function that it calls, at any depth, the value of every constant, and the fields of its record arguments.
+
+A cache is no record: what cannot be read is compiled again, what cannot be written is not kept, and one line of log
+says so.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import logging
+import pickle
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+from types import CodeType, FunctionType, ModuleType
+from typing import Any
+
+import numpy as np
+from numba import njit, types
+from numba.core.caching import FunctionCache
+
+log = logging.getLogger("safestart.kernels")
+
+_OURS = "safestart"
+_CONSTANTS = (bool, int, float, complex, str, bytes, type(None), np.generic, tuple, frozenset)
+
+
+def compiled(**options: Any) -> Callable[[Any], Any]:
+    """Decorator: ``numba.njit(nogil=True, **options)`` with a cache keyed by everything the code depends on.
+
+    ``options`` are Numba's, without ``cache``. Where no place for a cache can be written, the kernel is compiled for
+    this process alone.
+    """
+
+    def decorate(function: Any) -> Any:
+        kernel = njit(nogil=True, **options)(function)
+        try:
+            kernel._cache = KernelCache(function)
+        except (RuntimeError, OSError) as error:  # Numba found no folder that it may write to
+            _say("no place to keep compiled kernels", error)
+        return kernel
+
+    return decorate
+
+
+class KernelCache(FunctionCache):
+    """Numba's cache of one function, with a key that covers its dependencies and a digest of every file's content."""
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """The compiled code of a signature, or None where there is none that can be trusted."""
+        try:
+            return super().load_overload(sig, target_context)
+        except Exception as error:  # whatever a damaged file makes pickle do
+            _say("a kept kernel cannot be read and is compiled again", error)
+            with suppress(Exception):
+                self.flush()  # an index that cannot be read could not be written either
+            return None
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Keep the compiled code of a signature, where that is possible."""
+        try:
+            super().save_overload(sig, data)
+        except Exception as error:  # a full or read-only disk, a damaged index
+            _say("a compiled kernel cannot be kept", error)
+
+    def _load_overload(self, sig: Any, target_context: Any) -> Any:
+        if not self._enabled:
+            return None
+        kept = self._cache_file.load(self._index_key(sig, target_context.codegen()))
+        if kept is None:
+            return None
+        digest, content = kept
+        if hashlib.sha256(content).hexdigest() != digest:
+            raise ValueError("its content does not have its digest")
+        return self._impl.rebuild(target_context, pickle.loads(content))  # noqa: S301  (as Numba reads its own)
+
+    def _save_overload(self, sig: Any, data: Any) -> None:
+        if not self._enabled or not self._impl.check_cachable(data):
+            return
+        self._impl.locator.ensure_cache_path()
+        content = pickle.dumps(self._impl.reduce(data), protocol=-1)
+        kept = (hashlib.sha256(content).hexdigest(), content)
+        self._cache_file.save(self._index_key(sig, data.codegen), kept)
+
+    def _index_key(self, sig: Any, codegen: Any) -> Any:
+        records = tuple(_record for argument in sig for _record in _records(argument))
+        return (*super()._index_key(sig, codegen), dependencies(self._py_func), records)
+
+
+@cache
+def dependencies(function: FunctionType) -> str:
+    """SHA-256 over all that ``function`` freezes when it is compiled: texts of what it calls, values of constants."""
+    digest = hashlib.sha256()
+    for line in sorted(set(_frozen(function, set()))):
+        digest.update(line.encode() + b"\n")
+    return digest.hexdigest()
+
+
+def _frozen(function: Any, seen: set[Any]) -> Iterator[str]:
+    if function in seen:
+        return
+    seen.add(function)
+    yield f"text of {function.__module__}: {_text_digest(function.__module__)}"
+    cells = zip(function.__code__.co_freevars, function.__closure__ or (), strict=True)
+    read = {name: cell.cell_contents for name, cell in cells}
+    read |= {
+        name: function.__globals__[name] for name in _names(function.__code__) if name in function.__globals__
+    }
+    for name, value in read.items():
+        inner = getattr(value, "py_func", value)
+        if isinstance(inner, FunctionType):
+            if inner.__module__.startswith(_OURS) or inner is not value:
+                yield from _frozen(inner, seen)
+        elif isinstance(value, ModuleType):
+            if value.__name__.startswith(_OURS):
+                yield f"text of {value.__name__}: {_text_digest(value.__name__)}"
+        elif isinstance(value, type):
+            if value.__module__.startswith(_OURS):
+                yield f"text of {value.__module__}: {_text_digest(value.__module__)}"
+        elif isinstance(value, np.ndarray):
+            content = hashlib.sha256(np.ascontiguousarray(value).tobytes()).hexdigest()
+            yield f"value of {name}: {value.dtype} {value.shape} {content}"
+        elif isinstance(value, _CONSTANTS):
+            yield f"value of {name}: {value!r}"
+
+
+def _names(code: CodeType) -> set[str]:
+    inner = (_names(constant) for constant in code.co_consts if isinstance(constant, CodeType))
+    return set(code.co_names).union(*inner)
+
+
+@cache
+def _text_digest(module: str) -> str:
+    file = getattr(sys.modules[module], "__file__", None)
+    return hashlib.sha256(Path(file).read_bytes() if file else b"").hexdigest()
+
+
+def _records(argument: Any) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Name and fields of every record among the argument's types: Numba keys them by the types of their fields only."""
+    if isinstance(argument, types.NamedTuple | types.NamedUniTuple):
+        yield argument.instance_class.__qualname__, tuple(argument.fields)
+    if isinstance(argument, types.BaseTuple):
+        for member in getattr(argument, "types", ()) or (getattr(argument, "dtype", None),):
+            yield from _records(member)
+
+
+def _say(what: str, error: Exception) -> None:
+    _say_once(f"{what}: {type(error).__name__}: {error}")
+
+
+@cache
+def _say_once(line: str) -> None:
+    log.warning(line)

@@ -1,0 +1,174 @@
+"""What the flown world does beyond the plan: navigation noise, thruster errors, pushes from outside."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from safestart.model.scenario import Floats, number
+from safestart.runtime.kernels import compiled
+
+AT_NODES, AT_SUBSTEPS, CONTINUOUS = 0, 1, 2
+CHECKS = {"nodes": AT_NODES, "substeps": AT_SUBSTEPS, "continuous": CONTINUOUS}
+"""Where a violation is looked for: at control nodes, at the sub-steps of paper 000, or at all times."""
+
+DRAWS = 6
+"""Standard normals per control step in the plane: navigation x, y, vx, vy, thrust magnitude, thrust direction."""
+
+DRAWS_IN_SPACE = 9
+"""Navigation x, y, z, vx, vy, vz, thrust magnitude, thrust direction about two axes."""
+
+
+class Truth(NamedTuple):
+    """Settings of the flown world, as the compiled kernels take them.
+
+    ``position_sigma`` (m) and ``velocity_sigma`` (m/s): white navigation noise per axis and control step;
+    ``magnitude_sigma`` (relative) and ``direction_sigma`` (rad): error of each held thrust; ``minimum_impulse`` (m/s):
+    a thrust whose impulse over the interval is smaller is not delivered.
+    """
+
+    check: int = AT_SUBSTEPS
+    position_sigma: float = 0.0
+    velocity_sigma: float = 0.0
+    magnitude_sigma: float = 0.0
+    direction_sigma: float = 0.0
+    minimum_impulse: float = 0.0
+
+    @property
+    def noisy(self) -> bool:
+        """Whether anything is drawn."""
+        return any(self[1:5])
+
+    @property
+    def exact(self) -> bool:
+        """Whether thrust is delivered and the state known as the controller thinks."""
+        return not any(self[1:])
+
+
+def truth_of(check: str = "continuous", **values: float) -> Truth:
+    """Checked settings; raises ``InvalidInput`` for a value that is negative or not finite."""
+    return Truth(CHECKS[check], **{name: number(name, value, 0.0, 1e3) for name, value in values.items()})
+
+
+NO_DRAWS = np.empty((0, 0, DRAWS))
+
+
+def draws(
+    truth: Truth,
+    seed: int,
+    cases: np.ndarray[tuple[int], np.dtype[np.int64]],
+    steps: int,
+    *,
+    planar: bool = True,
+) -> Floats:
+    """Standard normals (M, K, ``DRAWS`` or ``DRAWS_IN_SPACE``) of the numbered cases; empty when nothing is drawn.
+
+    Each case has a counter-based generator of its own, so what it meets depends on seed and number alone.
+    """
+    if not truth.noisy:
+        return NO_DRAWS
+    out = np.empty((len(cases), steps, DRAWS if planar else DRAWS_IN_SPACE))
+    for row, case in enumerate(cases.tolist()):
+        bits = np.random.Philox(key=seed, counter=[0, 0, case, 0])
+        out[row] = np.random.Generator(bits).standard_normal(out.shape[1:])
+    return out
+
+
+class Errors(Protocol):
+    """What stands between a controller and the world."""
+
+    def seen(self, k: int, state: Floats) -> Floats:
+        """The state (6,) as navigation has it at the start of interval ``k``."""
+        ...
+
+    def delivered(self, k: int, asked: Floats, held_s: float) -> Floats:
+        """The thrust (3,) that the thrusters deliver over ``held_s`` seconds; for an impulse ``held_s`` is 1."""
+        ...
+
+    def push(self, k: int, state: Floats, thrust: Floats) -> Floats | None:
+        """An acceleration (3,) from outside, which costs no propellant, at the true state under ``thrust``; or None."""
+        ...
+
+
+class Exact:
+    """The state is known, thrust is delivered, nothing pushes; the base of every other kind of errors."""
+
+    def seen(self, k: int, state: Floats) -> Floats:  # noqa: ARG002
+        """The state itself."""
+        return state
+
+    def delivered(self, k: int, asked: Floats, held_s: float) -> Floats:  # noqa: ARG002
+        """What was asked for."""
+        return asked
+
+    def push(self, k: int, state: Floats, thrust: Floats) -> Floats | None:  # noqa: ARG002
+        """Nothing."""
+        return None
+
+
+EXACT = Exact()
+
+
+class Drawn(Exact):
+    """Errors of one flight from its ``draws`` (K, ``DRAWS``) in the plane, (K, ``DRAWS_IN_SPACE``) in space.
+
+    Empty draws leave the minimum impulse alone. The planar draws are those of the compiled loop.
+    """
+
+    def __init__(self, truth: Truth, draws: Floats) -> None:
+        self._truth, self._draws = truth, draws
+        self._planar = draws.shape[-1] == DRAWS
+        self._scale = np.repeat([truth.position_sigma, truth.velocity_sigma], 3)
+        if self._planar:
+            self._scale[[2, 5]] = 0.0
+
+    def seen(self, k: int, state: Floats) -> Floats:
+        """White noise on every axis."""
+        if not len(self._draws):
+            return state
+        drawn = self._draws[k]
+        if self._planar:
+            drawn = np.array([drawn[0], drawn[1], 0.0, *drawn[2:4], 0.0])
+        noisy: Floats = state + self._scale * drawn[:6]
+        return noisy
+
+    def delivered(self, k: int, asked: Floats, held_s: float) -> Floats:
+        """Scaled, turned, and nothing below the minimum impulse."""
+        thrust = asked
+        if len(self._draws):
+            drawn = self._draws[k]
+            if self._planar:
+                thrust = np.array([*delivered(self._truth, asked[0], asked[1], drawn[4], drawn[5]), asked[2]])
+            else:
+                thrust = scattered(self._truth, asked, drawn[6:])
+        if math.sqrt(float(thrust @ thrust)) * held_s < self._truth.minimum_impulse:
+            return np.zeros(3)
+        return thrust
+
+
+@compiled(error_model="numpy")
+def delivered(truth, ux, uy, magnitude, direction):  # type: ignore[no-untyped-def]
+    """In-plane thrust as the thrusters deliver it: scaled and turned."""
+    scale = 1.0 + truth.magnitude_sigma * magnitude
+    cos, sin = math.cos(truth.direction_sigma * direction), math.sin(truth.direction_sigma * direction)
+    return scale * (cos * ux - sin * uy), scale * (sin * ux + cos * uy)
+
+
+def scattered(truth: Truth, thrust: Floats, drawn: Floats) -> Floats:
+    """Thrust (3,) in space as the thrusters deliver it: scaled, and turned about two axes across it.
+
+    ``drawn`` (3,): magnitude and the two turns, standard normals.
+    """
+    size = math.sqrt(float(thrust @ thrust))
+    if size == 0.0:
+        return thrust
+    along = thrust / size
+    across = np.cross(along, np.eye(3)[int(np.abs(along).argmin())])
+    across /= math.sqrt(float(across @ across))
+    tilt = truth.direction_sigma * (drawn[1] * across + drawn[2] * np.cross(along, across))
+    angle = math.sqrt(float(tilt @ tilt))
+    turned = along if angle == 0.0 else math.cos(angle) * along + math.sin(angle) / angle * tilt
+    scaled: Floats = (1.0 + truth.magnitude_sigma * drawn[0]) * size * turned
+    return scaled

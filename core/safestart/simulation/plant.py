@@ -1,0 +1,40 @@
+"""The plant: how the chaser moves and how the target turns, as one scenario has them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from safestart.attitude.attitude import Attitude
+from safestart.attitude.spin import spin_of
+from safestart.dynamics.cwh import Cwh
+from safestart.dynamics.motion import Motion
+from safestart.dynamics.two_body import Orbit, TwoBody
+from safestart.errors import invalid
+from safestart.model.scenario import Scenario, Target
+
+MOTIONS: dict[str, Callable[[Target], Motion]] = {
+    "cwh": lambda target: Cwh(target.mean_motion),
+    "two_body_j2": lambda target: TwoBody(Orbit.of(target.mean_motion)),
+}
+"""The motions that a scenario can be flown in, by name."""
+
+ATTITUDES: dict[str, Callable[[Target], Attitude]] = {"spin": spin_of}
+"""The ways in which a scenario's target can turn, by name."""
+
+
+@dataclass(frozen=True, slots=True)
+class Plant:
+    """A motion and an attitude; neither knows the other."""
+
+    motion: Motion
+    attitude: Attitude
+
+
+def plant_of(scenario: Scenario, motion: str = "cwh", attitude: str = "spin") -> Plant:
+    """The plant of a scenario; raises ``InvalidInput`` for a motion or an attitude of another name."""
+    if motion not in MOTIONS:
+        raise invalid("motion", f"one of {', '.join(MOTIONS)}", motion)
+    if attitude not in ATTITUDES:
+        raise invalid("attitude", f"one of {', '.join(ATTITUDES)}", attitude)
+    return Plant(MOTIONS[motion](scenario.target), ATTITUDES[attitude](scenario.target))

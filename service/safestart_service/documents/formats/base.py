@@ -1,0 +1,58 @@
+"""What a form of a result is, and which table a form with rows gives."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from pydantic import BaseModel
+
+from safestart.errors import invalid
+from safestart.processes.base import Table
+from safestart.processes.registry import PROCESS_IDS, process
+from safestart_service.documents.tables import Rows, tables_of
+from safestart_service.errors import NotAcceptable
+
+Record = dict[str, Any]
+"""A stored result as ``ResultDocument`` describes it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Format:
+    """A form of a result.
+
+    ``name`` is what the query parameter ``format`` calls it, and the ending of its file. ``encode`` (record, table)
+    gives its bytes; it raises ``InvalidInput``, ``NotAcceptable`` or ``Unavailable``. ``rows``: it holds one table,
+    the one asked for. ``document``: it is JSON to read, described by ``model`` if there is one, and no file to
+    download.
+    """
+
+    name: str
+    media_type: str
+    encode: Callable[[Record, str | None], bytes]
+    rows: bool = False
+    document: bool = False
+    model: type[BaseModel] | None = None
+
+
+def rows_of(record: Record, table: str | None) -> Rows:
+    """Rows of the table of this name, or of the first one; raises ``InvalidInput`` or ``NotAcceptable``."""
+    found = tables_of(record["outputs"], _declared(record))
+    if not found:
+        raise NotAcceptable(
+            "this result holds no table; required application/json or application/x-npz",
+            field="Accept",
+            required="application/json or application/x-npz",
+        )
+    if table is None:
+        return next(iter(found.values()))
+    if table not in found:
+        raise invalid("table", f"one of {', '.join(found)}", table)
+    return found[table]
+
+
+def _declared(record: Record) -> tuple[Table, ...]:
+    """What the process says of its lists; nothing where it is gone."""
+    process_id = record.get("process", {}).get("id")
+    return process(process_id).tables if process_id in PROCESS_IDS else ()

@@ -1,0 +1,21 @@
+"""CSV (RFC 4180), with a header line; what has no value is empty."""
+
+from __future__ import annotations
+
+import csv
+import io
+
+from safestart_service.documents.formats.base import Format, Record, rows_of
+from safestart_service.documents.tables import columns_of
+
+
+def _encode(record: Record, table: str | None) -> bytes:
+    rows = rows_of(record, table)
+    text = io.StringIO()
+    writer = csv.DictWriter(text, columns_of(rows), lineterminator="\r\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return text.getvalue().encode()
+
+
+FORMAT = Format("csv", "text/csv", _encode, rows=True)

@@ -1,0 +1,45 @@
+"""NPZ: every numeric output as an array; columns of tables as ``table.column``, without value: NaN.
+
+NumPy is loaded with the first file.
+"""
+
+from __future__ import annotations
+
+import io
+from typing import Any
+
+from safestart_service.documents.formats.base import Format, Record
+from safestart_service.documents.tables import columns_of, tables_of
+
+
+def _encode(record: Record, _: str | None) -> bytes:
+    import numpy as np
+
+    outputs = record["outputs"]
+    arrays: dict[str, Any] = {}
+    for name, value in outputs.items():
+        if isinstance(value, int | float | list) and (array := _numeric(value)) is not None:
+            arrays[name] = array
+    for name, rows in tables_of(outputs).items():
+        for column in columns_of(rows):
+            if (array := _numeric([row[column] for row in rows])) is not None:
+                arrays[f"{name}.{column}"] = array
+    sink = io.BytesIO()
+    np.savez_compressed(sink, **arrays)
+    return sink.getvalue()
+
+
+def _numeric(value: Any) -> Any:
+    """An array of numbers or truth values, None for anything else (text, ragged lists)."""
+    import numpy as np
+
+    try:
+        array = np.array(value)
+        if array.dtype == object:
+            array = np.array(value, dtype=np.float64)  # None becomes NaN
+    except (TypeError, ValueError):
+        return None
+    return array if array.dtype.kind in "biuf" else None
+
+
+FORMAT = Format("npz", "application/x-npz", _encode)

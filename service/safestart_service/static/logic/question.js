@@ -1,0 +1,169 @@
+// The question that Explore's inputs pose: from the text in its fields to what each panel asks, and to words.
+
+import { figure } from "./words.js";
+
+/** Fields by name: what stands in them at first, and what they are called. `words` are the choices of a select. */
+export const FIELDS = {
+  omega_t_deg_s: { first: "3", title: "Tumble rate", unit: "deg/s" },
+  a_max_m_s2: { first: "0.1", title: "Thrust acceleration", unit: "m/s²" },
+  horizon_s: { first: "60", title: "Stay for", unit: "s" },
+  y_max_m: { first: "150", title: "Show up to", unit: "m" },
+  question: { first: "stay", title: "Requirement", words: ["stay", "synchronize"] },
+  within_s: { first: "200", title: "within", unit: "s" },
+  rest: { first: "lvlh", title: "Start at rest in", words: ["lvlh", "body"] },
+  mean_motion_rad_s: { first: "0.0011", title: "Mean motion", unit: "rad/s" },
+  c_x: { first: "1.5", title: "Slope of the sides", unit: "" },
+  x0_m: { first: "2.5", title: "Port half-width", unit: "m" },
+  r_h_m: { first: "0.5", title: "Hold radius", unit: "m" },
+  omega_t_half_width_deg_s: { first: "0", title: "Tumble rate ±", unit: "deg/s" },
+  a_max_half_width_m_s2: { first: "0", title: "Thrust ±", unit: "m/s²" },
+  position_half_width_m: { first: "0", title: "Start position ±", unit: "m" },
+  velocity_half_width_m_s: { first: "0", title: "Start velocity ±", unit: "m/s" },
+  disturbance_m_s2: { first: "0", title: "Disturbance up to", unit: "m/s²" },
+  x_m: { first: "", title: "x", unit: "m" },
+  y_m: { first: "", title: "y", unit: "m" },
+};
+export const FIRST = Object.fromEntries(Object.entries(FIELDS).map(([name, field]) => [name, field.first]));
+const SPREADS = ["omega_t_half_width_deg_s", "a_max_half_width_m_s2", "position_half_width_m", "velocity_half_width_m_s", "disturbance_m_s2"];
+const SHAPE = ["c_x", "x0_m", "r_h_m"];
+
+/** What a number field of HTML takes for a number; anything else would stand in the address and not in the field. */
+const NUMBER = /^-?(\d+(\.\d+)?|\.\d+)(e[+-]?\d+)?$/i;
+
+/**
+ * Values of the texts, and what is wrong with them by field: `{ values, wrong }`. A start is given by both coordinates
+ * or by none. What a number may be is the service's to judge; only what is no number is found here.
+ */
+export function read(texts) {
+  const values = {}, wrong = {};
+  const started = texts.x_m !== "" || texts.y_m !== "";
+  for (const [name, { words }] of Object.entries(FIELDS)) {
+    const text = texts[name].trim();
+    if (words) {
+      values[name] = text;
+      if (!words.includes(text)) wrong[name] = `one of ${words.join(", ")} is required, not ${text || "nothing"}`;
+      continue;
+    }
+    const number = NUMBER.test(text) && Number.isFinite(Number(text));
+    values[name] = number ? Number(text) : null;
+    if (!number && (started || !["x_m", "y_m"].includes(name))) wrong[name] = `a number is required, not ${text || "nothing"}`;
+  }
+  return { values, wrong, started };
+}
+
+const pick = (values, names) => Object.fromEntries(names.map((name) => [name, values[name]]));
+const shape = (values) => pick(values, SHAPE);
+const scenario = (values) => ({ ...pick(values, ["omega_t_deg_s", "a_max_m_s2", "mean_motion_rad_s"]), corridor: shape(values) });
+/** Spreads that are not 0: a negative one is asked too, so that it is refused and not passed over. */
+const spreads = (values) => pick(values, SPREADS.filter((name) => values[name] !== 0));
+
+export const spread = (values) => Object.keys(spreads(values)).length > 0;
+
+/** What the map's certified set is asked by: the closed form, on a grid. */
+export const certificate = (values) => ({ ...scenario(values), rest: values.rest, grid: { nx: 81, ny: 81, y_max_m: values.y_max_m } });
+
+/** What the map's exact region is asked by; null where there is none: it is known for starts at rest in LVLH. */
+export const region = (values) => (values.rest === "lvlh" ? { ...scenario(values), horizon_s: values.horizon_s, y_max_m: values.y_max_m } : null);
+
+/** The closed form about one start: it knows neither time, requirement nor spread. */
+export const closedForm = (values, start) => ({
+  ...pick(values, ["omega_t_deg_s", "a_max_m_s2", "mean_motion_rad_s"]), ...shape(values), rest: values.rest, ...start,
+});
+
+/** What the verdict is asked by. */
+export const exact = (values, start) => ({
+  ...closedForm(values, start), method: "exact", question: values.question, horizon_s: values.horizon_s,
+  ...(values.question === "synchronize" ? { within_s: values.within_s } : {}), ...spreads(values),
+});
+
+/** What is flown: one flight, at the nominal values, undisturbed. */
+export const flight = (values, start) => ({
+  ...scenario(values), rest: values.rest, question: values.question, horizon_s: values.horizon_s,
+  ...(values.question === "synchronize" ? { within_s: values.within_s } : {}), start,
+});
+
+const said = (name, value) => `${FIELDS[name].title[0].toLowerCase()}${FIELDS[name].title.slice(1)} ${value}${FIELDS[name].unit ? ` ${FIELDS[name].unit}` : ""}`;
+/** Orbit and corridor where they are not the usual ones. */
+const unusual = (values) => ["mean_motion_rad_s", ...SHAPE].filter((name) => values[name] !== Number(FIELDS[name].first)).map((name) => said(name, values[name]));
+const operating = (values) => [`${values.omega_t_deg_s} deg/s`, `${values.a_max_m_s2} m/s²`];
+const atRest = (values) => `at rest in ${values.rest === "lvlh" ? "LVLH" : "the body frame"}`;
+const staying = (values) => `stay ${values.horizon_s} s`;
+const required = (values) => (values.question === "stay" ? staying(values) : `come to rest at the hold point within ${values.within_s} s`);
+
+/** The verdict's question in words. */
+export const verdictWords = (values, { x_m, y_m }) => [
+  `start (${x_m}, ${y_m}) m ${atRest(values)}`, ...operating(values), required(values),
+  ...Object.entries(spreads(values)).map(([name, value]) => said(name, value)), ...unusual(values),
+].join(" · ");
+
+/** The map's question in words. */
+export const mapWords = (values) => [
+  `Map: ${values.rest === "lvlh" ? `${staying(values)}, nominal` : "closed form, nominal"}`, ...operating(values), atRest(values), ...unusual(values),
+].join(" · ");
+
+/** What the verdict asks and the map does not, in words; empty where they ask the same. */
+export function mapLacks(values) {
+  const lacks = [];
+  if (values.question !== "stay") lacks.push(required(values));
+  lacks.push(...Object.entries(spreads(values)).map(([name, value]) => said(name, value)));
+  if (values.rest !== "lvlh") lacks.push("the exact answer");
+  return lacks;
+}
+
+/** How sure the verdict is, beside its word. */
+export function proved(verdict, values) {
+  const given = spreads(values), [disturbed, ranges] = ["disturbance_m_s2" in given, Object.keys(given).some((name) => name !== "disturbance_m_s2")];
+  const whom = ranges ? " for all within the ranges" : disturbed ? " against every such disturbance" : "";
+  return verdict === "UNDECIDED" ? `neither proved nor refuted${whom}` : `proved${whom}`;
+}
+
+/** What is flown, in words, for the caption of the flight. `verdict` is the flight's own: nominal, undisturbed. */
+export function flownWords(verdict, values) {
+  const where = spread(values) ? " at the nominal values, undisturbed" : "";
+  if (verdict === "GO") return `Flown: the proof's thrust history, to ${required(values)}${where}`;
+  if (values.question === "stay") return `Flown: the best attempt to ${staying(values)}${where}; ${verdict === "NO_GO" ? "no thrust history can" : "whether one can is undecided"}`;
+  return `Flown: the best attempt to ${staying(values)}${where}, as none is known to ${required(values)}`;
+}
+
+/**
+ * The flight in words, and whether there is one to look at: from a start outside the corridor nothing is flown, as all
+ * that could be said of such a flight is where it began.
+ */
+export function flightWords(flown, values) {
+  const [first] = flown.distance_m, outside = first.reduce((least, distance, k) => (distance < first[least] ? k : least), 0);
+  if (first[outside] < 0) {
+    return { flies: false, text: `Nothing is flown: the start lies outside the corridor, ${figure(-first[outside])} m beyond ${flown.faces[outside]}.` };
+  }
+  const nearest = flown.closest_m < 0 ? `${figure(-flown.closest_m)} m beyond ${flown.closest_face}` : `${figure(flown.closest_m)} m from ${flown.closest_face}`;
+  return {
+    flies: true,
+    text: `${flownWords(flown.verdict, values)}. At worst ${nearest}, at ${figure(flown.closest_s)} s; delta-v ${figure(flown.delta_v_m_s, 3)} m/s.`,
+  };
+}
+
+/** The start that the values give, null without one. */
+export const start = ({ x_m, y_m }) => (x_m === null || y_m === null ? null : { x_m, y_m });
+
+/** Texts for the fields from a job's inputs: the operating point that its sets are about. */
+export const textsOf = ({ omega_t_deg_s, a_max_m_s2, rest, mean_motion_rad_s, corridor, grid }) => Object.fromEntries(
+  Object.entries({ omega_t_deg_s, a_max_m_s2, rest, mean_motion_rad_s, ...pick(corridor, SHAPE), y_max_m: grid.y_max_m }).map(([name, value]) => [name, String(value)]));
+
+/** Whether a job's sets are about the operating point of these values; how far the map shows makes no difference. */
+export const isAbout = (inputs, values) => Object.entries(textsOf(inputs)).every(
+  ([name, text]) => name === "y_max_m" || (FIELDS[name].words ? values[name] === text : values[name] === Number(text)));
+
+/** Texts for the fields from an address; `unknown` are the names it has that no field has. */
+export function fromAddress(search) {
+  const texts = { ...FIRST }, unknown = [];
+  for (const [name, text] of new URLSearchParams(search)) {
+    if (name in FIELDS) texts[name] = text;
+    else unknown.push(name);
+  }
+  return { texts, unknown };
+}
+
+/** The address that gives these texts; only what is not there at first. */
+export function toAddress(texts) {
+  const told = new URLSearchParams(Object.entries(texts).filter(([name, text]) => name in FIELDS && text !== FIELDS[name].first));
+  return told.size ? `?${told}` : "";
+}

@@ -1,0 +1,40 @@
+// Figures, times and tables as text.
+
+/** A value for people: `digits` significant ones; – for none. */
+export function figure(value, digits = 4) {
+  if (value === null || value === undefined) return "–";
+  if (typeof value === "boolean") return value ? "yes" : "no";
+  if (typeof value !== "number") return String(value);
+  if (Number.isInteger(value) && Math.abs(value) < 1e6) return String(value);
+  return String(Number(value.toPrecision(digits)));
+}
+
+export function duration(seconds) {
+  if (seconds === null || seconds === undefined) return "–";
+  if (seconds < 10) return `${seconds.toFixed(1)} s`;
+  if (seconds < 90) return `${Math.round(seconds)} s`;
+  if (seconds < 5400) return `${Math.round(seconds / 60)} min`;
+  return `${(seconds / 3600).toFixed(1)} h`;
+}
+
+export const moment = (text) => (text ? `${new Date(text).toISOString().slice(0, 19).replace("T", " ")} UTC` : "–");
+
+/** A text as a sentence: a capital first, one full stop last. */
+export const sentence = (text) => (text ? `${text[0].toUpperCase()}${text.slice(1)}${/[.!?]$/.test(text) ? "" : "."}` : "");
+
+/** A text whose parts are set apart by dots, in lines (<br>) of at most so many letters where its parts allow that. */
+export function lines(text, letters) {
+  const found = [];
+  for (const part of text.split(" · ")) {
+    const last = found.at(-1);
+    if (last !== undefined && last.length + part.length + 3 <= letters) found[found.length - 1] = `${last} · ${part}`;
+    else found.push(part);
+  }
+  return found.join("<br>");
+}
+
+/** Rows of cells as CSV (RFC 4180 with plain line ends). */
+export const csv = (rows) => `${rows.map((row) => row.map((cell) => {
+  const text = cell === null || cell === undefined ? "" : String(cell);
+  return /[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+}).join(",")).join("\n")}\n`;

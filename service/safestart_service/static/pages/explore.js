@@ -1,0 +1,224 @@
+// Explore: the operating point, the regions, one start, its flight. The store holds the text of every field, the address the same.
+
+import { FIELDS, certificate, closedForm, exact, flight as flightOf, flightWords, fromAddress, mapLacks, mapWords, read, region as regionOf, start as startOf, toAddress } from "../logic/question.js";
+import { Store } from "../logic/store.js";
+import { figure } from "../logic/words.js";
+import { execute, get, post } from "../parts/api.js";
+import { saveButtons } from "../parts/chart.js";
+import { Flight } from "../parts/flight.js";
+import { drawMap, pointAt } from "../parts/map.js";
+import { $, el, fail } from "../parts/page.js";
+import { listStored, storedInputs, storedNote, storedSets } from "../parts/stored.js";
+import { verdict as verdictCards } from "../parts/verdict.js";
+
+const { texts, unknown } = fromAddress(location.search);
+const store = new Store({ ...texts, job: "" });
+const map = $("map"), flight = new Flight(redraw);
+const query = (question) => `/go-no-go?${new URLSearchParams(question)}`;
+let begun = 0;
+
+/** What the fields say, null where one of them says nothing that can be asked. */
+function given(inputs) {
+  const { values, wrong } = read(inputs);
+  return Object.keys(wrong).length ? null : values;
+}
+
+/** The same and a start. */
+function started(inputs) {
+  const values = given(inputs), start = values && startOf(values);
+  return start && { values, start };
+}
+
+// ---- the panels, each with its own question
+
+const certified = store.panel({
+  poses: (inputs) => { const values = given(inputs); return values && certificate(values); },
+  asks: (question, signal) => post("/certificates", question, { signal }),
+  shows: () => redraw(),
+});
+
+const region = store.panel({
+  quiet: 180,
+  poses: (inputs) => { const values = given(inputs); return values && regionOf(values); },
+  asks: (question, signal) => execute("safe-region", question, { signal }),
+  shows: () => redraw(),
+});
+
+const verdict = store.panel({
+  quiet: 180,
+  poses: (inputs) => { const asked = started(inputs); return asked && { exact: exact(asked.values, asked.start), quick: closedForm(asked.values, asked.start), asked }; },
+  asks: async (question, signal) => {
+    const [quick, found] = await Promise.all([get(query(question.quick), { signal }), get(query(question.exact), { signal })]);
+    return { ...question.asked, quick, exact: found };
+  },
+  shows: showVerdict,
+});
+
+const flown = store.panel({
+  quiet: 180,
+  poses: (inputs) => { const asked = started(inputs); return asked && flightOf(asked.values, asked.start); },
+  asks: (question, signal) => execute("flight", question, { signal }),
+  shows: showFlight,
+});
+
+const pointed = new Store({ at: null, values: null });
+pointed.panel({
+  quiet: 60,
+  poses: ({ at, values }) => at && values && closedForm(values, { x_m: at[0], y_m: at[1] }),
+  asks: (question, signal) => get(query(question), { signal }),
+  shows: showPointed,
+});
+
+const stored = store.panel({
+  poses: ({ job }) => job || null,
+  asks: storedSets,
+  shows: () => redraw(),
+});
+
+// ---- what they show
+
+function redraw() {
+  const values = given(store.inputs), old = certified.old !== null || region.old !== null;
+  // While the next answer is on its way, the picture before stands there greyed: at once, and drawn only once.
+  map.classList.toggle("old", old && values !== null);
+  map.dataset.digest = certified.state === "there" ? certified.digest : "";
+  map.dataset.proved = region.state === "there" ? region.digest : "";
+  if (values === null) {
+    map.hidden = true;
+    return showMapState();
+  }
+  map.hidden = false;
+  showMapState();
+  if (old && certified.state === "asking") return undefined;
+  map.classList.remove("old");
+  const inOrbit = $("frame").value === "lvlh" && flight.data !== null;
+  const done = drawMap(map, {
+    values, certified: certified.answer, region: region.answer, sets: setsOf(values), says: mapWords(values),
+    turn: inOrbit ? flight.turn(values.omega_t_deg_s) : null,
+    overlay: (frame) => flight.traces(frame, startOf(values)),
+  });
+  if (certified.answer) done.then(() => { map.dataset.drawnMs = (performance.now() - begun).toFixed(1); });
+  return undefined;
+}
+
+/** The stored sets, where they answer the question of the fields. */
+function setsOf(values) {
+  const { sets, note } = storedNote(stored, values);
+  $("stored-note").replaceChildren(note);
+  return sets;
+}
+
+function showMapState() {
+  const place = $("map-state"), failed = [certified, region].find((panel) => panel.state === "failed"), values = given(store.inputs);
+  const lacks = values ? mapLacks(values) : [];
+  $("map-lacks").textContent = lacks.length ? `The map does not ask: ${lacks.join("; ")}. The verdict does.` : "";
+  if (values === null) place.replaceChildren(el("p", { class: "empty" }, "No map: a field cannot be read."));
+  else if (failed) fail(place, failed.error, () => store.hasten());
+  else if (region.state === "asking") place.replaceChildren(el("p", { class: "note", role: "status" }, "Proving the exact region …"));
+  else place.replaceChildren();
+}
+
+function showVerdict(panel) {
+  const place = $("verdict");
+  place.dataset.digest = panel.state === "there" ? panel.digest : "";
+  showFlight(flown);
+  if (panel.state === "failed") return fail(place, panel.error, () => store.hasten());
+  const shown = panel.answer ?? panel.old;
+  if (shown) return place.replaceChildren(...verdictCards(shown, panel.answer === null));
+  const { wrong, started: begins } = read(store.inputs), told = Object.entries(wrong);
+  if (panel.state === "asking") return place.replaceChildren(el("p", { class: "empty", role: "status" }, "Checking …"));
+  if (told.length && begins) {
+    return place.replaceChildren(el("div", { class: "problem", role: "alert" }, el("h2", {}, "Not checked"),
+      ...told.map(([name, text]) => el("p", {}, `${FIELDS[name].title}: ${text}.`))));
+  }
+  return place.replaceChildren(el("p", { class: "empty" }, "Click into the corridor, or type a start."));
+}
+
+function showFlight(panel) {
+  $("flight").dataset.digest = panel.state === "there" ? panel.digest : "";
+  $("flight-state").replaceChildren();
+  if (verdict.state === "failed") flight.clear("No flight is shown where there is no verdict.");
+  else if (panel.state === "there") {
+    if (flight.data === panel.answer) return;
+    const { flies, text } = flightWords(panel.answer, given(store.inputs));
+    if (flies) flight.load(panel.answer, text);
+    else flight.clear(text);
+  } else {
+    flight.clear(panel.state === "asking" ? "Computing the flight …" : "");
+    if (panel.state === "failed") fail($("flight-state"), panel.error, () => store.hasten());
+  }
+  redraw();
+}
+
+function showPointed({ state, answer: found, question }) {
+  const place = $("cursor");
+  if (state !== "there") {
+    place.textContent = "Move over the picture for the margins, click to choose a start.";
+    return;
+  }
+  const margins = Object.entries(found.face_margins_m).map(([face, margin]) => `${face} ${figure(margin, 3)} m`);
+  place.textContent = `(${question.x_m}, ${question.y_m}) m · closed form ${found.verdict.replace("_", " ")} · after erosion: ${margins.join(", ")}`
+    + (found.range_margin_m === null ? "" : ` · range ${figure(found.range_margin_m, 3)} m`);
+}
+
+// ---- the fields
+
+
+/** Change inputs; `writing` is the field whose text the user is writing, which is left as it is. */
+function change(inputs, writing = null) {
+  begun = performance.now();
+  store.set(inputs);
+  const { values, wrong } = read(store.inputs);
+  for (const name of Object.keys(FIELDS)) {
+    const field = $(name), text = wrong[name] && field.type === "number" ? "" : store.inputs[name];
+    if (name !== writing && field.value !== text) field.value = text;
+    if (wrong[name]) field.setAttribute("aria-invalid", "true");
+    else field.removeAttribute("aria-invalid");
+    const range = document.querySelector(`input[data-for="${name}"]`);
+    if (range && values[name] !== null && range !== document.activeElement) range.value = "log" in range.dataset ? Math.log10(values[name]) : values[name];
+  }
+  $("within").hidden = store.inputs.question !== "synchronize";
+  pointed.set({ at: null });
+  if (!Object.keys(wrong).length) history.replaceState(null, "", `${location.pathname}${toAddress(store.inputs)}`);
+}
+
+function typed({ target }) {
+  const name = target.dataset.for ?? target.name;
+  if (!(name in FIELDS)) return;
+  // A number field gives no text for what is no number.
+  let text = target.validity.badInput ? "no number" : target.value;
+  if ("log" in target.dataset) text = String(Number((10 ** Number(text)).toPrecision(3)));
+  change({ [name]: text }, target.dataset.for ? null : name);
+}
+for (const id of ["controls", "start"]) {
+  $(id).addEventListener("input", typed);
+  $(id).addEventListener("submit", (event) => { event.preventDefault(); store.hasten(); });
+}
+
+// ---- the map under the pointer
+
+const turning = () => $("frame").value === "lvlh" && flight.data !== null;
+let pressed = null;
+map.addEventListener("mousedown", (event) => { pressed = [event.clientX, event.clientY]; }, true);
+map.addEventListener("click", (event) => {
+  const dragged = pressed && Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) > 4;
+  if (dragged || !event.target.closest(".nsewdrag, .plot") || turning()) return;
+  const point = pointAt(map, event);
+  if (!point) return;
+  change({ x_m: String(point[0]), y_m: String(point[1]) });
+  store.hasten();
+});
+map.addEventListener("mousemove", (event) => {
+  pointed.set({ at: turning() ? null : pointAt(map, event), values: given(store.inputs) });
+});
+
+$("frame").addEventListener("change", redraw);
+$("stored").addEventListener("change", ({ target }) => change({ job: target.value, ...storedInputs(target.value) }));
+map.after(saveButtons(map, "safe-start-region", el));
+if (unknown.length) $("address").textContent = `The address has settings that this page does not know: ${unknown.join(", ")}.`;
+for (const details of document.querySelectorAll("#controls details")) {
+  details.open = [...details.querySelectorAll("input[name]")].some(({ name }) => store.inputs[name] !== FIELDS[name].first);
+}
+change({});
+store.hasten();
+listStored();

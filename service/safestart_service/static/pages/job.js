@@ -1,0 +1,132 @@
+// One job: live while it waits or runs, then its results. What is shown survives a reload: it is all on the server.
+
+import { newest } from "../logic/store.js";
+import { duration, moment } from "../logic/words.js";
+import { Problem, call, follow, get, post, remove, root } from "../parts/api.js";
+import { $, definition, el, fail, loading, status } from "../parts/page.js";
+import { description } from "../parts/process.js";
+import { known, results, verdictBadge } from "../parts/results.js";
+import { shown } from "../parts/views.js";
+
+const id = $("job").dataset.job;
+const log = el("div", { class: "log", role: "log", "aria-label": "Log", tabindex: "0" });
+const bar = el("progress", { max: 100, value: 0, "aria-label": "progress" });
+const percent = el("span", { class: "percent" }), left = el("span", {}), message = el("p", { class: "note" });
+const connection = el("p", { class: "note", role: "status" });
+let job = null, verdict = null;
+
+const isActive = () => ["accepted", "running"].includes(job.status);
+
+function tell(at, text) {
+  const low = log.scrollTop + log.clientHeight >= log.scrollHeight - 4;
+  log.append(el("p", {}, `${at.slice(11, 19)}  ${text}`));
+  if (low) log.scrollTop = log.scrollHeight;
+}
+
+function title() {
+  $("title").replaceChildren(...[`${job.processID} `, verdict, status(job)].filter(Boolean));
+  document.title = `${job.processID} ${job.status} · safestart`;
+}
+
+function frame() {
+  title();
+  $("inputs").textContent = JSON.stringify(job.inputs, null, 1);
+  const active = isActive();
+  $("tools").replaceChildren(...[
+    active && !job.dismissal_requested ? el("button", { type: "button", class: "danger", onclick: cancel }, "Cancel") : null,
+    active ? null : el("button", { type: "button", onclick: again }, job.status === "successful" ? "Run again" : "Try again"),
+    el("a", { href: `${root}/dashboard/submit?process=${job.processID}&from=${id}` }, "Change inputs"),
+  ].filter(Boolean));
+  const facts = [["Submitted", moment(job.created)], ["Started", moment(job.started)], ["Finished", moment(job.finished)], ["Attempts", String(job.attempts)]];
+  if (job.position) facts.push(["Place in the queue", String(job.position)]);
+  if (job.starts_in_s) facts.push(["Starts in about", duration(job.starts_in_s)]);
+  const parts = [];
+  if (job.problem) parts.push(el("section", { class: "problem", role: "alert" }, el("h2", {}, job.problem.title ?? "Failed"), el("p", {}, job.problem.detail ?? "")));
+  if (active) parts.push(el("div", { class: "line big" }, bar, percent, left), message, connection);
+  if (job.reason) parts.push(el("p", { class: "note" }, `Waits: ${job.reason}.`));
+  $("state").replaceChildren(...parts);
+  $("course").replaceChildren(el("h2", {}, "Course of the job"), el("dl", {}, ...facts.map(([name, value]) => definition(name, value))), ...(log.childElementCount ? [log] : []));
+  progress(job.progress, job.message, job.eta_s);
+}
+
+function progress(part, text, eta) {
+  bar.value = part;
+  percent.textContent = `${Math.floor(part)} %`;
+  left.textContent = eta === null || eta === undefined ? "" : `about ${duration(eta)} left`;
+  message.textContent = text ?? "";
+}
+
+/** The job as it is now; an answer that was overtaken by a newer one is dropped. */
+const show = newest(() => get(`/jobs/${id}`), (found) => { job = found; frame(); });
+
+async function live() {
+  loading($("state"));
+  const over = new AbortController();
+  try {
+    await show();
+    const waiting = setInterval(() => {
+      // The stream below tells of a service that is away.
+      if (job.status === "accepted") show().catch(() => null);
+    }, 2000);
+    const part = job.links.some((link) => link.rel === "partial") ? setInterval(() => partial(over.signal), 3000) : 0;
+    await follow(id, heard, (error) => { connection.textContent = error ? "The connection broke; trying again." : ""; }, over.signal).finally(() => {
+      clearInterval(waiting);
+      clearInterval(part);
+      over.abort();
+    });
+    await show();
+    if (job.status === "successful") await finished();
+  } catch (error) {
+    fail($("state"), error, error instanceof Problem && error.status === 404 ? null : live);
+  }
+}
+
+async function heard(kind, data) {
+  if (kind === "progress") {
+    progress(data.progress, data.message, data.eta_s);
+    tell(data.at, `${Math.floor(data.progress)} %  ${data.message}`);
+  } else if (kind === "log") tell(data.at, data.message);
+  else if (kind === "status") {
+    tell(data.at, [data.status, data.message].filter(Boolean).join(": "));
+    await show();
+  }
+}
+
+async function finished() {
+  verdict = verdictBadge(await results($("results"), job, await description(job.processID), call));
+  title();
+}
+
+/** What the finished parts say already, for a process that is cut into parts; nothing once the job is over. */
+async function partial(signal) {
+  try {
+    const { shards, outputs } = await get(`/jobs/${id}/partial`, { signal });
+    const spec = await description(job.processID);
+    if (signal.aborted || !outputs) return;
+    const { head, parts } = shown(known(spec, outputs, job.inputs));
+    $("results").replaceChildren(el("h2", {}, `So far: ${shards.done} of ${shards.total} parts`), ...head, ...parts);
+  } catch {
+    // Nothing yet, or the service is away, of which the stream tells.
+  }
+}
+
+async function cancel() {
+  try {
+    await remove(`/jobs/${id}`);
+    await show();
+  } catch (error) {
+    fail($("tools"), error, () => location.reload());
+  }
+}
+
+async function again({ target }) {
+  target.disabled = true;
+  try {
+    const next = await post(`/processes/${job.processID}/execution`, { inputs: job.inputs }, { headers: { Prefer: "respond-async" } });
+    location.assign(`${root}/dashboard/jobs/${next.jobID}`);
+  } catch (error) {
+    fail($("tools"), error, () => location.reload());
+  }
+}
+
+await live();

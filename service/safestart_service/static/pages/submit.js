@@ -1,0 +1,137 @@
+// Submit: any process by a form made from its schema; light ones answer here, the others become jobs.
+
+import { Store } from "../logic/store.js";
+import { call, execute, get, root } from "../parts/api.js";
+import { field, mark } from "../parts/form.js";
+import { $, el, fail, loading } from "../parts/page.js";
+import { description } from "../parts/process.js";
+import { known, rest, verdictBadge } from "../parts/results.js";
+import { shown } from "../parts/views.js";
+
+const address = new URLSearchParams(location.search);
+const isLight = (one) => one.jobControlOptions.includes("sync-execute");
+let entry = null;
+
+// `entered` is what stands in the form, `sent` what was run: an answer is shown while they are the same.
+const store = new Store({ process: null, from: address.get("from"), entered: null, sent: null });
+
+store.panel({
+  poses: ({ process, from }) => process && { process, from },
+  asks: async ({ process, from }, signal) => {
+    const [spec, job] = await Promise.all([description(process), from ? get(`/jobs/${from}`, { signal }) : null]);
+    return { spec, given: job?.inputs };
+  },
+  shows: showForm,
+});
+
+store.panel({
+  poses: ({ process, entered, sent }) => (sent !== null && sent === entered ? { process, inputs: JSON.parse(sent) } : null),
+  asks: async ({ process, inputs }, signal) => ({ spec: await description(process), inputs, outputs: plain(await execute(process, inputs, { signal })) }),
+  shows: showAnswer,
+});
+
+function showForm({ state, answer, error }) {
+  entry = null;
+  if (state === "failed") {
+    fail($("form"), error, () => store.hasten());
+    return;
+  }
+  if (state !== "there") {
+    $("what").textContent = "";
+    loading($("form"));
+    return;
+  }
+  const { spec, given } = answer, schema = whole(spec), light = isLight(spec);
+  $("what").textContent = spec.description;
+  entry = field(schema, schema, "", "", given);
+  $("form").replaceChildren(entry.node, el("div", { class: "tools" },
+    el("button", { type: "submit" }, light ? "Run now" : "Submit"),
+    light ? el("button", { type: "button", class: "plain", onclick: queue }, "Queue it") : null));
+}
+
+/** One schema of all inputs, from the description's separate ones. */
+function whole({ inputs, example }) {
+  const properties = {}, defs = {}, required = [];
+  // What must be given comes first.
+  const order = Object.entries(inputs).sort(([, one], [, two]) => two.minOccurs - one.minOccurs);
+  for (const [name, { schema, minOccurs, title, description: said }] of order) {
+    const { $defs, ...own } = schema;
+    Object.assign(defs, $defs);
+    properties[name] = { title, description: said, ...own };
+    if (minOccurs !== 0) required.push(name);
+  }
+  return { properties, required, $defs: defs, examples: example ? [example] : [] };
+}
+
+/** Outputs of an answer at once: the standard wraps objects. */
+const plain = (outputs) => Object.fromEntries(Object.entries(outputs).map(([name, value]) => [name, value?.mediaType === "application/json" ? value.value : value]));
+
+function showAnswer({ state, answer, error, question }) {
+  const place = $("state");
+  if (state === "failed") {
+    fail(place, error, () => store.hasten());
+    mark($("form"), error.document?.field);
+  } else if (state === "asking") loading(place, "Running");
+  else if (state === "none") place.replaceChildren();
+  else {
+    const result = known(answer.spec, answer.outputs, question.inputs), { head, parts } = shown(result);
+    place.replaceChildren(el("h2", {}, "Answer ", verdictBadge(result) ?? ""), ...head, ...parts, ...rest(result),
+      el("details", {}, el("summary", {}, "The answer as JSON"), el("pre", { tabindex: "0" }, text(answer.outputs))));
+  }
+}
+
+function text(answer) {
+  const all = JSON.stringify(answer, null, 1).replace(/\[\s+([-\d.e+,\s]+?)\s+\]/g, (_, numbers) => `[${numbers.replace(/\s+/g, " ")}]`);
+  return all.length < 20000 ? all : `${all.slice(0, 20000)}\n… ${all.length} characters in all`;
+}
+
+const entered = () => (entry ? JSON.stringify(entry.value()) : null);
+
+/** Make a job of what stands in the form. */
+async function queue() {
+  const buttons = $("form").querySelectorAll("button"), { process } = store.inputs;
+  store.set({ sent: null });
+  for (const button of buttons) button.disabled = true;
+  loading($("state"), "Sending");
+  try {
+    const headers = { Prefer: "respond-async" };
+    const { jobID } = await (await call(`/processes/${process}/execution`, { method: "POST", json: { inputs: entry.value() }, headers })).json();
+    location.assign(`${root}/dashboard/jobs/${jobID}`);
+  } catch (error) {
+    for (const button of buttons) button.disabled = false;
+    fail($("state"), error);
+    mark($("form"), error.document?.field);
+  }
+}
+
+$("process").addEventListener("change", ({ target }) => {
+  history.replaceState(null, "", `?process=${target.value}`);
+  $("state").replaceChildren();
+  store.set({ process: target.value, from: null, entered: null, sent: null });
+});
+for (const kind of ["input", "change"]) $("form").addEventListener(kind, () => store.set({ entered: entered() }));
+$("form").addEventListener("submit", (event) => {
+  event.preventDefault();
+  if (!entry) return;
+  if (!event.submitter || event.submitter.textContent === "Submit") {
+    queue();
+    return;
+  }
+  const now = entered();
+  store.set({ entered: now, sent: now });
+  store.hasten();
+});
+
+async function list() {
+  try {
+    const { processes } = await get("/processes");
+    const order = [...processes].sort((a, b) => Number(isLight(a)) - Number(isLight(b)));
+    $("process").replaceChildren(...order.map((one) => el("option", { value: one.id }, one.title)));
+    const wanted = address.get("process");
+    $("process").value = order.some((one) => one.id === wanted) ? wanted : order[0].id;
+    store.set({ process: $("process").value });
+  } catch (error) {
+    fail($("state"), error, list);
+  }
+}
+await list();

@@ -1,0 +1,43 @@
+// Plotly in our colours, light and dark.
+
+import { lines } from "../logic/words.js";
+
+const shades = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+const SHADES = ["ink", "soft", "line", "card", "certified", "exact", "limit", "lost"];
+
+/** The colours of the style sheet, as they are now. */
+export const theme = () => Object.fromEntries(SHADES.map((name) => [name, shades(`--${name}`)]));
+
+const drawn = new Map();
+
+/**
+ * Draw or redraw; the picture follows the colour scheme and the width of its place. A title is broken at its dots where it
+ * is too long; the legend, where the layout does not place it, stands below everything else.
+ */
+export function draw(place, traces, layout = {}, config = {}) {
+  drawn.set(place, [traces, layout, config]);
+  const { ink, soft, line, card } = theme();
+  const axis = { gridcolor: line, zerolinecolor: line, linecolor: line, tickcolor: line, automargin: true };
+  const title = layout.title && { font: { size: 12 }, x: 0, xref: "paper", xanchor: "left", y: 1, yref: "paper", yanchor: "bottom", pad: { b: 8 }, ...layout.title, text: lines(layout.title.text, (place.clientWidth - 64) / 6.3) };
+  const rows = layout.legend ? 0 : Math.ceil(traces.filter((trace) => trace.name && trace.showlegend !== false).length / Math.max(1, Math.floor((place.clientWidth - 64) / 190)));
+  const whole = {
+    paper_bgcolor: card, plot_bgcolor: card, font: { color: ink, size: 12, family: "system-ui, sans-serif" }, hoverlabel: { font: { size: 12 } },
+    margin: { l: 52, r: 12, t: title ? 18 + 15 * title.text.split("<br>").length : 12, b: 46 + 20 * rows },
+    legend: { orientation: "h", yref: "container", y: 0, yanchor: "bottom", x: 0, font: { color: soft } }, ...layout, title,
+    xaxis: { ...axis, ...layout.xaxis }, yaxis: { ...axis, ...layout.yaxis },
+  };
+  if (layout.yaxis2) whole.yaxis2 = { ...axis, ...layout.yaxis2 };
+  const bar = { displaylogo: false, responsive: true, modeBarButtonsToRemove: ["lasso2d", "select2d", "autoScale2d", "sendChartToCloud"], plotlyServerURL: "", ...config };
+  return Plotly.react(place, traces, whole, bar);
+}
+
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+  for (const [place, args] of drawn) if (place.isConnected) draw(place, ...args);
+});
+
+export function saveButtons(place, name, el) {
+  const button = (format) => el("button", {
+    type: "button", onclick: () => Plotly.downloadImage(place, { format, filename: name, width: 1200, height: 900 }),
+  }, format.toUpperCase());
+  return el("span", { class: "saves" }, "Save picture: ", button("png"), button("svg"));
+}

@@ -1,0 +1,111 @@
+// One flight: its curves, its clock, and what the map shows of it at the clock's time.
+
+import { figure } from "../logic/words.js";
+import { draw, theme } from "./chart.js";
+import { $ } from "./page.js";
+
+const FACES = ["#0072B2", "#D55E00", "#CC79A7", "#E69F00", "#56B4E9"];
+const SPEED = 6; // seconds of flight per second of animation
+
+export class Flight {
+  constructor(redraw) {
+    this.redraw = redraw;
+    this.data = null;
+    this.step = 0;
+    this.running = 0;
+    $("play").addEventListener("click", () => (this.running ? this.stop() : this.play()));
+    $("clock").addEventListener("input", () => { this.stop(); this.show(Number($("clock").value)); });
+  }
+
+  /** Withdraw the flight; `text` says why there is none. */
+  clear(text = "") {
+    this.stop();
+    this.data = null;
+    $("play").disabled = $("clock").disabled = $("frame").disabled = true;
+    $("flown").textContent = text;
+    $("time").textContent = "";
+    $("flight").classList.toggle("empty-flight", true);
+  }
+
+  /** Show a flight at its end; `text` says what is flown. */
+  load(data, text) {
+    this.stop();
+    this.data = data;
+    $("clock").max = data.time_s.length - 1;
+    $("play").disabled = $("clock").disabled = $("frame").disabled = false;
+    $("flown").textContent = text;
+    $("flight").classList.toggle("empty-flight", false);
+    this.curves();
+    this.show(data.time_s.length - 1, false);
+  }
+
+  /** Angle (rad) by which the corridor has turned at the clock's time. */
+  turn(rate) {
+    return (rate * Math.PI / 180) * this.data.time_s[this.step];
+  }
+
+  traces(frame, start) {
+    const { ink, certified, lost } = theme();
+    if (!this.data) {
+      return start ? [{ name: "start", x: [start[0]], y: [start[1]], mode: "markers", marker: { size: 11, color: ink, symbol: "x" }, hoverinfo: "name", showlegend: false }] : [];
+    }
+    const all = frame === "lvlh" ? this.data.lvlh_m : this.data.body_m;
+    const path = all.slice(0, this.step + 1), now = path[path.length - 1];
+    const left = this.data.distance_m[this.step].some((distance) => distance < 0);
+    return [
+      { name: "flight", x: path.map((p) => p[0]), y: path.map((p) => p[1]), mode: "lines", line: { color: ink, width: 2.5 }, hoverinfo: "skip" },
+      { name: "start", x: [all[0][0]], y: [all[0][1]], mode: "markers", marker: { size: 11, color: ink, symbol: "x" }, hoverinfo: "name", showlegend: false },
+      { name: "chaser", x: [now[0]], y: [now[1]], mode: "markers", marker: { size: 13, color: left ? lost : certified, line: { color: ink, width: 2 } }, hoverinfo: "name", showlegend: false },
+    ];
+  }
+
+  curves() {
+    const { time_s: x, thrust_m_s2: thrust, distance_m: distance, faces } = this.data;
+    const { soft } = theme();
+    const traces = faces.map((face, k) => ({
+      name: face, x, y: distance.map((row) => row[k]), mode: "lines", line: { color: FACES[k], width: 2 }, hovertemplate: "%{y:.2f} m",
+    }));
+    traces.push({
+      name: "thrust", x, y: thrust.map((u) => Math.hypot(...u)), mode: "lines", line: { color: soft, width: 1.5, shape: "hv", dash: "dot" },
+      yaxis: "y2", hovertemplate: "%{y:.4f} m/s²",
+    });
+    draw($("curves"), traces, {
+      hovermode: "x", shapes: [this.mark()], margin: { l: 52, r: 58, t: 30, b: 44 }, legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 },
+      xaxis: { title: { text: "time [s]" } }, yaxis: { title: { text: "distance to face [m]" }, rangemode: "tozero" },
+      yaxis2: { title: { text: "thrust [m/s²]" }, overlaying: "y", side: "right", rangemode: "tozero", showgrid: false },
+    });
+  }
+
+  mark() {
+    const at = this.data.time_s[this.step];
+    return { type: "line", x0: at, x1: at, y0: 0, y1: 1, yref: "paper", line: { color: theme().ink, width: 1 } };
+  }
+
+  show(step, draws = true) {
+    this.step = step;
+    $("clock").value = step;
+    $("time").textContent = `${figure(this.data.time_s[step], 3)} s`;
+    window.Plotly.relayout($("curves"), { shapes: [this.mark()] });
+    if (draws) this.redraw();
+  }
+
+  play() {
+    const begun = performance.now(), last = this.data.time_s.length - 1;
+    const from = this.step >= last ? 0 : this.data.time_s[this.step];
+    $("play").textContent = "Pause";
+    const tick = (now) => {
+      const time = from + (SPEED * (now - begun)) / 1000;
+      const next = this.data.time_s.findIndex((at) => at >= time);
+      this.show(next < 0 ? last : next);
+      if (next < 0 || next === last) this.stop();
+      else this.running = requestAnimationFrame(tick);
+    };
+    this.running = requestAnimationFrame(tick);
+  }
+
+  stop() {
+    cancelAnimationFrame(this.running);
+    this.running = 0;
+    $("play").textContent = "Fly it";
+  }
+}

@@ -1,0 +1,108 @@
+// A form from a JSON schema: what a process's description says is all it needs to know.
+
+import { bounds, filled, numbers, parsed, resolve } from "../logic/schema.js";
+import { el } from "./page.js";
+
+/** `{ node, value() }` of one schema; `value()` gives undefined where nothing was entered. */
+export function field(schema, whole, name, path, given) {
+  schema = resolve(schema, whole);
+  const fallback = given ?? schema.default ?? schema.const;
+  if (schema.properties) return group(schema, whole, name, path, given ?? schema.default);
+  if (schema.enum) return choice(schema, name, path, fallback);
+  if (schema.type === "boolean") return tick(schema, name, path, fallback);
+  if (schema.type === "array") return list(schema, whole, name, path, fallback);
+  if (schema.type === "number" || schema.type === "integer") return number(schema, name, path, fallback);
+  if (schema.type === "string") return text(schema, name, path, fallback);
+  return json(schema, name, path, fallback);
+}
+
+function group(schema, whole, name, path, given) {
+  const parts = Object.entries(schema.properties).map(([key, inner]) => {
+    const required = schema.required?.includes(key);
+    const example = whole.examples?.[0]?.[key];
+    const known = given?.[key] ?? (path === "" && required ? example : undefined);
+    return [key, field(inner, whole, key, path ? `${path}.${key}` : key, known)];
+  });
+  const node = el("fieldset", {}, name ? el("legend", {}, name) : null, ...parts.map(([, part]) => part.node));
+  return {
+    node,
+    value: () => filled(parts.map(([key, part]) => [key, part.value()]), path !== "" && !given),
+  };
+}
+
+function dial(schema, name, path, control, more) {
+  const id = `in-${path}`;
+  control.id = id;
+  control.dataset.path = path;
+  const said = [schema.description, bounds(schema)].filter(Boolean).join(" ");
+  if (said) control.setAttribute("aria-describedby", `${id}-said`);
+  return el("div", { class: "dial" }, el("label", { for: id }, name), control, more ?? null, said ? el("p", { class: "note", id: `${id}-said` }, said) : null);
+}
+
+function number(schema, name, path, given) {
+  const control = el("input", { type: "number", step: "any", inputmode: "decimal" });
+  if (given !== undefined && given !== null) control.value = given;
+  return { node: dial(schema, name, path, control), value: () => (control.value === "" ? undefined : Number(control.value)) };
+}
+
+function text(schema, name, path, given) {
+  const control = el("input", { type: "text" });
+  if (given !== undefined && given !== null) control.value = given;
+  return { node: dial(schema, name, path, control), value: () => (control.value === "" ? undefined : control.value) };
+}
+
+function choice(schema, name, path, given) {
+  const control = el("select", {}, ...(schema.optional ? [el("option", { value: "" }, "–")] : []),
+    ...schema.enum.map((one) => el("option", { value: JSON.stringify(one), selected: one === given }, String(one))));
+  return { node: dial(schema, name, path, control), value: () => (control.value === "" ? undefined : JSON.parse(control.value)) };
+}
+
+function tick(schema, name, path, given) {
+  const control = el("input", { type: "checkbox" });
+  control.checked = Boolean(given);
+  return { node: dial(schema, name, path, control), value: () => control.checked };
+}
+
+function list(schema, whole, name, path, given) {
+  const items = resolve(schema.items ?? {}, whole);
+  if (items.enum) {
+    const boxes = items.enum.map((one) => {
+      const box = el("input", { type: "checkbox" });
+      box.checked = (given ?? []).includes(one);
+      return [one, box];
+    });
+    const node = el("fieldset", {}, el("legend", {}, name),
+      el("div", { class: "checks" }, ...boxes.map(([one, box]) => el("label", {}, box, ` ${one}`))),
+      schema.description ? el("p", { class: "note" }, schema.description) : null);
+    node.dataset.path = path;
+    return { node, value: () => boxes.filter(([, box]) => box.checked).map(([one]) => one) };
+  }
+  if (items.type === "number" || items.type === "integer") {
+    const control = el("input", { type: "text", inputmode: "text" });
+    control.value = (given ?? []).join(", ");
+    return { node: dial({ ...schema, description: `${schema.description ?? ""} Numbers, separated by commas.` }, name, path, control), value: () => numbers(control.value) };
+  }
+  return json(schema, name, path, given);
+}
+
+function json(schema, name, path, given) {
+  const control = el("textarea", { rows: 4, spellcheck: "false" });
+  if (given !== undefined && given !== null) control.value = JSON.stringify(given, null, 1);
+  return { node: dial({ ...schema, description: `${schema.description ?? ""} JSON.` }, name, path, control), value: () => parsed(control.value) };
+}
+
+/** Mark the field that a problem names; true when there is one. */
+export function mark(form, name) {
+  for (const old of form.querySelectorAll('[aria-invalid="true"]')) old.removeAttribute("aria-invalid");
+  const plain = String(name ?? "").replace(/^inputs\.?/, "");
+  for (let path = plain; path; path = path.includes(".") ? path.slice(0, path.lastIndexOf(".")) : "") {
+    const found = form.querySelector(`[data-path="${CSS.escape(path)}"]`);
+    if (found) {
+      found.setAttribute("aria-invalid", "true");
+      found.scrollIntoView({ block: "center" });
+      found.focus?.();
+      return true;
+    }
+  }
+  return false;
+}

@@ -1,0 +1,79 @@
+// Explore's map: the corridor with the certified and the exact region, stored sets, and the flight in either frame.
+
+import { arc, closed, corridor, turned } from "../logic/geometry.js";
+import { draw, theme } from "./chart.js";
+
+const FILL = "rgba(128,128,128,0.09)";
+
+/** The corridor at rest with everything known of the starts in it. `sets` are stored ones: { title, colour, x, y, mask }. */
+function body({ values, certified, region, sets }) {
+  const { ink, soft, certified: green, exact: blue, limit } = theme();
+  const shape = values, traces = [];
+  const line = (name, points, colour, more = {}) => traces.push({
+    name, ...points, mode: "lines", line: { color: colour, width: 2, dash: more.dash }, hoverinfo: "skip", ...more,
+  });
+  line("corridor", corridor(shape, values.y_max_m), soft, { fill: "toself", fillcolor: FILL });
+  if (region?.inner_polygon_m.length) {
+    line("exact: proved GO", closed(region.inner_polygon_m), blue, { fill: "toself", fillcolor: "rgba(59,111,212,0.16)" });
+  }
+  if (region?.outer_polygon_m.length) line("outside: proved NO_GO", closed(region.outer_polygon_m), blue, { dash: "dot" });
+  if (certified) {
+    traces.push({
+      name: "closed form: certified", type: "contour", x: certified.x_m, y: certified.y_m, z: certified.margin_m,
+      contours: { type: "constraint", operation: "<", value: 0 }, fillcolor: "rgba(0,158,115,0.30)",
+      line: { color: green, width: 2 }, showscale: false, hoverinfo: "skip", showlegend: true,
+    });
+    if (certified.r_sync_m) line("synchronization radius", arc(certified.r_sync_m, shape, values.y_max_m), limit, { dash: "dash" });
+  }
+  for (const { title, colour, x, y, mask } of sets) {
+    traces.push({
+      name: `stored: ${title}`, type: "contour", x, y, z: mask,
+      contours: { type: "constraint", operation: "=", value: 0.5 }, line: { color: colour, width: 2, dash: "dashdot" },
+      showscale: false, hoverinfo: "skip", showlegend: true,
+    });
+  }
+  traces.push(target(ink));
+  return traces;
+}
+
+/** The corridor turned with the target, at the clock's time. */
+function orbit({ values, region }, turn) {
+  const { ink, soft, exact: blue } = theme();
+  const outline = corridor(values, values.y_max_m);
+  const traces = [{ name: "corridor", ...turned(outline.x, outline.y, turn), mode: "lines", fill: "toself", fillcolor: FILL, line: { color: soft }, hoverinfo: "skip" }];
+  if (region?.inner_polygon_m.length) {
+    traces.push({ name: "exact region at t = 0", ...closed(region.inner_polygon_m), mode: "lines", line: { color: blue, dash: "dot" }, hoverinfo: "skip" });
+  }
+  traces.push(target(ink));
+  return traces;
+}
+
+const target = (ink) => ({ name: "target", x: [0], y: [0], mode: "markers", marker: { symbol: "square", size: 11, color: ink }, hoverinfo: "name", showlegend: false });
+
+/** Draw what is given; `says` are the words on the picture, `overlay(frame)` the traces of start and flight. */
+export function drawMap(place, { values, certified, region, sets, turn, overlay, says }) {
+  const inOrbit = turn !== null;
+  const reach = corridor(values, values.y_max_m).half * 1.03;
+  const far = Math.max(reach, values.y_max_m * 1.03);
+  const known = { values, certified, region, sets };
+  const traces = [...(inOrbit ? orbit(known, turn) : body(known)), ...overlay(inOrbit ? "lvlh" : "body")];
+  const high = inOrbit ? 2 * far : 1.09 * values.y_max_m, wide = 2 * (inOrbit ? far : reach);
+  // As tall as equal axes need, beside title, ticks and legend.
+  const beside = 100 + 20 * Math.ceil(7 / Math.max(1, Math.floor((place.clientWidth - 64) / 190)));
+  place.style.height = `${Math.min(0.85 * innerHeight, ((place.clientWidth - 70) * high) / wide + beside)}px`;
+  return draw(place, traces, {
+    uirevision: `${inOrbit}/${values.y_max_m}/${values.c_x}`, showlegend: true, title: { text: says },
+    xaxis: { title: { text: inOrbit ? "x LVLH, radial [m]" : "x body [m]" }, range: inOrbit ? [-far, far] : [-reach, reach], constrain: "domain" },
+    yaxis: { title: { text: inOrbit ? "y LVLH, along-track [m]" : "y body [m]" }, range: inOrbit ? [-far, far] : [-0.06 * values.y_max_m, 1.03 * values.y_max_m], scaleanchor: "x", constrain: "domain" },
+  });
+}
+
+/** The point of the map under a pointer event, to a centimetre; null beside the axes. */
+export function pointAt(place, event) {
+  const { xaxis, yaxis } = place._fullLayout ?? {};
+  if (!xaxis) return null;
+  const box = place.getBoundingClientRect();
+  const x = xaxis.p2d(event.clientX - box.left - xaxis._offset), y = yaxis.p2d(event.clientY - box.top - yaxis._offset);
+  const within = (value, [low, high]) => value >= Math.min(low, high) && value <= Math.max(low, high);
+  return within(x, xaxis.range) && within(y, yaxis.range) ? [x.toFixed(2), y.toFixed(2)].map(Number) : null;
+}

@@ -1,0 +1,98 @@
+// What every page shares: elements, tables, the states empty, loading and failed, the key dialog.
+
+import { figure } from "../logic/words.js";
+import { Problem, hasKey, useKey } from "./api.js";
+
+/** An element with attributes and children; text stays text. */
+export function el(tag, attributes = {}, ...children) {
+  const node = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (value === undefined || value === null || value === false) continue;
+    if (name.startsWith("on")) node.addEventListener(name.slice(2), value);
+    else node.setAttribute(name, value === true ? "" : value);
+  }
+  node.append(...children.filter((child) => child !== null && child !== undefined));
+  return node;
+}
+
+export const $ = (id) => document.getElementById(id);
+
+/** Put a failure where the content would stand, with the way out of it. */
+export function fail(place, error, again) {
+  if (error.name === "AbortError") return;
+  const known = error instanceof Problem;
+  const asks = document.getElementById("key");
+  // Somebody may be typing a key there: a second refusal must not wipe it out.
+  if (known && error.status === 401 && asks && place.contains(asks)) return;
+  const box = el("div", { class: "problem", role: "alert" });
+  box.append(el("h2", {}, known ? error.document.title ?? "Refused" : "This page has a fault"));
+  box.append(el("p", {}, error.message));
+  if (known && error.document.required && !error.message.includes(error.document.required)) {
+    box.append(el("p", { class: "note" }, `Required: ${error.document.required}. Received: ${error.document.received}.`));
+  }
+  if (known && error.status === 401) box.append(asks ? el("p", { class: "note" }, "The key is asked for elsewhere on this page.") : keyForm());
+  else if (again) box.append(el("button", { type: "button", onclick: again }, "Try again"));
+  place.replaceChildren(box);
+  if (!known) console.error(error);
+}
+
+export function loading(place, text = "Loading") {
+  place.replaceChildren(el("p", { class: "empty", role: "status" }, `${text} …`));
+}
+
+function keyForm() {
+  const field = el("input", { type: "password", id: "key", autocomplete: "off", required: true });
+  const form = el("form", { class: "inline" },
+    el("label", { for: "key" }, hasKey() ? "This key is not accepted. Another one:" : "API key"), field,
+    el("button", { type: "submit" }, "Use this key"));
+  form.addEventListener("submit", (event) => {
+    event.preventDefault();
+    useKey(field.value);
+    location.reload();
+  });
+  return form;
+}
+
+/** A word in a frame, and what it is about: that a job ended says nothing of the verdict it came to. */
+export const badge = (about, word, kind) => el("span", { class: `badge ${about}` }, el("span", { class: "about" }, about), " ", el("b", { class: about === "job" ? `status ${kind}` : `outcome ${kind}` }, word));
+
+export const status = (job) => badge("job", job.dismissal_requested && job.status === "running" ? "stopping" : job.status, job.status);
+
+/** A link to a file of the API, fetched with the key. */
+export function download(call, href, name, text) {
+  const anchor = el("a", { href, download: name }, text);
+  anchor.addEventListener("click", async (event) => {
+    event.preventDefault();
+    try {
+      save(name, await (await call(href)).blob());
+    } catch (error) {
+      const place = el("div");
+      anchor.after(place);
+      fail(place, error);
+    }
+  });
+  return anchor;
+}
+
+export const definition = (name, value) => el("div", {}, el("dt", {}, name), el("dd", {}, value));
+
+/** A table: columns of [title, function of the row]; numbers to the right. */
+export function table(rows, columns, label) {
+  const isNumber = (of) => rows.some((row) => typeof of(row) === "number");
+  const head = el("tr", {}, ...columns.map(([title, of]) => el("th", { scope: "col", class: isNumber(of) ? "number" : null }, title)));
+  const body = rows.map((row) => el("tr", {}, ...columns.map(([, of]) => {
+    const value = of(row);
+    if (value instanceof Node) return el("td", {}, value);
+    const text = figure(value);
+    return el("td", { class: typeof value === "number" ? "number" : text.length > 40 ? "text" : null }, text);
+  })));
+  return el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": label },
+    el("table", {}, el("thead", {}, head), el("tbody", {}, ...body)));
+}
+
+/** Give a text (CSV) or a blob to the user as a file. */
+export function save(name, content) {
+  const url = URL.createObjectURL(content instanceof Blob ? content : new Blob([content], { type: "text/csv" }));
+  el("a", { href: url, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(url), 1000);
+}

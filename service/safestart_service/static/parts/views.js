@@ -1,0 +1,111 @@
+// The kinds of views by which a process's description has its outputs shown. Each makes elements; some are drawn when these are on the page.
+
+import { exploreAddress, findings } from "../logic/outcome.js";
+import { wilson } from "../logic/statistics.js";
+import { each } from "../logic/tables.js";
+import { csv, figure } from "../logic/words.js";
+import { root } from "./api.js";
+import { drawFlights, drawOverlay } from "./arrays.js";
+import { definition, el, save, table } from "./page.js";
+
+/** Rows shown at most; the download has all of them. */
+const MOST_ROWS = 500;
+const SHORT = 12;
+
+/**
+ * Elements and pictures of a result by its views: `{ head, parts, draws }`, `head` being what stands before any picture.
+ * `result` is `{ spec, names, outputs, tables, inputs,
+ * artifacts, job }`; `draws` are to be called once the parts are on the page.
+ */
+export function shown(result) {
+  const head = [], parts = [], draws = [], views = result.spec["safestart:views"], from = views.findIndex((view) => isLong(view, result));
+  views.forEach((view, k) => KINDS[view.kind]?.(view, result, from < 0 || k < from ? head : parts, draws));
+  return { head, parts, draws };
+}
+
+/** Whether a view takes much room: the pictures stand before the first one that does. */
+const isLong = ({ kind, table: name }, { tables }) => ["overlay", "flights"].includes(kind) || (kind === "rows" && (tables[name] ?? []).length > SHORT);
+
+const KINDS = {
+  findings(view, { tables, names }, parts) {
+    const all = findings(view, tables);
+    if (!all.length) return;
+    const word = (found) => el("b", { class: `word ${found.shown}` }, found.word.replace("_", " "));
+    const columns = used(view.columns, all.map(({ row }) => row), names);
+    parts.push(el("h2", {}, view.title), table(all, [["verdict", word], ...columns.map(([title, of]) => [title, (found) => of(found.row)])], view.title));
+  },
+
+  facts({ columns }, { tables, names }, parts) {
+    const [row] = tables[""], said = used(columns, [row], names);
+    if (said.length) parts.push(el("dl", { class: "facts" }, ...said.map(([title, of]) => definition(title, figure(of(row))))));
+  },
+
+  rows(view, { tables, names, inputs }, parts) {
+    const rows = tables[view.table] ?? [];
+    if (!rows.length) return;
+    const columns = used(view.columns, rows, names);
+    if (view.explore && rows.some((row) => "x_m" in row)) columns.push(["", (row) => explored(row, inputs)]);
+    parts.push(el("h2", {}, view.title), ...(view.note ? [el("p", { class: "lead" }, view.note)] : []), ...listed(rows, columns, view.title, view.table));
+  },
+
+  matrices(view, { outputs, names }, parts) {
+    const all = each(outputs, view.path, view.names).filter((found) => !found.names.some((name) => view.omit.includes(name)));
+    if (!all.length) return;
+    const heading = (found) => view.heading.replace(/\{(\d)\}/g, (_, place) => names.title(found.names[place]).replace("_", " "));
+    parts.push(el("h2", {}, view.title), el("p", { class: "lead" }, view.note), el("div", { class: "two" }, ...all.map((found) => matrix(view, heading(found), found.value))));
+  },
+
+  overlay(view, result, parts, draws) {
+    const rows = (result.tables[view.table] ?? []).filter((row) => row.cells !== null && row.cells !== undefined);
+    if (rows.length < 2 || !result.artifacts.some((file) => file.name === view.artifact)) return;
+    const all = rows.map((row) => row[view.by]), first = all.includes(view.certain) ? view.certain : all[0], second = all.find((name) => name !== first);
+    const pick = (label, chosen) => el("select", { "aria-label": label }, ...all.map((name) => el("option", { value: name, selected: name === chosen }, result.names.title(name))));
+    const [one, two] = [pick("first set", first), pick("second set", second)];
+    const chart = el("div", { class: "chart masks", role: "group", "aria-label": "Cells where both, one or neither of the two sets hold" }), said = el("p", { class: "note agreement" });
+    parts.push(el("h2", {}, view.title), el("div", { class: "inline on-screen" }, one, " against ", two), chart, said);
+    draws.push(() => drawOverlay({ view, result, chart, said, one, two }));
+  },
+
+  flights(view, result, parts, draws) {
+    const groups = each(result.outputs, `${view.path}.*`);
+    if (!groups.length) return;
+    const chart = el("div", { class: "chart", role: "group", "aria-label": `${view.title}: flights in the body frame` });
+    const has = result.artifacts.some((file) => file.name === view.artifact);
+    parts.push(el("h2", {}, view.title), ...(has ? [el("div", { class: "card replay" }, chart)] : []));
+    for (const { value: cases, names: [group] } of groups) {
+      const rows = cases.map((one) => ({ ...one, ...Object.fromEntries(Object.entries(one.certified ?? {}).map(([name, yes]) => [`certified.${name}`, yes])) }));
+      const columns = [...used(view.columns, rows, result.names), ["", (row) => explored(row, result.inputs)]];
+      parts.push(el("h3", {}, group.replace("_", " ")), rows.length ? table(rows, columns, `${view.title} of ${group}`) : el("p", { class: "note" }, "None."));
+    }
+    if (has) draws.push(() => drawFlights({ view, result, chart }));
+  },
+};
+
+/** Columns that hold something, as [title, function of the row]; names among their values by their titles. */
+function used(columns, rows, names) {
+  const there = columns.filter(({ path }) => rows.some((row) => row[path] !== null && row[path] !== undefined && row[path] !== ""));
+  return there.map(({ title, path }) => [title, (row) => (typeof row[path] === "string" ? names.title(row[path]) : row[path])]);
+}
+
+/** A table and its download. */
+export function listed(rows, columns, title, name) {
+  const told = rows.length > MOST_ROWS ? el("p", { class: "note" }, `The first ${MOST_ROWS} of ${rows.length} rows; the download has all.`) : null;
+  const plain = columns.filter(([head]) => head !== "");
+  const download = el("button", { type: "button", class: "plain", onclick: () => save(`${name}.csv`, csv([plain.map(([head]) => head), ...rows.map((row) => plain.map(([, of]) => of(row)))])) }, "CSV");
+  return [table(rows.slice(0, MOST_ROWS), columns, title), told, el("div", { class: "tools" }, download)].filter(Boolean);
+}
+
+const explored = (row, inputs) => el("a", { href: `${root}/dashboard${exploreAddress(row, inputs)}` }, "explore");
+
+/** A confusion matrix as a labelled picture: what was claimed against what was so. */
+function matrix({ claims, facts, cells }, title, { tp, fp, fn, tn, precision, recall }) {
+  const cell = (count, of, kind, text) => {
+    const span = wilson(count, of);
+    return el("td", { class: kind }, String(count), el("small", {}, text), span ? el("small", {}, `${(100 * span[0]).toFixed(1)}–${(100 * span[1]).toFixed(1)} %`) : null);
+  };
+  const [both, claimed, missed, neither] = cells;
+  return el("figure", { class: "card" }, el("figcaption", {}, el("b", {}, title), ` precision ${figure(precision, 3)}, recall ${figure(recall, 3)}`),
+    el("table", { class: "matrix" }, el("thead", {}, el("tr", {}, el("td"), ...facts.map((fact) => el("th", { scope: "col" }, fact)))),
+      el("tbody", {}, el("tr", {}, el("th", { scope: "row" }, claims[0]), cell(tp, tp + fp, "right", both), cell(fp, tp + fp, "wrong", claimed)),
+        el("tr", {}, el("th", { scope: "row" }, claims[1]), cell(fn, fn + tn, "missed", missed), cell(tn, fn + tn, "right", neither)))));
+}

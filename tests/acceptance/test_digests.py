@@ -1,0 +1,57 @@
+"""The answers to the quick questions are what they were, to the last bit; the long ones are asked by hand."""
+
+import re
+import subprocess
+import sys
+
+import pytest
+
+from safestart.processes.registry import PROCESS_IDS
+from tests.acceptance import digests
+from tests.acceptance.digested import content, questions
+from tests.acceptance.digested.calls import COMMANDS
+
+BEFORE = {"rows": [{"engine": "exact", "cells": 3, "run_s": 0.1}, {"engine": "forward", "cells": 5}]}
+
+
+@pytest.mark.skipif(
+    not digests.same_arithmetic_possible(), reason="the digests are of x86-64 with AVX2 and FMA, and of glibc"
+)
+def test_quick_answers_are_what_they_were() -> None:
+    names = questions.quick_names()
+    assert len(names) > 40
+    found = digests.check(names)
+    assert found == {}, f"computed by {digests.other_arithmetic() or 'the same versions'}"
+
+
+def test_every_question_has_digests() -> None:
+    assert set(digests.stored()) == set(questions.names())
+
+
+def test_every_process_is_asked_for_its_example_here_and_over_http() -> None:
+    names = set(questions.names())
+    assert {f"{process_id}/example" for process_id in PROCESS_IDS} <= names
+    assert {f"service/{process_id}/example" for process_id in PROCESS_IDS} <= names
+
+
+def test_everything_that_can_be_reproduced_is_asked_for() -> None:
+    command = [sys.executable, "-m", "safestart", "reproduce", "--help"]
+    told = subprocess.run(command, capture_output=True, text=True, check=True).stdout.partition("Commands:")[
+        2
+    ]
+    known = set(re.findall(r"^  (\S+)", told, re.MULTILINE))
+    assert len(known) >= 7
+    assert known == {words[1] for lines in COMMANDS.values() for words in lines if words[0] == "reproduce"}
+
+
+def test_a_changed_number_is_named_and_a_time_is_none() -> None:
+    before = content.document(BEFORE)
+    slower = {"rows": [{**BEFORE["rows"][0], "run_s": 9.9}, BEFORE["rows"][1]]}
+    assert content.document(slower) == before
+    other = content.document({"rows": [BEFORE["rows"][0], {"engine": "forward", "cells": 5.0}]})
+    files = {"document.json": before}, {"document.json": other}
+    assert digests.differences(*files) == ["document.json differs in rows.cells"]
+    turned = content.document({"rows": [dict(reversed(row.items())) for row in BEFORE["rows"]]})
+    files = {"document.json": before}, {"document.json": turned}
+    assert digests.differences(*files) == ["document.json differs in (order of keys)"]
+    assert digests.differences({"map.npz": {"x": "1"}}, {}) == ["map.npz is gone"]

@@ -1,0 +1,165 @@
+"""After any sequence of edits Explore shows a verdict that is true of the inputs shown, or none.
+
+Requests are late, fail, come out of order or although they were given up, and the service is killed and started again.
+In CI a few sequences; by hand as many as one likes:
+
+    SAFESTART_EDIT_SEQUENCES=500 SAFESTART_EDIT_SEED=1 pytest tests/browser/test_edit_sequences.py
+"""
+
+from __future__ import annotations
+
+import os
+import random
+import threading
+from collections import Counter
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser, Page
+
+from tests.browser.conftest import Visit
+from tests.browser.explored import FAULTS, Seen, Served, Truth, edit, faults_in, seen, settled
+
+SEQUENCES = int(os.environ.get("SAFESTART_EDIT_SEQUENCES", "8"))
+SEED = int(os.environ.get("SAFESTART_EDIT_SEED", "1"))
+TEXTS: dict[str, list[str]] = {
+    "omega_t_deg_s": ["0.5", "1", "2", "3", "4", "6", "3e0", "", "-5", "99", "-"],
+    "a_max_m_s2": ["0.05", "0.1", "0.2", "0.02", "", "-1", "0"],
+    "horizon_s": ["20", "40", "60", "62", "80", "61", "", "-2", "240"],
+    "y_max_m": ["60", "150", "200", "", "0.1"],
+    "question": ["stay", "stay", "synchronize"],
+    "within_s": ["40", "60", "100", "200", "", "7"],
+    "rest": ["lvlh", "lvlh", "body"],
+    "mean_motion_rad_s": ["0.0011", "0.0011", "0", "0.0005", ""],
+    "c_x": ["1.5", "1.5", "1", "0.6", "-1", ""],
+    "r_h_m": ["0.5", "0.5", "1", ""],
+    "position_half_width_m": ["0", "0", "0.1", "0.5", "60", "-30", ""],
+    "omega_t_half_width_deg_s": ["0", "0", "0.05", "-1", ""],
+    "disturbance_m_s2": ["0", "0", "0.001", "-0.1", ""],
+    "x_m": ["-60", "5", "0", "12", "100", "-20", ""],
+    "y_m": ["80", "40", "20", "10", "75", ""],
+}
+TURN = """() => {
+  const frame = document.querySelector("#frame:enabled");
+  if (!frame) return;
+  frame.value = frame.value === "lvlh" ? "body" : "lvlh";
+  frame.dispatchEvent(new Event("change"));
+}"""
+FIRST = {
+    "omega_t_deg_s": "3",
+    "a_max_m_s2": "0.1",
+    "horizon_s": "60",
+    "y_max_m": "150",
+    "question": "stay",
+    "within_s": "60",
+    "rest": "lvlh",
+    "x_m": "-60",
+    "y_m": "80",
+}
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    found = Served(tmp_path_factory.mktemp("edits"))
+    yield found
+    found.kill()
+
+
+def some_edit(page: Page, draw: random.Random) -> Seen:
+    """One thing a user may do; returns what the page shows in the same moment."""
+    kind = draw.random()
+    if kind < 0.10:
+        box = (
+            page.locator("#map .nsewdrag").first.bounding_box() if page.locator("#map").is_visible() else None
+        )
+        if box is not None:
+            page.mouse.click(
+                box["x"] + draw.random() * box["width"], box["y"] + draw.random() * box["height"]
+            )
+    elif kind < 0.18:
+        page.evaluate("document.querySelector('#start').requestSubmit()")
+    elif kind < 0.22:
+        page.evaluate("document.querySelector('.problem button')?.click()")
+    elif kind < 0.26:
+        page.evaluate("document.querySelector('#play:enabled')?.click()")
+    elif kind < 0.30:
+        page.evaluate(TURN)
+    elif kind < 0.36:
+        field = draw.choice(["omega_t_deg_s", "horizon_s"])
+        page.locator(f'input[data-for="{field}"]').evaluate(
+            "(range, value) => { range.value = value; range.dispatchEvent(new Event('input', { bubbles: true })); }",
+            draw.choice(["1", "2", "4"]) if field == "omega_t_deg_s" else draw.choice(["20", "44", "80"]),
+        )
+    elif kind < 0.44:
+        field = draw.choice(list(TEXTS))
+        if page.locator(f"#{field}").is_visible() and field not in ("question", "rest"):
+            page.locator(f"#{field}").press_sequentially(
+                draw.choice(["1", "-", "e", ".", "Backspace"]), delay=5
+            )
+    else:
+        names = draw.sample(list(TEXTS), draw.choice([1, 1, 1, 2, 3]))
+        return edit(page, **{name: draw.choice(TEXTS[name]) for name in names})
+    return seen(page)
+
+
+def run_sequence(
+    page: Page, served: Served, truth: Truth, draw: random.Random, tally: Counter[str]
+) -> list[str]:
+    """A sequence of edits; returns what was ever shown and was not so, or what was not shown at the end and is so."""
+    looks: list[Seen] = [
+        edit(page, **(FIRST | {name: "0" for name in TEXTS if "half" in name or "dist" in name}))
+    ]
+    settings: dict[str, Any] = {
+        "on": True,
+        "seed": draw.randrange(2**31),
+        "delay": draw.choice([0, 100, 600, 1500]),
+        "failing": draw.choice([0, 0, 0.1, 0.4]),
+        "deaf": draw.choice([0, 0.5, 1]),
+    }
+    page.evaluate("(settings) => Object.assign(window.faults, settings)", settings)
+    restart = None
+    for _ in range(draw.randint(4, 14)):
+        if restart is None and draw.random() < 0.02:
+            served.kill()
+            restart = threading.Timer(draw.uniform(0.1, 2.0), served.start)
+            restart.start()
+            tally["restarts"] += 1
+        looks.append(some_edit(page, draw))
+        for _ in range(draw.choice([0, 1, 1, 2])):
+            page.wait_for_timeout(draw.choice([1, 30, 120, 250, 500]))
+            looks.append(seen(page))
+    if restart is not None:
+        restart.join()
+    page.evaluate("Object.assign(window.faults, { on: false })")
+    settled(page)
+    page.evaluate("document.querySelector('#start').requestSubmit()")
+    last = settled(page)
+    wrong = [fault for look in [*looks, last] for fault in faults_in(look, truth)]
+    tally["looks"] += len(looks) + 1
+    tally["verdicts"] += sum(look["word"] is not None for look in [*looks, last])
+    wanted = truth.verdict(last["fields"])
+    if (wanted is None) != (last["word"] is None):
+        wrong.append(
+            f"at rest: verdict {last['word']}, true: {wanted and wanted['verdict']}; fields {last['fields']}"
+        )
+    return wrong
+
+
+@pytest.mark.timeout(3600 * 12)
+def test_the_verdict_shown_is_true_of_the_inputs_shown_or_none_is_shown(
+    browser: Browser, served: Served
+) -> None:
+    context = browser.new_context(viewport={"width": 1280, "height": 900})
+    context.add_init_script(path=FAULTS)
+    visit, truth, tally = Visit(context, served.url), Truth(served.url), Counter[str]()
+    visit.allowed += ["422", "503", "ERR_", "Failed to load"]
+    page = visit.go("/dashboard?x_m=-60&y_m=80")
+    page.locator("#controls details").evaluate_all("(all) => all.forEach((one) => { one.open = true; })")
+    for k in range(SEQUENCES):
+        wrong = run_sequence(page, served, truth, random.Random(f"{SEED}/{k}"), tally)
+        assert wrong == [], f"sequence {k} of seed {SEED}"
+    print(f"{SEQUENCES} sequences of seed {SEED}: {dict(tally)}")
+    assert tally["verdicts"] > SEQUENCES, "verdicts are shown"
+    context.close()
+    assert visit.faults() == []

@@ -1,0 +1,40 @@
+"""Forms made from schemas: what each process's form holds at first is what the process takes."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, Route, expect
+
+from safestart.processes.registry import PROCESS_IDS, process
+from tests.acceptance.running import serving
+from tests.browser.conftest import Visit
+
+
+@pytest.fixture(scope="module")
+def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    folder: Path = tmp_path_factory.mktemp("forms")
+    with serving(f"sqlite:///{folder / 'forms.sqlite3'}") as found:
+        yield found
+
+
+@pytest.mark.parametrize("name", PROCESS_IDS)
+def test_a_form_holds_inputs_that_its_process_takes(browser: Browser, url: str, name: str) -> None:
+    context = browser.new_context(viewport={"width": 1280, "height": 900})
+    visit, sent = Visit(context, url), list[str]()
+    visit.allowed.append("ERR_FAILED")
+
+    def keep(route: Route) -> None:
+        sent.append(route.request.post_data or "")
+        route.abort()
+
+    page = visit.go(f"/dashboard/submit?process={name}")
+    page.route("**/execution", keep)
+    page.click("#form button[type=submit]")
+    expect(page.locator("#state .problem")).to_contain_text("does not answer")
+    process(name).parse(json.loads(sent[0])["inputs"])
+    context.close()
+    assert visit.faults() == []

@@ -1,0 +1,1 @@
+"""An example process, as docs/extending.md describes one: how close a chaser drifts without thrust."""

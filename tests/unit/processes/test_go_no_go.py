@@ -1,0 +1,72 @@
+"""Go-no-go as a process: its two documents, what each method says of one start and of many, what it refuses."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from safestart.errors import InvalidInput
+from safestart.processes.go_no_go.method_registry import METHODS, decide_by
+from safestart.processes.go_no_go.methods import closed_form
+from safestart.processes.go_no_go.one_start import ONE_START, GoNoGoAnswer
+from safestart.processes.go_no_go.run import answer
+from safestart.processes.go_no_go.spec import GoNoGoInputs, GoNoGoOutputs
+from safestart.runtime.progress import Context
+
+POINT: dict[str, Any] = {"omega_t_deg_s": 2, "a_max_m_s2": 0.05}
+PLANE = [{"x_m": x, "y_m": y} for x, y in ((9.364, 81.044), (0, 40), (200, 20), (5.1, 33.3))]
+SPACE = [state | {"z_m": z} for state, z in zip(PLANE, (0, 7.7, -3, 60), strict=True)]
+NOT_TAKEN = sorted(GoNoGoInputs.model_fields.keys() - closed_form._TAKEN)
+
+
+def asked(**inputs: Any) -> dict[str, Any]:
+    return answer(GoNoGoInputs.model_validate(POINT | inputs), Context()).document()
+
+
+@pytest.mark.parametrize("more", [{}, {"method": "exact", "proofs": True}])
+def test_the_documents_are_their_models_field_by_field(more: dict[str, Any]) -> None:
+    found = answer(GoNoGoInputs.model_validate(POINT | {"states": PLANE[:1]} | more), Context())
+    assert list(found.document()) == list(GoNoGoOutputs.model_fields)
+    flat = found.document_of_one()
+    assert list(flat) == [name for name in GoNoGoAnswer.model_fields if name != "proof_url"]
+    GoNoGoAnswer.model_validate(flat)
+    assert flat["face_margins_m"] == dict(
+        zip(found.document()["faces"], found.document()["face_margins_m"][0], strict=True)
+    )
+
+
+@pytest.mark.parametrize("states", [PLANE, SPACE], ids=["plane", "space"])
+@pytest.mark.parametrize("rest", ["lvlh", "body"])
+@pytest.mark.parametrize("method", METHODS)
+def test_a_start_alone_as_among_others(method: str, rest: str, states: list[dict[str, Any]]) -> None:
+    """Margins and proofs to the last bit, sentences to the letter."""
+    more = {"method": method, "rest": rest, "proofs": METHODS[method].proves}
+    together = asked(states=states, **more)
+    for k, state in enumerate(states):
+        alone = asked(states=[state], **more)
+        for name, column in alone.items():
+            if isinstance(column, list) and name != "faces":
+                assert column == together[name][k : k + 1], name
+            else:
+                assert column == together[name], name
+
+
+def test_the_methods_can_be_found() -> None:
+    for name in METHODS:
+        assert callable(decide_by(name))
+        assert f"{name}: {METHODS[name].text}." in ONE_START.parameters["method"].text
+
+
+@pytest.mark.parametrize("name", NOT_TAKEN)
+def test_the_closed_form_refuses_what_it_does_not_know(name: str) -> None:
+    more = {name: "synchronize" if name == "question" else 0.001}
+    with pytest.raises(InvalidInput, match=f"where {name} is given") as refused:
+        asked(states=PLANE, **more)
+    assert refused.value.field == "method"
+
+
+def test_defaults_that_are_given_ask_for_nothing() -> None:
+    given = {name: GoNoGoInputs.model_fields[name].default for name in NOT_TAKEN}
+    assert len(given) >= 11
+    assert asked(states=PLANE, **given) == asked(states=PLANE)

@@ -1,0 +1,176 @@
+"""Compiled kernels on disk: every dependency is part of the key, and no broken or missing cache stops the work."""
+
+import ast
+import importlib
+import os
+import pkgutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+
+import safestart
+from safestart.runtime import kernels
+from safestart.runtime.kernels import KernelCache, compiled
+
+NOT_IMPORTED = ("migrations", "__main__", "orphan_guard", ".cli")
+
+# A kernel that takes a constant and a function from a module, and a record from another, as ours do.
+TOY = {
+    "safestart_toy/__init__.py": "",
+    "safestart_toy/numbers.py": "FACTOR = 2.0\n",
+    "safestart_toy/callee.py": (
+        "from safestart.runtime.kernels import compiled\n@compiled()\ndef twice(x):\n    return 2.0 * x\n"
+    ),
+    "safestart_toy/record.py": (
+        "from typing import NamedTuple\nclass Pair(NamedTuple):\n    first: float\n    second: float\n"
+    ),
+    "safestart_toy/kernel.py": (
+        "from safestart.runtime.kernels import compiled\n"
+        "from safestart_toy.callee import twice\nfrom safestart_toy.numbers import FACTOR\n"
+        "@compiled()\ndef run(pair):\n    return FACTOR * twice(pair.first)\n"
+    ),
+    "run.py": (
+        "import logging\nlogging.basicConfig()\n"
+        "from safestart_toy.kernel import run\nfrom safestart_toy.record import Pair\n"
+        "print(run(Pair(first=3.0, second=5.0)), sum(run.stats.cache_hits.values()))\n"
+    ),
+}
+SWAPPED = "second: float\n    first"
+
+
+def modules() -> Iterator[ModuleType]:
+    for entry in pkgutil.walk_packages(safestart.__path__, "safestart."):
+        if not any(part in entry.name for part in NOT_IMPORTED):
+            yield importlib.import_module(entry.name)
+
+
+def lines_of(kernel: Any) -> set[str]:
+    return set(kernels._frozen(kernel.py_func, set()))
+
+
+def toy(folder: Path, **changed: str) -> tuple[float, int]:
+    """The toy's result, and how many kernels came from the cache, in a new process."""
+    for name, text in (TOY | {f"safestart_toy/{key}.py": value for key, value in changed.items()}).items():
+        path = folder / name
+        path.parent.mkdir(exist_ok=True)
+        if not path.exists() or path.read_text() != text:
+            path.write_text(text)
+    environment = os.environ | {"PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
+    done = subprocess.run(
+        [sys.executable, str(folder / "run.py")], env=environment, capture_output=True, text=True, check=True
+    )
+    value, hits = done.stdout.split()
+    toy.log = done.stderr  # type: ignore[attr-defined]
+    return float(value), int(hits)
+
+
+@pytest.mark.parametrize(
+    ("changed", "value"),
+    [
+        ({"numbers": "FACTOR = 10.0\n"}, 60.0),
+        ({"callee": TOY["safestart_toy/callee.py"].replace("2.0 * x", "7.0 * x")}, 42.0),
+        (
+            {
+                "record": TOY["safestart_toy/record.py"].replace(
+                    "first: float\n    second", "second: float\n    first"
+                )
+            },
+            12.0,
+        ),
+    ],
+)
+def test_a_changed_dependency_reaches_the_cache(
+    tmp_path: Path, changed: dict[str, str], value: float
+) -> None:
+    """A constant, a callee, the order of a record's fields: each in a file of its own."""
+    assert toy(tmp_path) == (12.0, 0)
+    assert toy(tmp_path) == (12.0, 1)
+    assert toy(tmp_path, **changed) == (value, 0)
+    assert toy(tmp_path) == (12.0, 1)
+
+
+@pytest.mark.parametrize(
+    ("suffix", "damage"),
+    [(".nbi", "empty"), (".nbi", "truncated"), (".nbc", "truncated"), (".nbc", "altered")],
+)
+def test_a_damaged_cache_is_compiled_again(tmp_path: Path, suffix: str, damage: str) -> None:
+    assert toy(tmp_path) == (12.0, 0)
+    files = list(tmp_path.rglob(f"kernel.run*{suffix}"))
+    assert files
+    for file in files:
+        content = file.read_bytes()
+        middle = len(content) // 2
+        altered = content[:middle] + bytes([content[middle] ^ 255]) + content[middle + 1 :]
+        file.write_bytes({"empty": b"", "truncated": content[:middle], "altered": altered}[damage])
+    assert toy(tmp_path) == (12.0, 0)
+    assert "cannot be read and is compiled again" in toy.log  # type: ignore[attr-defined]
+    assert toy(tmp_path) == (12.0, 1)
+
+
+def test_no_place_for_a_cache_is_one_line(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    def nowhere(self: KernelCache, function: Any) -> None:
+        raise RuntimeError("cannot cache function: no locator available")
+
+    monkeypatch.setattr(KernelCache, "__init__", nowhere)
+    for _ in range(2):
+        assert compiled()(lambda x: x + 1.0)(1.0) == 2.0
+    assert [record.message for record in caplog.records].count(
+        "no place to keep compiled kernels: RuntimeError: cannot cache function: no locator available"
+    ) == 1
+
+
+def test_a_full_disk_is_one_line(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
+    def full(*_: Any) -> None:
+        raise OSError(28, "No space left on device")
+
+    kernel = compiled()(lambda x: x + 2.0)
+    monkeypatch.setattr(kernel._cache._cache_file, "save", full)
+    assert (kernel(1.0), kernel(1)) == (3.0, 3)
+    assert len([record for record in caplog.records if "No space left" in record.message]) == 1
+
+
+def test_every_kernel_is_keyed_by_what_its_text_names() -> None:
+    """Read from the source: whatever one of our modules gives to a kernel stands among what its key covers."""
+    found = 0
+    for module in modules():
+        tree = ast.parse(Path(str(module.__file__)).read_text())
+        given = {
+            alias.asname or alias.name: (node.module, alias.name)
+            for node in tree.body
+            if isinstance(node, ast.ImportFrom) and str(node.module).startswith("safestart")
+            for alias in node.names
+        }
+        for node in tree.body:
+            if not isinstance(node, ast.FunctionDef) or not any(
+                "compiled" in ast.unparse(d) for d in node.decorator_list
+            ):
+                continue
+            found += 1
+            kernel = getattr(module, node.name)
+            assert isinstance(kernel._cache, KernelCache), f"{module.__name__}.{node.name}"
+            covered = lines_of(kernel)
+            body = [name.id for part in node.body for name in ast.walk(part) if isinstance(name, ast.Name)]
+            for name in set(body) & set(given):
+                source, original = given[name]
+                value = getattr(importlib.import_module(source), original)
+                wanted = f"value of {name}: {value!r}"
+                if isinstance(value, ModuleType):
+                    wanted = f"text of {value.__name__}: "
+                elif hasattr(value, "py_func") or isinstance(value, type):
+                    wanted = f"text of {value.__module__}: "
+                assert any(line.startswith(wanted) for line in covered), (
+                    f"{module.__name__}.{node.name}: {name}"
+                )
+    assert found > 30
+
+
+def test_no_kernel_goes_round_the_keyed_cache() -> None:
+    root = Path(str(safestart.__file__)).parent
+    assert [str(file) for file in root.rglob("*.py") if "cache=True" in file.read_text()] == []
