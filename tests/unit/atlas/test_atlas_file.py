@@ -17,6 +17,7 @@ from safestart.errors import InvalidInput
 from safestart.exact.question import Question
 from safestart.model.scenario import Scenario
 from safestart.processes.go_no_go.atlases import CUTS_M, atlas_for
+from safestart.runtime.progress import Context
 
 QUESTION = Question(Scenario.of(2.0, 0.05))
 
@@ -207,13 +208,17 @@ class _Shelf:
         raise AssertionError(key, data)
 
 
+def _context(kept: Atlas) -> Context:
+    return Context(shelf=_Shelf(pack(kept)))
+
+
 def test_an_atlas_of_another_question_is_not_taken_from_the_shelf() -> None:
     """A sound atlas under the key of a harder question made its starts GO."""
     easy = build(Question(Scenario.of(0.5, 0.1)), CUTS_M[1], 0.05)
     hard = Question(Scenario.of(3.1, 0.02))
-    assert atlas_for(hard, 100.0, _Shelf(pack(easy)), make=False) is None
-    assert atlas_for(easy.question, 40.0, _Shelf(pack(easy)), make=False) is None, "nor one with another cut"
-    assert atlas_for(easy.question, 100.0, _Shelf(pack(easy)), make=False) is not None
+    assert atlas_for(hard, 100.0, _context(easy), make=False) is None
+    assert atlas_for(easy.question, 40.0, _context(easy), make=False) is None, "nor one with another cut"
+    assert atlas_for(easy.question, 100.0, _context(easy), make=False) is not None
 
 
 def test_the_outer_area_is_that_of_the_half_planes() -> None:
