@@ -88,14 +88,13 @@ def _corners(claim: Printed) -> list[tuple[float, ...]]:
 
 
 def _members(claim: Printed, thrust: float, rng: Random) -> list[Member]:
-    """Ends and one value between of every parameter, with the corners of the start box (at most 16)."""
-
-    def values(low: float, high: float) -> list[float]:
-        return [low] if low == high else [low, high, rng.uniform(low, high)]
-
+    """All ends of the parameters and one member between them, with the corners of the start box (at most 16)."""
     corners = _corners(claim)
     kept = corners if len(corners) <= 16 else rng.sample(corners, 16)
-    params = itertools.product(values(*claim.rates), values(*claim.motions))
+    ends = [list(dict.fromkeys(pair)) for pair in (claim.rates, claim.motions)]
+    params = list(itertools.product(*ends))
+    if len(params) > 1:
+        params.append((rng.uniform(*claim.rates), rng.uniform(*claim.motions)))
     return [Member(w, n, thrust, start) for w, n in params for start in kept]
 
 

@@ -1,5 +1,9 @@
 """The competition's rows (paper 003 and its followers): verdicts at 300 min, and where they turn."""
 
+import math
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -36,6 +40,26 @@ def test_verdicts(case: str, half_width: float, dynamics: Dynamics) -> None:
         assert (np.abs(np.array(example["start"]) - question.centre) <= question.half).all()
     else:
         assert separation.verdict is Verdict.SAFE
+
+
+def test_the_page_gives_the_distances_that_are_proved() -> None:
+    """docs/theory/passive-safety.md, rounded down: SRA07 stood there with 0.414 m long after it had become 1.016."""
+    page = Path(__file__).parents[2] / "docs/theory/passive-safety.md"
+    rows = re.findall(r"^\| (S[^|]+?) \|[^|]*\|[^|]*\|[^|]*\|([^|]*)\|$", page.read_text(), re.MULTILINE)
+    stated = {}
+    for names, distance in rows:
+        first, *others = names.split(", ")
+        for name in (first, *(first[: len(first) - len(other)] + other for other in others)):
+            stated[name] = (distance.split() or [""])[0]
+    assert set(stated) == set(CASES)
+    for case, text in stated.items():
+        if not text:
+            assert CASES[case] is None
+            continue
+        digits = len(text.partition(".")[2])
+        bound = verify(Question(horizon=HORIZON, window=CASES[case], box=0.1)).findings["separation"].bound
+        assert bound is not None
+        assert math.floor(bound * 10**digits) == round(float(text) * 10**digits), case
 
 
 def test_speed_as_a_true_disc_is_violated_after_the_octagon_guard() -> None:

@@ -69,9 +69,9 @@ class ConfusionMatrix:
         return ratio(self.tp, self.tp + self.fn)
 
     @property
-    def accuracy(self) -> float:
-        """(tp + tn) / all; 0 for an empty domain."""
-        return ratio(self.tp + self.tn, self.tp + self.fp + self.fn + self.tn) or 0.0
+    def accuracy(self) -> float | None:
+        """(tp + tn) / all."""
+        return ratio(self.tp + self.tn, self.tp + self.fp + self.fn + self.tn)
 
     @property
     def f1(self) -> float | None:

@@ -103,7 +103,7 @@ class Confusion(WireModel):
     tn: int
     precision: float | None
     recall: float | None
-    accuracy: float
+    accuracy: float | None
     f1: float | None
     mcc: float | None
 

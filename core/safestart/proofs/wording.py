@@ -85,11 +85,12 @@ def lines_disturbed(stated: StatedDisturbed) -> tuple[str, ...]:
 
 
 def asked(document: Mapping[str, Any]) -> dict[str, Any]:
-    """Question and start of a document that was checked, less what a planar question does not rest on."""
+    """Question, start and bounds of a document that was checked, less what a planar question does not rest on."""
     question = document["question"]
     unused = ("c_z", "z0_m") if question["dimensions"] == 2 else ()
     corridor = {key: value for key, value in question["corridor"].items() if key not in unused}
-    return {"question": question | {"corridor": corridor}, "start": document["start"]}
+    bounds = {key: document[key] for key in ("disturbance", "feedback", "tube") if key in document}
+    return {"question": question | {"corridor": corridor}, "start": document["start"]} | bounds
 
 
 def _margin(stated: Stated) -> str:

@@ -32,3 +32,10 @@ def test_counts_only_the_domain() -> None:
     domain = np.array([[True, True, True, False]])
     assert ConfusionMatrix.of(A, B, domain) == ConfusionMatrix(1, 1, 1, 0)
     assert ConfusionMatrix.of(NONE, NONE, domain).document()["precision"] is None
+
+
+def test_nothing_to_count_is_undefined() -> None:
+    """An accuracy of 0 said that all was wrong where there was nothing."""
+    empty = ConfusionMatrix.of(A, B, NONE)
+    assert all(empty.document()[name] is None for name in ("precision", "recall", "accuracy", "f1", "mcc"))
+    assert ConfusionMatrix(0, 2, 1, 0).accuracy == 0.0
