@@ -19,6 +19,9 @@ from safestart.dynamics.motion import RelativeMotion, SteadyMotion
 from safestart.errors import invalid
 from safestart.model.scenario import Floats
 
+_KEPT = {2: np.array([0, 1, 3, 4]), 3: np.arange(6)}
+"""Components of the state (6,) in d dimensions."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Prediction:
@@ -161,16 +164,14 @@ def responses(motion: SteadyMotion, dt: float, steps: int, starts: Floats) -> tu
 
 def moved(motion: RelativeMotion, t0: float, t1: float, d: int) -> tuple[Floats, Floats]:
     """Phi (2 d, 2 d) and B (2 d, d) from t0 to t1, seconds."""
-    keep = np.r_[0:d, 3 : 3 + d]
-    return motion.transition(t0, t1)[np.ix_(keep, keep)], motion.held(t0, t1)[keep, :d]
+    kept = _KEPT[d]
+    return motion.transition(t0, t1)[kept[:, None], kept], motion.held(t0, t1)[kept, :d]
 
 
 def _interval(motion: RelativeMotion, t0: float, t1: float, d: int) -> tuple[Floats, Floats]:
     """:func:`moved`, unless the plane does not keep to itself."""
-    if d == 2 and (
-        motion.transition(t0, t1)[np.ix_([0, 1, 3, 4], [2, 5])].any()
-        or motion.held(t0, t1)[[0, 1, 3, 4], 2].any()
-    ):
+    plane = _KEPT[2]
+    if d == 2 and (motion.transition(t0, t1)[plane][:, [2, 5]].any() or motion.held(t0, t1)[plane, 2].any()):
         raise invalid("dimensions", "3, for a motion that couples the plane with z", d)
     return moved(motion, t0, t1, d)
 
