@@ -78,7 +78,7 @@ class ProcessSpec:
     def check(self, document: dict[str, Any]) -> None:
         """Raise ``UnfitResult`` unless ``document``, as the JSON that is kept, is what ``outputs`` describes.
 
-        Nothing is converted on the way: text is no number, 2.0 is no integer, NaN is nothing at all.
+        Nothing is converted on the way: text is not taken for a number, 2.0 not for an integer, NaN is refused.
         """
         try:
             self.outputs.model_validate_json(to_json(document, inf_nan_mode="constants"), strict=True)
