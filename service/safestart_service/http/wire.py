@@ -16,7 +16,7 @@ from typing import Any
 
 from safestart.errors import SafestartError
 from safestart.runtime.logs import about
-from safestart_service.access.gate import is_local
+from safestart_service.access.nearness import is_local
 from safestart_service.documents import problems
 from safestart_service.errors import HeadTooLarge, MalformedRequest, RequestTimeout, TooManyConnections
 from safestart_service.http.limits import SECURITY_HEADERS
@@ -188,7 +188,7 @@ class Protocol(Read):
 
 def holder(address: str) -> str | None:
     """Whose a connection is: an IPv4 address or an IPv6 network; None on this machine, where proxies speak for many."""
-    if is_local(address):
+    if not address or is_local(address):
         return None
     found = ipaddress.ip_address(address.partition("%")[0])
     if (
