@@ -88,6 +88,11 @@ class Access:
             return _forbidden(key, needed)
         return self._too_many(key) if needed is Role.SUBMIT else None
 
+    def still_passes(self, request: Request) -> bool:
+        """False once whoever was let in would not be any more: the key has ended, or one is asked for now."""
+        key: ApiKey | None = request.scope.get("safestart.key")
+        return not self._keyring.required if key is None else self._keyring.in_force(key.id)
+
     def require_submit(self, request: Request) -> None:
         """Raise ``Forbidden`` or ``RateLimited`` unless the caller may queue a job."""
         key: ApiKey | None = request.scope.get("safestart.key")
@@ -123,10 +128,14 @@ class Access:
             return RateLimited(
                 f"too many requests without a valid key; required at most {MOST_FAILURES_PER_S:g} per second"
             )
-        # One sentence for every reason: an answer does not say which keys exist.
-        return Unauthorized(
-            f"no key, or one that is unknown, expired or revoked; required {REMEDY}", required=REMEDY
-        )
+        return ended_key()
+
+
+def ended_key() -> Unauthorized:
+    """One sentence for every reason: an answer does not say which keys exist."""
+    return Unauthorized(
+        f"no key, or one that is unknown, expired or revoked; required {REMEDY}", required=REMEDY
+    )
 
 
 def presented_key(authorization: bytes | None, api_key: bytes | None) -> bytes:

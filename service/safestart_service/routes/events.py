@@ -42,5 +42,5 @@ async def events(
     if after and job.status.ended and not await run_in_threadpool(found.jobs.events, jobID, after, 1):
         return Response(status_code=204)
     headers = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
-    events_of = stream(found, jobID, after)
+    events_of = stream(request, jobID, after)
     return Followed(found.following, request, events_of, media_type="text/event-stream", headers=headers)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from time import monotonic
 from typing import Annotated, Literal
 from urllib.parse import urlencode
@@ -16,7 +15,7 @@ from safestart.errors import invalid
 from safestart.processes.registry import PROCESS_IDS
 from safestart.store.jobs.filters import JobFilter
 from safestart.store.records import JobStatus
-from safestart_service.access.gate import caller, require_own
+from safestart_service.access.gate import caller, ended_key, require_own
 from safestart_service.documents.jobs_view import job_detail, known_job, partial_document, status_infos
 from safestart_service.documents.openapi import TAG, answer, refusals
 from safestart_service.documents.schemas import JobDetail, JobList, Partial
@@ -120,7 +119,8 @@ async def job(
         return seen
     with found.following.place(request):
         while not final and (left := deadline - monotonic()) > 0 and not await request.is_disconnected():
-            await asyncio.sleep(min(found.following.pause_s, left))
+            if not await found.following.pause(request, left):
+                raise ended_key()
             final, seen = await run_in_threadpool(look)
     return seen
 
