@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import sys
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from safestart.cli.console import Json, out, print_json
+from safestart.model.unique_names import loads
 
 _MOST_BYTES = 16 * 1024 * 1024
 
@@ -64,7 +64,7 @@ def _load(path: Path) -> Any:
                 data = file.read(_MOST_BYTES + 1)
         if len(data) > _MOST_BYTES:
             raise ValueError(f"required at most {_MOST_BYTES} bytes")
-        return json.loads(data)
+        return loads(data)
     except (OSError, ValueError, RecursionError) as error:
         sys.stderr.write(f"safestart: {path}: unreadable: {error}\n")
         raise typer.Exit(2) from None

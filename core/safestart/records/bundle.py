@@ -17,6 +17,7 @@ from hashlib import sha256
 from typing import Any
 
 from safestart.errors import InvalidInput
+from safestart.model.unique_names import NameTwice, loads
 from safestart.records.artifact import Artifact
 from safestart.records.bundle_page import page
 from safestart.records.bundle_parts import event_facts, job_facts, require_names, require_result
@@ -164,7 +165,9 @@ def _contradictions(manifest: Any, job: Any, result: Any, artifacts: tuple[Artif
 
 def _json(files: Mapping[str, bytes], name: str) -> Any:
     try:
-        return json.loads(files[name])
+        return loads(files[name])
+    except NameTwice as error:
+        raise _refused(f"{name} holds {error}") from None
     except (ValueError, RecursionError):
         raise _refused(f"{name} is no JSON") from None
 

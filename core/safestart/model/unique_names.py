@@ -1,0 +1,40 @@
+"""JSON in which every name of an object comes once: of two values for one name, parsers silently take the last."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+
+class NameTwice(ValueError):
+    """An object in which ``name`` comes twice."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__(f"an object with the name {json.dumps(name[:100])} twice")
+        self.name = name
+
+
+def loads(text: str | bytes) -> Any:
+    """The document; raises ``NameTwice``, or ``ValueError`` and ``RecursionError`` as :func:`json.loads`."""
+    return json.loads(text, object_pairs_hook=_unique)
+
+
+def require_unique_names(text: str | bytes) -> None:
+    """Raise ``NameTwice`` for a document that is valid otherwise; builds nothing of it."""
+    json.loads(text, object_pairs_hook=_check, parse_float=len, parse_int=len)
+
+
+def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(pairs)
+    if len(found) != len(pairs):
+        _check(pairs)
+    return found
+
+
+def _check(pairs: list[tuple[str, Any]]) -> None:
+    if len({name for name, _ in pairs}) != len(pairs):
+        seen: set[str] = set()
+        for name, _ in pairs:
+            if name in seen:
+                raise NameTwice(name)
+            seen.add(name)
