@@ -21,9 +21,10 @@ from safestart_service.documents.openapi import TAG, answer, refusals
 from safestart_service.documents.schemas import JobDetail, JobList, Partial
 from safestart_service.http.answers import Json, base_url, link, tagged, this_url
 from safestart_service.http.intervals import interval, without_nul
+from safestart_service.http.once import OnceRoute
 from safestart_service.state import services
 
-router = APIRouter(tags=["jobs"])
+router = APIRouter(tags=["jobs"], route_class=OnceRoute)
 MAX_WAIT_S = 30.0
 JobId = Annotated[str, Path(description="Id of a job.")]
 
