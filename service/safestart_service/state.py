@@ -45,7 +45,7 @@ class Services:
         self.access = Access(settings, self.keyring)
         self.context = Context(shelf=Cache(self.database))
         self.computing = Callers("answers are being computed", MOST_COMPUTED)
-        self.following = Following(settings.max_followers)
+        self.following = Following(settings.max_followers, self.access)
         self.metrics = Metrics(self.jobs.vitals)
 
 

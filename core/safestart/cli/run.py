@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from pathlib import Path
 from typing import Annotated, Any
@@ -14,6 +13,7 @@ from safestart.cli.files import readable, writable, write_json
 from safestart.errors import InvalidInput, invalid
 from safestart.processes.execute import Execution, execute
 from safestart.processes.registry import PROCESS_IDS, process
+from safestart.runtime.plain_json import NameTwice, loads
 
 
 def register(app: typer.Typer) -> None:
@@ -57,8 +57,10 @@ def _read(source: str) -> Any:
     except UnicodeDecodeError:
         raise invalid("--input", "UTF-8 text", source) from None
     try:
-        return json.loads(text)
-    except (json.JSONDecodeError, RecursionError) as error:
+        return loads(text)
+    except NameTwice as error:
+        raise invalid("--input", "JSON with every name once in an object", str(error)) from None
+    except (ValueError, RecursionError) as error:
         raise InvalidInput(f"--input: required JSON, received text that is not ({error})") from None
 
 

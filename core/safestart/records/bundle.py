@@ -21,7 +21,7 @@ from safestart.records.artifact import Artifact
 from safestart.records.bundle_page import page
 from safestart.records.bundle_parts import event_facts, job_facts, require_names, require_result
 from safestart.records.comparable import canonical, digest
-from safestart.runtime.plain_json import loads
+from safestart.runtime.plain_json import NameTwice, loads
 
 FORMAT, VERSION = "safestart-bundle", 1
 MOST_BYTES = 2 * 1024**3
@@ -202,8 +202,10 @@ def _unlike(asked: Any, used: Any, path: str = "inputs") -> list[str]:
 def _json(files: Mapping[str, bytes], name: str) -> Any:
     try:
         return loads(files[name])
-    except (ValueError, RecursionError) as error:
-        raise _refused(f"{name} is no JSON with each field once ({error})") from None
+    except NameTwice as error:
+        raise _refused(f"{name} holds {error}") from None
+    except (ValueError, RecursionError):
+        raise _refused(f"{name} is no JSON") from None
 
 
 def _text(document: Any) -> bytes:

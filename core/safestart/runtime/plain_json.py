@@ -1,4 +1,8 @@
-"""JSON that says one thing to every reader: each field named once, every number finite."""
+"""JSON that says one thing to every reader: each name of an object once, every number finite.
+
+Of two values for one name, one reader takes the first and another the last. NaN and infinity are no JSON, and 1e999 would
+become one of them.
+"""
 
 from __future__ import annotations
 
@@ -7,22 +11,22 @@ import math
 from typing import Any
 
 
-def loads(data: bytes | str) -> Any:
-    """The document in ``data``; raises ``ValueError`` for anything else, ``RecursionError`` when it is too deep.
+class NameTwice(ValueError):
+    """An object in which ``name`` comes twice."""
 
-    Of a field that is given twice one reader takes the first value and another the last; NaN and infinity are no JSON,
-    and 1e999 would become one of them.
-    """
-    return json.loads(data, object_pairs_hook=_each_once, parse_constant=_finite, parse_float=_finite)
+    def __init__(self, name: str) -> None:
+        super().__init__(f"an object with the name {json.dumps(name[:100])} twice")
+        self.name = name
 
 
-def _each_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    out = dict(pairs)
-    if len(out) != len(pairs):
-        names = [name for name, _ in pairs]
-        twice = sorted({name for name in names if names.count(name) > 1})
-        raise ValueError(f"required each field once, received twice: {ascii(twice)[:80]}")
-    return out
+def loads(text: str | bytes) -> Any:
+    """The document; raises ``NameTwice``, or ``ValueError`` and ``RecursionError`` as :func:`json.loads`."""
+    return json.loads(text, object_pairs_hook=_unique, parse_constant=_finite, parse_float=_finite)
+
+
+def require_unique_names(text: str | bytes) -> None:
+    """Raise ``NameTwice`` for a document that is valid otherwise; builds nothing of it."""
+    json.loads(text, object_pairs_hook=_check, parse_float=len, parse_int=len)
 
 
 def _finite(text: str) -> float:
@@ -30,3 +34,19 @@ def _finite(text: str) -> float:
     if not math.isfinite(value):
         raise ValueError(f"required finite numbers, received {text[:40]}")
     return value
+
+
+def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(pairs)
+    if len(found) != len(pairs):
+        _check(pairs)
+    return found
+
+
+def _check(pairs: list[tuple[str, Any]]) -> None:
+    if len({name for name, _ in pairs}) != len(pairs):
+        seen: set[str] = set()
+        for name, _ in pairs:
+            if name in seen:
+                raise NameTwice(name)
+            seen.add(name)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
 from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
@@ -17,15 +18,19 @@ from pydantic_settings import (
     TomlConfigSettingsSource,
 )
 
-from safestart.errors import invalid
+from safestart.errors import InvalidInput, invalid
 from safestart.model.validation import refusal
 from safestart.runtime.secret_file import with_password
+
+_PREFIX = "SAFESTART_"
+_OTHERS = ("SAFESTART_TEST_POSTGRESQL", "SAFESTART_CHROMIUM", "SAFESTART_SCREENSHOTS")
+"""Variables of the test suite, whose processes have its environment."""
 
 
 class Settings(BaseSettings):
     """All settings, with their defaults; each is read from ``SAFESTART_<NAME>`` or the file."""
 
-    model_config = SettingsConfigDict(env_prefix="SAFESTART_", extra="forbid", frozen=True)
+    model_config = SettingsConfigDict(env_prefix=_PREFIX, extra="forbid", frozen=True)
 
     database_url: str = Field("", description="SQLAlchemy URL; empty: one SQLite file in the data directory.")
     database_password_file: str = Field(
@@ -123,10 +128,23 @@ def _file(kind: type[BaseSettings]) -> TomlConfigSettingsSource:
 @cache
 def settings() -> Settings:
     """The process-wide settings; raises ``InvalidInput`` that names the wrong setting."""
+    _require_known(os.environ)
     try:
         return Settings()  # type: ignore[call-arg, unused-ignore]
     except ValidationError as error:
         raise refusal([_fit(report) for report in error.errors(include_url=False)], "settings.") from None
+
+
+def _require_known(variables: Iterable[str]) -> None:
+    """Raise ``InvalidInput`` for a variable of ours that names no setting: misspelt, it would count for nothing."""
+    known = [_PREFIX + name.upper() for name in (*Settings.model_fields, "config")]
+    for name in sorted(variables):
+        if name.upper().startswith(_PREFIX) and name.upper() not in known and name not in _OTHERS:
+            near = get_close_matches(name.upper(), known, n=1)
+            like = f", such as {near[0]}" if near else ""
+            required = f"the name of a setting{like} (docs/settings.md)"
+            # What it holds may be a password.
+            raise InvalidInput(f"{name}: required {required}", field=name, required=required, received=name)
 
 
 def _fit(report: Any) -> dict[str, Any]:

@@ -18,6 +18,7 @@ from safestart.errors import SafestartError, Unavailable
 from safestart.runtime.access import LOCAL, Caller, Role
 from safestart.runtime.settings import Settings
 from safestart_service.access.keyring import Keyring
+from safestart_service.access.nearness import from_this_machine
 from safestart_service.access.rates import Buckets
 from safestart_service.errors import Forbidden, MalformedRequest, Misdirected, RateLimited, Unauthorized
 
@@ -33,8 +34,9 @@ INSTANT = frozenset({"/go-no-go", "/go-no-go/proof", "/certificates"})
 """Computed from the request alone: a POST there reads, and changes nothing."""
 MOST_FAILURES_PER_S = 5.0
 _LONGEST_KEY = 512
+_LONGEST_HOST = 260
 _READING = ("GET", "HEAD", "OPTIONS")
-_HOST_PORT = re.compile(r"(\[[^\]]*\]|[^:]*)(:\d{0,5})?")
+_HOST_PORT = re.compile(r"(\[[0-9a-f:.]+(?:%[^\]]*)?\]|[a-z0-9._~!$&'()*+;=%-]+)(?::(\d{0,5}))?")
 REMEDY = "a key made with `safestart keys create`, as Authorization: Bearer KEY or X-API-Key: KEY"
 
 
@@ -58,7 +60,7 @@ class Access:
     def __init__(self, settings: Settings, keyring: Keyring) -> None:
         self._keyring = keyring
         names = {name.strip().lower() for name in settings.allowed_hosts.split(",")}
-        self._host_allowed = lru_cache(1024)(lambda host: _allowed(host, frozenset(names - {""})))
+        self._host_refusal = lru_cache(1024)(lambda host: _host_refusal(host, frozenset(names - {""})))
         self._requests = Buckets(settings.rate_per_s)
         self._submissions = Buckets(settings.submit_rate_per_s)
         self._failures = Buckets(MOST_FAILURES_PER_S)
@@ -66,8 +68,9 @@ class Access:
     def refusal(self, scope: Scope, presented: Presented) -> SafestartError | None:
         """Why this request may not pass; None when it may. Leaves the key in the scope for :func:`caller`."""
         host, authorization, api_key = presented
-        if host and not self._host_allowed(host):
-            return _misdirected(host)
+        refused = _without_host(scope) if host is None else self._host_refusal(host[: 1 + _LONGEST_HOST])
+        if refused is not None:
+            return refused
         needed = needed_role(scope["method"], get_route_path(scope))
         if needed is None:
             return None
@@ -84,6 +87,11 @@ class Access:
         if not key.role.allows(needed):
             return _forbidden(key, needed)
         return self._too_many(key) if needed is Role.SUBMIT else None
+
+    def still_passes(self, request: Request) -> bool:
+        """False once whoever was let in would not be any more: the key has ended, or one is asked for now."""
+        key: ApiKey | None = request.scope.get("safestart.key")
+        return not self._keyring.required if key is None else self._keyring.in_force(key.id)
 
     def require_submit(self, request: Request) -> None:
         """Raise ``Forbidden`` or ``RateLimited`` unless the caller may queue a job."""
@@ -105,8 +113,7 @@ class Access:
         """No key was ever made: open to whoever comes over loopback, except for administration."""
         if not self._keyring.known and get_route_path(scope) not in INSTANT | {"/metrics"}:
             return Unavailable("the API keys cannot be read from the database", required="the database")
-        # Both ends: a proxy on this machine may speak for anyone.
-        if not all(is_local(end[0]) for end in (scope.get("server"), scope.get("client")) if end):
+        if not from_this_machine(scope):
             return Unauthorized(
                 f"beyond this machine only a key is answered, and there is none; required {REMEDY}",
                 required=REMEDY,
@@ -121,10 +128,14 @@ class Access:
             return RateLimited(
                 f"too many requests without a valid key; required at most {MOST_FAILURES_PER_S:g} per second"
             )
-        # One sentence for every reason: an answer does not say which keys exist.
-        return Unauthorized(
-            f"no key, or one that is unknown, expired or revoked; required {REMEDY}", required=REMEDY
-        )
+        return ended_key()
+
+
+def ended_key() -> Unauthorized:
+    """One sentence for every reason: an answer does not say which keys exist."""
+    return Unauthorized(
+        f"no key, or one that is unknown, expired or revoked; required {REMEDY}", required=REMEDY
+    )
 
 
 def presented_key(authorization: bytes | None, api_key: bytes | None) -> bytes:
@@ -158,39 +169,44 @@ def require_own(by: Caller, submitter: str | None) -> None:
     )
 
 
-@lru_cache(64)
-def is_local(address: str) -> bool:
-    """True for a loopback address, and for what is no address (a Unix socket, a client in this process)."""
-    try:
-        found = ipaddress.ip_address(address.partition("%")[0])
-    except ValueError:
-        return True
-    mapped = found.ipv4_mapped if isinstance(found, ipaddress.IPv6Address) else None
-    return (mapped or found).is_loopback
-
-
-def _allowed(host: bytes, names: frozenset[str]) -> bool:
+def _host_refusal(host: bytes, names: frozenset[str]) -> SafestartError | None:
     """Addresses and localhost cannot be rebound by a foreign name server; names must be known."""
+    shown = host[:100].decode("latin-1")
     match = _HOST_PORT.fullmatch(host.decode("latin-1").lower())
-    if match is None:
-        return False
+    if match is None or len(host) > _LONGEST_HOST or int(match[2] or 0) > 65535:
+        return _malformed_host("a host and a port, once", shown)
     name = match[1]
     if name in names or name == "localhost" or name.endswith(".localhost"):
-        return True
+        return None
+    bracketed = name.startswith("[")
     try:
-        ipaddress.ip_address(name.removeprefix("[").removesuffix("]"))
+        address = ipaddress.ip_address(name[1:-1] if bracketed else name)
     except ValueError:
-        return False
-    return True
+        if bracketed:
+            return _malformed_host("an IPv6 address in brackets", shown)
+        required = "localhost, an IP address, or a name in the setting allowed_hosts"
+        return Misdirected(
+            f"Host: required {required}, received {shown!r}", field="Host", required=required, received=shown
+        )
+    if bracketed and address.version == 4:
+        return _malformed_host("an IPv6 address in brackets", shown)
+    return None
 
 
-def _misdirected(host: bytes) -> SafestartError:
-    if b"," in host:
-        return MalformedRequest("Host: required once (RFC 9112)", field="Host", required="once")
-    required = "localhost, an IP address, or a name in the setting allowed_hosts"
-    shown = host[:100].decode("latin-1")
-    return Misdirected(
-        f"Host: required {required}, received {shown!r}", field="Host", required=required, received=shown
+def _without_host(scope: Scope) -> SafestartError | None:
+    """HTTP/1.0 knows no Host; from HTTP/1.1 on, every request has one."""
+    if scope.get("http_version") == "1.0":
+        return None
+    return _malformed_host("one, as the request is no HTTP/1.0", None)
+
+
+def _malformed_host(required: str, received: str | None) -> MalformedRequest:
+    shown = "none" if received is None else repr(received)
+    return MalformedRequest(
+        f"Host: required {required} (RFC 9112), received {shown}",
+        field="Host",
+        required=required,
+        received=received,
     )
 
 

@@ -1,4 +1,4 @@
-"""The keys in memory, so that checking one asks no database; read again every second.
+"""The keys in memory, so that checking one asks no database; read again twice a second.
 
 A key made, revoked or expired elsewhere counts here at most that much later; one revoked through this service, at once.
 While the database is away, what was read last goes on to count.
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from safestart.store.access.keys import KeyRepository
     from safestart.store.records import ApiKey
 
-REFRESH_S = 1.0
+REFRESH_S = 0.5
 # The last use of a key is noted about once a minute: a busy key must not write with every request.
 NOTE_S = 60.0
 
@@ -41,6 +41,7 @@ class Keyring:
         self._keys = keys
         self._held: dict[bytes, tuple[ApiKey | None, bytes]] = {}
         self._decoy: tuple[ApiKey | None, bytes] = (None, secrets.token_bytes(32))
+        self._in_force: frozenset[str] = frozenset()
         self._used: set[str] = set()
         self._noted: dict[str, float] = {}
         self.known = False
@@ -60,12 +61,17 @@ class Keyring:
         self._used.add(key.id)
         return key
 
+    def in_force(self, key_id: str) -> bool:
+        """True while the key of this id is neither revoked nor expired."""
+        return key_id in self._in_force
+
     def load(self) -> None:
         """Read the keys, and note which were used; raises ``Unavailable``."""
         held: dict[bytes, tuple[ApiKey | None, bytes]] = {
             digest: (key, digest) for key, digest in self._keys.digests()
         }
         self._held, self.required, self.known = held, bool(held), True
+        self._in_force = frozenset(key.id for key, _ in held.values() if key is not None and key.usable)
         now = monotonic()
         due = [key_id for key_id in list(self._used) if now - self._noted.get(key_id, -NOTE_S) >= NOTE_S]
         if due:

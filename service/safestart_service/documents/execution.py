@@ -15,7 +15,7 @@ from safestart.processes.registry import process
 from safestart.runtime.progress import Context
 from safestart_service.documents.describe import output_ids
 from safestart_service.documents.formats.ogc import ogc_values
-from safestart_service.http.body import parse_body
+from safestart_service.http.body import parse_body, require_once
 
 _QUALIFIED = {"value", "mediaType", "encoding", "schema"}
 
@@ -79,6 +79,8 @@ def _unqualified(body: bytes) -> bytes | None:
     except (ValueError, TypeError, KeyError, AttributeError):
         return None
     bare = {name: value["value"] for name, value in inputs if _is_qualified(value)}
+    if bare:
+        require_once(body)  # before the names are written anew, each once
     return orjson.dumps(document | {"inputs": document["inputs"] | bare}) if bare else None
 
 

@@ -41,7 +41,7 @@ ANSWERS: tuple[type[BaseModel], ...] = (
 )
 _WHY = {
     304: "The caller has this content already (If-None-Match).",
-    400: "The body is not JSON.",
+    400: "The body is not JSON, Host is no host, or a header comes twice that has one value.",
     401: "Keys are in use, and none in force came with the request.",
     403: "The key's role is not enough.",
     404: "There is nothing of this name.",
@@ -114,7 +114,7 @@ def _add_access(document: dict[str, Any]) -> None:
         for method, operation in operations.items():
             role = needed_role(method.upper(), path)
             queues = path.endswith("/execution")
-            statuses = {421} | ({408} if "requestBody" in operation else set())
+            statuses = {400, 421} | ({408} if "requestBody" in operation else set())
             if role is None:
                 operation["security"] = []
             else:

@@ -1,4 +1,4 @@
-"""Read a JSON body and validate it strictly: no coercion of text or booleans to numbers, no unknown fields."""
+"""Read a JSON body and validate it strictly: text and booleans are no numbers; fields are known, and come once."""
 
 from __future__ import annotations
 
@@ -7,7 +7,9 @@ from typing import TypeVar
 from fastapi import Request
 from pydantic import BaseModel, ValidationError
 
+from safestart.errors import invalid
 from safestart.model.validation import validation_error
+from safestart.runtime.plain_json import NameTwice, require_unique_names
 from safestart_service.errors import MalformedBody, UnsupportedMediaType
 
 Model = TypeVar("Model", bound=BaseModel)
@@ -41,7 +43,7 @@ def parse_body(model: type[Model], body: bytes) -> Model:
     pydantic parses and validates in one pass, which is what makes 100 000 states affordable.
     """
     try:
-        return model.model_validate_json(body, strict=True)
+        found = model.model_validate_json(body, strict=True)
     except ValidationError as error:
         # One report by itself: listing those of a hundred thousand unknown fields takes a second.
         only = error.errors(include_url=False)[0] if error.error_count() == 1 else None
@@ -53,3 +55,13 @@ def parse_body(model: type[Model], body: bytes) -> Model:
                 received=body[:80].decode("utf-8", "replace"),
             ) from None
         raise validation_error(error) from None
+    require_once(body)
+    return found
+
+
+def require_once(body: bytes) -> None:
+    """Raise ``InvalidInput`` for a name that comes twice in an object of a body that is JSON."""
+    try:
+        require_unique_names(body)
+    except NameTwice as error:
+        raise invalid(error.name, "every name once in an object", "one that comes twice") from None

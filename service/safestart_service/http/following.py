@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
+import math
+from time import monotonic
 from typing import Any
 
 from fastapi import Request
@@ -9,6 +12,7 @@ from fastapi.responses import StreamingResponse
 from starlette.types import Receive, Scope, Send
 
 from safestart_service.access.callers import Callers
+from safestart_service.access.gate import Access
 
 POLL_S = 0.25
 UNSLOWED = 40
@@ -17,13 +21,23 @@ UNSLOWED = 40
 class Following(Callers):
     """Those who follow a job."""
 
-    def __init__(self, most: int) -> None:
+    def __init__(self, most: int, access: Access) -> None:
         super().__init__("event streams and long polls", most)
+        self._access = access
 
     @property
     def pause_s(self) -> float:
         """How long to wait before asking again: the more follow, the longer, so that all together ask no more often."""
         return POLL_S * max(1.0, self.now / UNSLOWED)
+
+    async def pause(self, request: Request, most_s: float = math.inf) -> bool:
+        """Wait that long, ``most_s`` at most; False, within :data:`POLL_S`, when the caller may not follow any more."""
+        until = monotonic() + min(self.pause_s, most_s)
+        while (left := until - monotonic()) > 0:
+            if not self._access.still_passes(request):
+                return False
+            await asyncio.sleep(min(left, POLL_S))
+        return self._access.still_passes(request)
 
 
 class Followed(StreamingResponse):

@@ -17,9 +17,9 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from safestart.errors import SafestartError
 from safestart.runtime.logs import about
-from safestart_service.access.gate import Access, Presented
+from safestart_service.access.gate import Access
 from safestart_service.documents import problems
-from safestart_service.errors import BodyTooLarge, QueryTooLong, RequestTimeout
+from safestart_service.errors import BodyTooLarge, MalformedRequest, QueryTooLong, RequestTimeout
 
 MAX_QUERY_BYTES = 8192
 CSP = (
@@ -33,6 +33,14 @@ SECURITY_HEADERS: tuple[tuple[bytes, bytes], ...] = (
     (b"referrer-policy", b"no-referrer"),
     (b"cross-origin-resource-policy", b"same-origin"),
 )
+_ONCE = {
+    name.lower().encode(): name
+    for name in (
+        *("Host", "Content-Length", "Content-Type", "Authorization", "X-API-Key"),
+        *("Idempotency-Key", "Last-Event-ID"),
+    )
+}
+_READ = frozenset({*_ONCE, b"transfer-encoding", b"x-request-id"})
 _SAFE_ID = re.compile(rb"[A-Za-z0-9._-]{1,64}")
 
 log = logging.getLogger("safestart.service")
@@ -58,7 +66,10 @@ class Limits:
             return
         if scope["method"] == "HEAD" and not scope["path"].endswith("/events"):
             scope = {**scope, "method": "GET"}  # the server sends the head of the answer alone
-        request_id, length, chunked, presented = self._read_headers(scope)
+        headers, twice = _single(scope)
+        request_id = headers.get(b"x-request-id", b"")
+        if not _SAFE_ID.fullmatch(request_id):
+            request_id = self._prefix + b"%x" % next(self._numbers)
         scope["safestart.request_id"] = request_id.decode("ascii")
         extra = (*SECURITY_HEADERS, (b"x-request-id", request_id))
         started = False
@@ -71,12 +82,12 @@ class Limits:
                 message["headers"].extend(extra[1:] if own else extra)
             await send(message)
 
-        refusal = self._refusal(scope, length, presented)
+        refusal = twice or self._refusal(scope, headers)
         if refusal is not None:
             problem = problems.of_error(refusal, scope["path"], request_id.decode())
             await _answer(send_with_headers, problem, problems.headers_of(refusal))
             return
-        if chunked or length is not None:
+        if b"transfer-encoding" in headers or b"content-length" in headers:
             receive = self._watched(receive)
         try:
             await self.app(scope, receive, send_with_headers)
@@ -88,29 +99,8 @@ class Limits:
                 raise
             await _answer(send_with_headers, problems.unexpected(scope["path"], request_id.decode()))
 
-    def _read_headers(self, scope: Scope) -> tuple[bytes, bytes | None, bool, Presented]:
-        """Request id (the caller's if it is harmless), Content-Length, whether the body is chunked, host and key."""
-        request_id = length = host = authorization = api_key = None
-        chunked = False
-        for name, value in scope["headers"]:
-            if name == b"content-length":
-                length = value
-            elif name == b"transfer-encoding":
-                chunked = True
-            elif name == b"host":
-                host = (
-                    value if host is None else host + b"," + value
-                )  # twice: no name, so none that is allowed
-            elif name == b"authorization":
-                authorization = value
-            elif name == b"x-api-key":
-                api_key = value
-            elif name == b"x-request-id" and _SAFE_ID.fullmatch(value):
-                request_id = value
-        request_id = request_id or self._prefix + b"%x" % next(self._numbers)
-        return request_id, length, chunked, (host, authorization, api_key)
-
-    def _refusal(self, scope: Scope, length: bytes | None, presented: Presented) -> SafestartError | None:
+    def _refusal(self, scope: Scope, headers: dict[bytes, bytes]) -> SafestartError | None:
+        length = headers.get(b"content-length")
         if length is not None and (
             not length.isdigit() or len(length) > 15 or int(length) > self.max_body_bytes
         ):
@@ -122,7 +112,11 @@ class Limits:
                 required=f"at most {MAX_QUERY_BYTES} bytes",
                 received=len(scope["query_string"]),
             )
-        return None if self.access is None else self.access.refusal(scope, presented)
+        if self.access is None:
+            return None
+        return self.access.refusal(
+            scope, (headers.get(b"host"), headers.get(b"authorization"), headers.get(b"x-api-key"))
+        )
 
     def _too_large(self, received: str) -> BodyTooLarge:
         required = f"at most {self.max_body_bytes} bytes"
@@ -165,6 +159,24 @@ class Limits:
             required=required,
             received=total,
         )
+
+
+def _single(scope: Scope) -> tuple[dict[bytes, bytes], MalformedRequest | None]:
+    """The header fields of :data:`_READ`, and the refusal of a second line of one that has one value.
+
+    Of two, one layer would look at the first and the next at the last.
+    """
+    found: dict[bytes, bytes] = {}
+    refusal = None
+    for name, value in scope["headers"]:
+        if name in _READ:
+            if name in found and name in _ONCE:
+                shown = _ONCE[name]
+                refusal = MalformedRequest(
+                    f"{shown}: required once, received twice", field=shown, required="once"
+                )
+            found[name] = value
+    return found, refusal
 
 
 async def _answer(send: Send, problem: dict[str, object], more: dict[str, str] | None = None) -> None:

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import AsyncIterator
 from time import monotonic
 from typing import Any
 
 import orjson
+from fastapi import Request
 from starlette.concurrency import run_in_threadpool
 
 from safestart.errors import invalid
 from safestart.store.records import Event, JobStatus
-from safestart_service.state import Services
+from safestart_service.state import Services, services
 
 KEEP_ALIVE_S = 15.0
 PAGE = 500
@@ -33,15 +33,19 @@ def encode(event: Event) -> bytes:
     return b"id: %d\nevent: %s\ndata: %s\n\n" % (event.id, event.kind.encode(), orjson.dumps(data))
 
 
-async def stream(services: Services, job_id: str, after: int) -> AsyncIterator[bytes]:
+async def stream(request: Request, job_id: str, after: int) -> AsyncIterator[bytes]:
     """Events after ``after`` until the job has ended and all were sent; comments keep idle connections open.
+
+    Ends before that when the key has ended with which they were asked for.
 
     The status is read before the events: once it is final, no event comes any more that was not read then.
     """
-    spoke = monotonic()
+    found, spoke = services(request), monotonic()
     yield b"retry: 1000\n\n"
     while True:
-        ended, events = await run_in_threadpool(_look, services, job_id, after)
+        ended, events = await run_in_threadpool(_look, found, job_id, after)
+        if not found.access.still_passes(request):
+            return
         if events:
             after = events[-1].id
             spoke = monotonic()
@@ -53,9 +57,10 @@ async def stream(services: Services, job_id: str, after: int) -> AsyncIterator[b
         if monotonic() - spoke > KEEP_ALIVE_S:
             spoke = monotonic()
             yield b": still here\n\n"
-        await asyncio.sleep(services.following.pause_s)
+        if not await found.following.pause(request):
+            return
 
 
-def _look(services: Services, job_id: str, after: int) -> tuple[bool, tuple[Event, ...]]:
-    status: JobStatus = services.jobs.get(job_id).status
-    return status.ended, services.jobs.events(job_id, after, PAGE)
+def _look(found: Services, job_id: str, after: int) -> tuple[bool, tuple[Event, ...]]:
+    status: JobStatus = found.jobs.get(job_id).status
+    return status.ended, found.jobs.events(job_id, after, PAGE)

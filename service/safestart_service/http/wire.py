@@ -16,7 +16,7 @@ from typing import Any
 
 from safestart.errors import SafestartError
 from safestart.runtime.logs import about
-from safestart_service.access.gate import is_local
+from safestart_service.access.nearness import is_local
 from safestart_service.documents import problems
 from safestart_service.errors import HeadTooLarge, MalformedRequest, RequestTimeout, TooManyConnections
 from safestart_service.http.limits import SECURITY_HEADERS
@@ -26,7 +26,8 @@ from safestart_service.http.unread import Read
 HEAD_S = 20.0
 MAX_HEAD_BYTES = 131_072
 MOST_AHEAD = 100
-"""Requests that may wait on one connection for the answer to the first."""
+"""Requests read ahead on one connection, about: what comes behind them waits as it is for the answers before it."""
+_PIECE = 8192
 TURNED_AWAY_S = 1.0
 MOST_TURNED_AWAY = 64
 
@@ -54,6 +55,7 @@ class Protocol(Read):
     def __init__(self, *args: Any, places: Places, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
         self._places = places
+        self._held = b""
 
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
         """Wait for the first head, if there is a place; otherwise say so to the first bytes, or soon."""
@@ -78,8 +80,6 @@ class Protocol(Read):
 
     def on_message_begin(self) -> None:
         """A head begins."""
-        if len(self.pipeline) >= MOST_AHEAD:  # uvicorn takes it for no HTTP, and closes
-            raise ValueError(f"{MOST_AHEAD} requests wait already")
         super().on_message_begin()
         self._message = Message.HEAD
         self._parts += 1
@@ -104,19 +104,36 @@ class Protocol(Read):
         super().on_message_complete()
 
     def on_response_complete(self) -> None:
-        """Wait for the next head, unless it is there."""
+        """Read on what was held, and wait for the next head, unless it is there."""
         super().on_response_complete()
+        if self._held:
+            self._read_on()
         if self.cycle.response_complete:
             self._wait()
 
     def data_received(self, data: bytes) -> None:
-        """Count what ends no head and is no body: long headers, trailers, chunk extensions.
-
-        The piece in which a head begins or ends is not counted; it is not longer than one read.
-        """
+        """Read it in pieces, for as long as not too many requests wait for their answers."""
         if not self._seated:
             self._turn_away()
             return
+        self._held += data
+        self._read_on()
+
+    def _read_on(self) -> None:
+        held, at = self._held, 0
+        self._held = b""  # a piece that completes an answer would come here again
+        while at < len(held) and len(self.pipeline) < MOST_AHEAD and not self.transport.is_closing():
+            self._read(held[at : at + _PIECE])
+            at += _PIECE
+        self._held = held[at:]
+        if self._held and not self.transport.is_closing():
+            self.flow.pause_reading()
+
+    def _read(self, data: bytes) -> None:
+        """Count what ends no head and is no body: long headers, trailers, chunk extensions.
+
+        The piece in which a head begins or ends is not counted.
+        """
         before = self._parts
         super().data_received(data)
         if self._parts != before:
@@ -188,7 +205,7 @@ class Protocol(Read):
 
 def holder(address: str) -> str | None:
     """Whose a connection is: an IPv4 address or an IPv6 network; None on this machine, where proxies speak for many."""
-    if is_local(address):
+    if not address or is_local(address):
         return None
     found = ipaddress.ip_address(address.partition("%")[0])
     if (

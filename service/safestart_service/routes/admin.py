@@ -17,9 +17,10 @@ from safestart_service.documents.schemas import AuditList, KeyDocument, KeyList,
 from safestart_service.http.answers import Json
 from safestart_service.http.body import parse_body, read_body
 from safestart_service.http.intervals import without_nul
+from safestart_service.http.once import OnceRoute
 from safestart_service.state import services
 
-router = APIRouter(tags=["administration"])
+router = APIRouter(tags=["administration"], route_class=OnceRoute)
 KeyId = Annotated[str, Path(description="Id of a key: the part after the first underscore.")]
 _NO_STORE = {"Cache-Control": "no-store"}
 

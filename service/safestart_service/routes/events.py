@@ -11,11 +11,12 @@ from starlette.concurrency import run_in_threadpool
 from safestart_service.documents.jobs_view import known_job
 from safestart_service.documents.openapi import content, refusals
 from safestart_service.http.following import Followed
+from safestart_service.http.once import OnceRoute
 from safestart_service.http.sse import resume_point, stream
 from safestart_service.routes.jobs import JobId
 from safestart_service.state import services
 
-router = APIRouter(tags=["jobs"])
+router = APIRouter(tags=["jobs"], route_class=OnceRoute)
 
 
 @router.get(
@@ -42,5 +43,5 @@ async def events(
     if after and job.status.ended and not await run_in_threadpool(found.jobs.events, jobID, after, 1):
         return Response(status_code=204)
     headers = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
-    events_of = stream(found, jobID, after)
+    events_of = stream(request, jobID, after)
     return Followed(found.following, request, events_of, media_type="text/event-stream", headers=headers)

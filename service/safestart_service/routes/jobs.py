@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from time import monotonic
 from typing import Annotated, Literal
 from urllib.parse import urlencode
@@ -16,15 +15,16 @@ from safestart.errors import invalid
 from safestart.processes.registry import PROCESS_IDS
 from safestart.store.jobs.filters import JobFilter
 from safestart.store.records import JobStatus
-from safestart_service.access.gate import caller, require_own
+from safestart_service.access.gate import caller, ended_key, require_own
 from safestart_service.documents.jobs_view import job_detail, known_job, partial_document, status_infos
 from safestart_service.documents.openapi import TAG, answer, refusals
 from safestart_service.documents.schemas import JobDetail, JobList, Partial
 from safestart_service.http.answers import Json, base_url, link, tagged, this_url
 from safestart_service.http.intervals import interval, without_nul
+from safestart_service.http.once import OnceRoute
 from safestart_service.state import services
 
-router = APIRouter(tags=["jobs"])
+router = APIRouter(tags=["jobs"], route_class=OnceRoute)
 MAX_WAIT_S = 30.0
 JobId = Annotated[str, Path(description="Id of a job.")]
 
@@ -120,7 +120,8 @@ async def job(
         return seen
     with found.following.place(request):
         while not final and (left := deadline - monotonic()) > 0 and not await request.is_disconnected():
-            await asyncio.sleep(min(found.following.pause_s, left))
+            if not await found.following.pause(request, left):
+                raise ended_key()
             final, seen = await run_in_threadpool(look)
     return seen
 

@@ -32,9 +32,10 @@ from safestart_service.errors import Forbidden
 from safestart_service.http.answers import Json, base_url, link, tagged, this_url
 from safestart_service.http.body import read_body
 from safestart_service.http.computing import computed
+from safestart_service.http.once import OnceRoute
 from safestart_service.state import Services, services
 
-router = APIRouter(tags=["processes"])
+router = APIRouter(tags=["processes"], route_class=OnceRoute)
 ProcessId = Annotated[str, Path(description="Id of a process.")]
 
 

@@ -7,7 +7,7 @@ import pytest
 from safestart.runtime.access import Role
 from safestart_service.access.gate import needed_role
 from tests.contract.access.key_holders import ASK, bearer
-from tests.contract.api.service_client import HEAVY, POINT, assert_problem, service, submit
+from tests.contract.api.service_client import BASE, HEAVY, POINT, assert_problem, service, submit
 
 
 def test_without_keys_loopback_is_open(tmp_path):
@@ -99,7 +99,7 @@ def test_a_mount_path_hides_no_rule(guarded, root):
     from starlette.testclient import TestClient
 
     client, made, _ = guarded
-    mounted = TestClient(client.app, root_path=root)
+    mounted = TestClient(client.app, base_url=BASE, root_path=root)
     assert_problem(mounted.get(f"{root}/admin/keys", headers=bearer(made["submit"])), 403)
     assert_problem(mounted.get(f"{root}/jobs"), 401)
     assert mounted.get(f"{root}/jobs", headers=bearer(made["read"])).status_code == 200

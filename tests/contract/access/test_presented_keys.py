@@ -5,15 +5,28 @@ from __future__ import annotations
 import asyncio
 import json
 import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from typing import Any
+
+import httpx
+import pytest
+from sqlalchemy import update
 
 from safestart.runtime.access import Role
 from safestart.store.access.keys import KeyRepository
+from safestart.store.access.models import KeyRow
 from safestart.store.database import Database
+from safestart.store.dialect import after
 from tests.contract.access.key_holders import BY, bearer
-from tests.contract.api.service_client import assert_problem, service, url_of
+from tests.contract.api.service_client import HEAVY, assert_problem, service, url_of
+from tests.contract.server.raw_http import small_server
 from tests.contract.store.store_backends import pass_time
-from tests.waiting import until
+from tests.waiting import PATIENCE_S, until
+
+SLACK_S = 1.0
+"""For a machine that has much else to do; before, an ended key followed until the job had ended."""
 
 
 def test_ways_to_present_a_key(guarded):
@@ -92,6 +105,84 @@ def test_a_revocation_waits_for_no_computation(tmp_path):
             until(lambda: client.get("/metrics", headers=bearer(key)).status_code == 401, "its revocation")
         finally:
             release.set()
+
+
+@pytest.mark.parametrize("how", ["elsewhere", "here", "expired"])
+def test_an_ended_key_ends_what_it_follows(server, how):
+    """Open event streams end within a second of it, long polls are answered; those of others go on."""
+    base, database = server
+    repository = KeyRepository(database)
+    (record, key), (_, other) = (repository.create(name, Role.SUBMIT, 1.0, BY) for name in ("ends", "stays"))
+    admin_key = repository.create("admin", Role.ADMIN, None, BY)[1]
+    with httpx.Client(base_url=base, timeout=PATIENCE_S) as client, ThreadPoolExecutor() as pool:
+        until(lambda: client.get("/jobs").status_code == 401, "the first key")
+        until(lambda: client.get("/jobs", headers=bearer(admin_key)).status_code == 200, "the last key")
+        job = client.post("/processes/benchmark/execution", json=HEAVY, headers=bearer(key)).json()["jobID"]
+        staying = pool.submit(_ended, base, f"/jobs/{job}/events", other)
+        ends = [
+            pool.submit(_ended, base, path, key) for path in (f"/jobs/{job}/events", f"/jobs/{job}?wait=30")
+        ]
+        time.sleep(1.0)
+        still = [end.done() for end in (staying, *ends)]
+        began = time.time()
+        if how == "elsewhere":
+            repository.revoke(record.id, BY)
+        elif how == "here":
+            assert client.delete(f"/admin/keys/{record.id}", headers=bearer(admin_key)).status_code == 200
+        else:
+            _expire(database, record.id)
+        until(lambda: all(end.done() for end in ends), "the end of what the key followed")
+        still.append(staying.done())
+        client.delete(f"/jobs/{job}", headers=bearer(admin_key))  # which ends the stream that goes on
+        found = [end.result() for end in ends]
+        assert [status for status, _ in found] == [200, 401]
+        assert max(at for _, at in found) - began < 1.0 + SLACK_S, found
+        assert not any(still)
+        assert staying.result()[0] == 200
+
+
+def test_the_first_key_ends_what_was_followed_without(server_without_keys):
+    base, database = server_without_keys
+    with ThreadPoolExecutor() as pool:
+        job = httpx.post(f"{base}/processes/benchmark/execution", json=HEAVY).json()["jobID"]
+        end = pool.submit(_ended, base, f"/jobs/{job}/events", None)
+        time.sleep(1.0)
+        assert not end.done()
+        began = time.time()
+        KeyRepository(database).create("first", Role.READ, None, BY)
+        until(end.done, "the end of the stream")
+        assert end.result()[1] - began < 1.0 + SLACK_S
+
+
+def _ended(base: str, path: str, key: str | None) -> tuple[int, float]:
+    """Status of an answer, and when it had come to its end."""
+    answer = httpx.get(base + path, headers=bearer(key) if key else {}, timeout=PATIENCE_S)
+    return answer.status_code, time.time()
+
+
+def _expire(database: Database, key_id: str) -> None:
+    with database.session(write=True) as session:
+        session.execute(update(KeyRow).where(KeyRow.id == key_id).values(expires_at=after(-1.0)))
+
+
+@pytest.fixture
+def server(tmp_path):
+    """A real server whose first key was made already, and its database."""
+    with _served(tmp_path) as (base, database):
+        KeyRepository(database).create("first", Role.READ, None, BY)
+        yield base, database
+
+
+@pytest.fixture
+def server_without_keys(tmp_path):
+    with _served(tmp_path) as found:
+        yield found
+
+
+@contextmanager
+def _served(folder):
+    with small_server(folder, streams=8) as (host, port):
+        yield f"http://{host}:{port}", Database(url_of(folder))
 
 
 def test_made_over_http(guarded):

@@ -18,6 +18,7 @@ with warnings.catch_warnings():
     warnings.simplefilter("ignore")  # the test client announces a successor of httpx
     from starlette.testclient import TestClient
 
+BASE = "http://127.0.0.1"
 POINT = {"omega_t_deg_s": 3, "a_max_m_s2": 0.1}
 HEAVY = {"inputs": {**POINT, "grid": {"nx": 5, "ny": 5}, "engines": ["analytical"]}}
 SMALL: dict[str, Any] = {
@@ -30,12 +31,12 @@ PNG = b"\x89PNG\r\n\x1a\n" + bytes(40)
 
 @contextmanager
 def service(folder: Path, **settings: Any) -> Iterator[TestClient]:
-    """A client whose unexpected server errors are answers, as they are on the wire."""
+    """A client on this machine whose unexpected server errors are answers, as they are on the wire."""
     from safestart_service.app import create_app
 
-    settings = {"allowed_hosts": "testserver", **settings}
     chosen = Settings(database_url=url_of(folder), **settings)
-    with TestClient(create_app(chosen), raise_server_exceptions=False) as client:
+    here: dict[str, Any] = {"base_url": BASE, "client": ("127.0.0.1", 50_000)}
+    with TestClient(create_app(chosen), raise_server_exceptions=False, **here) as client:
         yield client
 
 

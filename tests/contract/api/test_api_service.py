@@ -22,7 +22,7 @@ def test_landing_conformance_and_operations(client):
     links = {link["rel"]: link["href"] for link in client.get("/").json()["links"]}
     assert client.get(links["service-desc"]).json()["openapi"].startswith("3.")
     browser = client.get("/", headers={"Accept": "text/html"}, follow_redirects=False)
-    assert (browser.status_code, browser.headers["location"]) == (303, "http://testserver/dashboard")
+    assert (browser.status_code, browser.headers["location"]) == (303, "http://127.0.0.1/dashboard")
     assert any(name.endswith("/conf/dismiss") for name in client.get("/conformance").json()["conformsTo"])
     assert client.get("/healthz").json()["status"] == "ok"
     text = client.get("/metrics").text

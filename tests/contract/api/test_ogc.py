@@ -71,7 +71,7 @@ def test_a_list_links_to_itself_with_its_query(setting):
     client, _ = setting
     for url in ("/jobs", "/jobs?limit=2&status=accepted", "/processes?limit=3"):
         links = client.get(url).json()["links"]
-        assert [link["href"] for link in links if link["rel"] == "self"] == [f"http://testserver{url}"]
+        assert [link["href"] for link in links if link["rel"] == "self"] == [f"http://127.0.0.1{url}"]
 
 
 def test_descriptions_conform(setting):

@@ -21,13 +21,13 @@ Address = tuple[str, int]
 
 
 @contextmanager
-def small_server(folder: Path) -> Iterator[Address]:
+def small_server(folder: Path, streams: int = STREAMS) -> Iterator[Address]:
     """A server with few places and little patience for heads and readers, but much for bodies."""
     chosen = {
         "port": 0,
         "database_url": url_of(folder),
         "max_connections": PLACES,
-        "max_followers": STREAMS,
+        "max_followers": streams,
         "request_timeout_s": 3600.0,
     }
     code = (

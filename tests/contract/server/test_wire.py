@@ -68,13 +68,22 @@ def test_no_answer_takes_the_place_of_another(address):
 
 
 def test_ordinary_heads_of_every_age(address):
-    """HTTP/1.0, no Host, an upgrade that is not offered, many headers, requests in a row on one connection."""
+    """HTTP/1.0 without Host, an upgrade that is not offered, many headers, requests in a row on one connection."""
     many = b"".join(b"X-%d: 1\r\n" % i for i in range(1000))
     upgrade = b"Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Key: AAAA\r\nSec-WebSocket-Version: 13\r\n"
-    heads = [b"GET /healthz HTTP/1.1\r\n" + more + b"\r\n" for more in (b"", HOST, many, upgrade)]
+    heads = [b"GET /healthz HTTP/1.1\r\n" + HOST + more + b"\r\n" for more in (b"", many, upgrade)]
+    heads.append(b"GET /healthz HTTP/1.0\r\n\r\n")
     with ThreadPoolExecutor() as pool:
         for answer in pool.map(lambda head: said(address, head), heads):
             assert answer.startswith(b"HTTP/1.1 200 ")
     asked = b"GET /healthz HTTP/1.1\r\n" + HOST
     three = (asked + b"\r\n") * 2 + asked + b"Connection: close\r\n\r\n"
     assert said(address, three).count(b"HTTP/1.1 200 ") == 3
+
+
+def test_without_host(address):
+    """RFC 9112: a request of HTTP/1.1 without Host is refused with 400; HTTP/1.0 knows none."""
+    for host in (b"", b"Host:\r\n", b"Host: [::1]:99999\r\n"):
+        told = said(address, b"GET /healthz HTTP/1.1\r\n" + host + b"Connection: close\r\n\r\n")
+        problem = problem_in(told, 400)
+        assert problem["field"] == "Host"

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -10,6 +12,7 @@ import pytest
 
 from safestart.errors import InvalidInput
 from safestart.runtime.settings import Settings, settings
+from tests.waiting import PATIENCE_S
 
 
 @pytest.fixture(autouse=True)
@@ -101,3 +104,47 @@ def test_a_named_file_that_is_not_there_is_refused(
 
 def test_without_any_file_there_are_the_defaults() -> None:
     assert settings().port == 8000
+
+
+@pytest.mark.parametrize(
+    ("name", "near"),
+    [
+        ("SAFESTART_PROT", "SAFESTART_PORT"),
+        ("SAFESTART_DATABSE_URL", "SAFESTART_DATABASE_URL"),
+        ("SAFESTART_RATE_PER_SECOND", "SAFESTART_RATE_PER_S"),
+        ("SAFESTART_CONFIG_FILE", "SAFESTART_CONFIG"),
+        ("safestart_prot", "SAFESTART_PORT"),
+        ("SAFESTART_ZZZ", None),
+        ("SAFESTART_", None),
+    ],
+)
+def test_a_variable_that_names_no_setting_is_refused(
+    name: str, near: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(name, "postgresql://user:hunter2@host/name")
+    with pytest.raises(InvalidInput, match=f"^{name}: required the name of a setting") as caught:
+        settings()
+    assert near is None or f"such as {near} (" in caught.value.detail
+    assert "hunter2" not in str((caught.value.detail, caught.value.received))
+
+
+def test_variables_that_are_known_are_not_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("safestart_port", "SAFESTART_TEST_POSTGRESQL", "SAFE_START", "XSAFESTART_PORT"):
+        monkeypatch.setenv(name, "1")
+    assert settings().port == 1
+
+
+@pytest.mark.parametrize("command", ["serve", "worker", "up", "purge"])
+def test_a_misspelt_variable_stops_every_start(command: str) -> None:
+    more = ["--older-than", "1d"] if command == "purge" else []
+    environment = {**os.environ, "SAFESTART_PROT": "1"}
+    ended = subprocess.run(
+        [sys.executable, "-m", "safestart", command, *more],
+        capture_output=True,
+        text=True,
+        env=environment,
+        timeout=PATIENCE_S,
+    )
+    assert ended.returncode == 2
+    assert "SAFESTART_PORT" in ended.stderr
+    assert len(ended.stderr.strip().splitlines()) == 1

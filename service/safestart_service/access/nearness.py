@@ -1,0 +1,85 @@
+"""Who asks from this machine: the address of the socket, and whatever a proxy says of those behind it."""
+
+from __future__ import annotations
+
+import ipaddress
+import re
+from functools import lru_cache
+
+from starlette.types import Scope
+
+SPEAKS_FOR = frozenset(
+    {
+        b"x-forwarded-for",
+        b"x-real-ip",
+        b"x-client-ip",
+        b"x-cluster-client-ip",
+        b"x-original-forwarded-for",
+        b"cf-connecting-ip",
+        b"true-client-ip",
+        b"fastly-client-ip",
+        b"fly-client-ip",
+    }
+)
+"""Header fields in which proxies name their clients, as a list of addresses."""
+FORWARDED = b"forwarded"
+_FOR = re.compile(r'\s*for\s*=\s*(?:"([^"\\]*)"|([^\s",;=]*))\s*', re.IGNORECASE)
+_ELEMENTS = re.compile(r'((?:[^,;"]|"[^"]*")*)([,;]|$)')
+_HOST_PORT = re.compile(r"\[([^\]]*)\](?::\d{1,5})?|([^:]*):\d{1,5}")
+
+
+def from_this_machine(scope: Scope) -> bool:
+    """True when both ends are on this machine and no proxy speaks for somebody who is not.
+
+    What is not a loopback address counts as somebody else: an unknown or hidden client, a name, an empty element.
+    """
+    client, server = scope.get("client"), scope.get("server")
+    if server is not None and server[1] is None:  # a Unix socket: its other end is here, too
+        near = client is None or not client[0] or is_local(client[0])
+    else:
+        near = all(end is not None and is_local(end[0]) for end in (client, server))
+    return near and all(_only_local(name, value) for name, value in scope["headers"])
+
+
+@lru_cache(64)
+def is_local(address: str) -> bool:
+    """True for a loopback address, and for nothing else."""
+    try:
+        found = ipaddress.ip_address(address.partition("%")[0])
+    except ValueError:
+        return False
+    mapped = found.ipv4_mapped if isinstance(found, ipaddress.IPv6Address) else None
+    return (mapped or found).is_loopback
+
+
+def _only_local(name: bytes, value: bytes) -> bool:
+    if name in SPEAKS_FOR:
+        return all(is_local(_without_port(part)) for part in value.decode("latin-1").split(","))
+    if name == FORWARDED:
+        return all(is_local(_without_port(node)) for node in _nodes(value.decode("latin-1")))
+    return True
+
+
+def _nodes(text: str) -> list[str]:
+    """The client of each element of ``Forwarded`` (RFC 7239); "" for an element that names none or cannot be read."""
+    found: list[str] = []
+    node, at = "", 0
+    while True:
+        match = _ELEMENTS.match(text, at)
+        if match is None:  # a quote that does not end
+            return [*found, ""]
+        pair = _FOR.fullmatch(match[1])
+        if pair is not None:
+            node = "" if node else pair[1] or pair[2] or ""
+        at = match.end()
+        if match[2] != ";":
+            found.append(node)
+            node = ""
+        if not match[2]:
+            return found
+
+
+def _without_port(node: str) -> str:
+    node = node.strip()
+    match = _HOST_PORT.fullmatch(node)
+    return node if match is None else match[1] or match[2] or ""

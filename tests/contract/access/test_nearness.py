@@ -1,0 +1,112 @@
+"""Who counts as being on this machine while there are no keys."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from typing import Any
+
+import httpx
+import pytest
+from starlette.testclient import TestClient
+
+from safestart_service.access.nearness import from_this_machine
+from tests.contract.api.service_client import BASE, HEAVY, assert_problem, url_of
+from tests.waiting import PATIENCE_S
+
+STRANGERS = [
+    ("X-Forwarded-For", "203.0.113.5"),
+    ("X-Forwarded-For", "unknown"),
+    ("X-Forwarded-For", "_hidden"),
+    ("X-Forwarded-For", "localhost"),
+    ("X-Forwarded-For", "evil.example"),
+    ("X-Forwarded-For", "203.0.113.5,"),
+    ("X-Forwarded-For", "127.0.0.1,"),
+    ("X-Forwarded-For", ",127.0.0.1"),
+    ("X-Forwarded-For", ""),
+    ("X-Forwarded-For", "203.0.113.5, 127.0.0.1"),
+    ("X-Forwarded-For", "127.0.0.1:x"),
+    ("X-Forwarded-For", "[::1"),
+    ("X-Forwarded-For", "0.0.0.0"),
+    ("X-Forwarded-For", "127.1"),
+    ("X-Real-IP", "203.0.113.5"),
+    ("X-Real-IP", "unknown"),
+    ("CF-Connecting-IP", "203.0.113.5"),
+    ("True-Client-IP", "203.0.113.5"),
+    ("Forwarded", "for=203.0.113.5"),
+    ("Forwarded", "for=unknown"),
+    ("Forwarded", "for=_hidden;proto=http"),
+    ("Forwarded", 'For="[2001:db8::1]:4711"'),
+    ("Forwarded", "for=127.0.0.1, for=203.0.113.5"),
+    ("Forwarded", "for=127.0.0.1;for=203.0.113.5"),
+    ("Forwarded", "for=203.0.113.5;for=127.0.0.1"),
+    ("Forwarded", "proto=https"),
+    ("Forwarded", "for=127.0.0.1,"),
+    ("Forwarded", 'for="127.0.0.1'),
+    ("Forwarded", 'by="a,for=127.0.0.1"'),
+    ("Forwarded", ""),
+]
+NEIGHBOURS = [
+    ("X-Forwarded-For", "127.0.0.1"),
+    ("X-Forwarded-For", "127.0.0.2:4711, [::1]:80, ::1"),
+    ("X-Forwarded-For", "::ffff:127.0.0.1"),
+    ("X-Real-IP", "::1"),
+    ("Forwarded", "for=127.0.0.1"),
+    ("Forwarded", 'proto=http;for="[::1]:4711";by="a,b;c", FOR = 127.0.0.1'),
+    ("X-Forwarded-Proto", "https"),
+]
+
+
+@pytest.fixture(scope="module")
+def base(tmp_path_factory):
+    """A server as `safestart serve` starts it, without keys."""
+    where = ["--port", "0", "--database-url", url_of(tmp_path_factory.mktemp("near"))]
+    command = [sys.executable, "-m", "safestart_service", *where]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    assert process.stdout is not None
+    yield process.stdout.readline().split()[1]
+    process.terminate()
+    process.wait(PATIENCE_S)
+
+
+@pytest.mark.parametrize(("name", "value"), STRANGERS)
+def test_who_comes_through_a_proxy_is_a_stranger(base, name, value):
+    with httpx.Client(base_url=base, timeout=PATIENCE_S, headers={name: value}) as client:
+        assert_problem(client.get("/jobs"), 401)
+        assert_problem(client.post("/processes/benchmark/execution", json=HEAVY), 401)
+        assert client.get("/healthz").status_code == 200
+
+
+@pytest.mark.parametrize(("name", "value"), NEIGHBOURS)
+def test_who_comes_through_a_proxy_from_here_is_a_neighbour(base, name, value):
+    with httpx.Client(base_url=base, timeout=PATIENCE_S, headers={name: value}) as client:
+        assert client.get("/jobs").status_code == 200
+
+
+def test_one_of_two_lines_names_a_stranger(base):
+    for lines in (("127.0.0.1", "203.0.113.5"), ("203.0.113.5", "127.0.0.1")):
+        headers = [("X-Forwarded-For", line) for line in lines]
+        assert_problem(httpx.get(f"{base}/jobs", headers=headers, timeout=PATIENCE_S), 401)
+
+
+@pytest.mark.parametrize("address", ["testclient", "unknown", "_hidden", "", "203.0.113.5"])
+def test_an_application_elsewhere_trusts_no_name(client, address):
+    """What embeds the application may put anything into the scope."""
+    odd = TestClient(client.app, base_url=BASE, client=(address, 1))
+    assert_problem(odd.get("/jobs"), 401)
+    assert_problem(
+        TestClient(client.app, client=("127.0.0.1", 1), base_url="http://x.localhost").get("/jobs"), 401
+    )
+
+
+def test_the_ends_of_a_socket():
+    def near(client: Any, server: Any) -> bool:
+        return from_this_machine({"client": client, "server": server, "headers": []})
+
+    here, there = ("127.0.0.1", 1), ("203.0.113.5", 1)
+    assert near(here, here)
+    assert near(None, ("/run/safestart.sock", None)), "a Unix socket"
+    assert not near(there, ("/run/safestart.sock", None))
+    assert not any(
+        (near(None, here), near(here, None), near(None, None), near(there, here), near(here, there))
+    )

@@ -1,0 +1,45 @@
+"""JSON with every name once, where the command line and the records read it."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from typer.testing import CliRunner
+
+from safestart.cli import build
+from safestart.errors import InvalidInput
+from safestart.runtime.plain_json import NameTwice, loads, require_unique_names
+
+TREES = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text(),
+    lambda inner: st.lists(inner) | st.dictionaries(st.text(), inner),
+)
+
+
+@given(TREES)
+def test_what_has_every_name_once_is_read_as_ever(tree):
+    text = json.dumps(tree)
+    assert loads(text) == tree
+    require_unique_names(text.encode())
+
+
+@pytest.mark.parametrize(
+    "text", ['{"a":1,"a":1}', '[[{"b":{"a":1,"c":2,"a":3}}]]', '{"":1,"":2}', '{"a":1,"\\u0061":2}']
+)
+def test_a_name_twice_is_refused_at_every_depth(text):
+    for read in (loads, require_unique_names):
+        with pytest.raises(NameTwice, match="twice"):
+            read(text)
+
+
+def test_the_command_line_refuses_it(tmp_path):
+    inputs, proof = tmp_path / "inputs.json", tmp_path / "proof.json"
+    inputs.write_text('{"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "a_max_m_s2": 1.0}')
+    proof.write_text('{"verdict": "NO_GO", "verdict": "GO"}')
+    refused = CliRunner().invoke(build(), ["run", "certificate", "--input", str(inputs)])
+    assert isinstance(refused.exception, InvalidInput)
+    assert "a_max_m_s2" in refused.exception.detail
+    assert CliRunner().invoke(build(), ["verify", str(proof)]).exit_code == 2
