@@ -18,7 +18,8 @@ def page() -> str:
         "",
         "Each is read from the environment, else from the TOML file that `SAFESTART_CONFIG` names (default: "
         "`safestart.toml` in the user's configuration directory). In the file the names are those below in small "
-        "letters, without `SAFESTART_` and without sections. An unknown name in the file, an unknown variable `SAFESTART_...`, a named file that is not "
+        "letters, without `SAFESTART_` and without sections. An unknown name in the file, an unknown variable "
+        "`SAFESTART_...`, a named file that is not "
         "there and a value that cannot be end every command with code 2 and say what was required.",
         "",
         "| variable | default | meaning |",

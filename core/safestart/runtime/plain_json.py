@@ -1,7 +1,7 @@
 """JSON that says one thing to every reader: each name of an object once, every number finite.
 
-Of two values for one name, one reader takes the first and another the last. NaN and infinity are no JSON, and 1e999 would
-become one of them.
+Of two values for one name, one reader takes the first and another the last. NaN and infinity are no JSON, and 1e999
+would become one of them.
 """
 
 from __future__ import annotations
