@@ -31,7 +31,7 @@ def test_submitter_dismissal_and_audit(guarded):
         ("submit", mine["jobID"], ids["submit"], "submit"),
     ]
     assert log[3]["request_id"] == "trace-9"
-    assert log[3]["address"] == "testclient"
+    assert log[3]["address"] == "127.0.0.1"
     about = client.get(f"/admin/audit?subject={theirs}&limit=1", headers=bearer(made["admin"])).json()
     assert [entry["action"] for entry in about["entries"]] == ["dismiss"]
     rest = client.get(

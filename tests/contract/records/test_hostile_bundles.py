@@ -153,7 +153,7 @@ def test_a_field_twice_is_refused() -> None:
     with zipfile.ZipFile(target, "w") as archive:
         for name, data in files.items():
             archive.writestr(name, data)
-    with pytest.raises(InvalidInput, match=r"job\.json is no JSON with each field once"):
+    with pytest.raises(InvalidInput, match=r'job\.json holds an object with the name "status" twice'):
         unpack(target.getvalue())
 
 

@@ -14,7 +14,7 @@ from safestart.errors import InvalidInput
 from safestart.runtime.plain_json import NameTwice, loads, require_unique_names
 
 TREES = st.recursive(
-    st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text(),
+    st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False) | st.text(),
     lambda inner: st.lists(inner) | st.dictionaries(st.text(), inner),
 )
 
@@ -24,6 +24,12 @@ def test_what_has_every_name_once_is_read_as_ever(tree):
     text = json.dumps(tree)
     assert loads(text) == tree
     require_unique_names(text.encode())
+
+
+@pytest.mark.parametrize("text", ["NaN", "[-Infinity]", '{"a": 1e999}'])
+def test_what_is_not_finite_is_refused(text):
+    with pytest.raises(ValueError, match="finite"):
+        loads(text)
 
 
 @pytest.mark.parametrize(
