@@ -1,0 +1,152 @@
+"""`certified`: the sound closed-form certificate of starts at rest (docs/theory/certified.md). NumPy only.
+
+A start is certified when a manoeuvre of a fixed family keeps it in the corridor for ever within its thrust: it brakes
+in the body frame, or turns in towards the target, then stands in the body frame. All of it lies in the hull of a few
+control points, so its distance to each face is known without flying. A start that is not certified is undecided, not
+refused: other thrust histories may keep it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from safestart.closed_form.members import BRAKE, Faces, Ints, Offer, offers
+from safestart.closed_form.rates import Rates, rates_of
+from safestart.errors import invalid
+from safestart.model.scenario import Bools, Floats, Grid, Rest, Scenario
+
+ROUNDING = 1e-6
+"""Metres taken off every clearance: floats carry it to better than 1e-8 m within :data:`FARTHEST`."""
+
+FARTHEST = 1e6
+"""Largest coordinate in metres."""
+
+OUT_OF_REACH = "range"
+"""Name of what binds a start for which no manoeuvre has the thrust."""
+
+
+@dataclass(frozen=True, slots=True)
+class Certified:
+    """The certificate of an array of starts (...).
+
+    ``margin`` (...) in metres: where ``go``, the manoeuvre's distance to every face is at least this at all times;
+    elsewhere it is <= 0 and says what the start (outside the corridor) or the nearest manoeuvre lacks, of room or of
+    range. ``binding`` (...) is the index in ``names`` of the face that is nearest, or of :data:`OUT_OF_REACH`, the
+    last. ``member`` and ``drop`` (...) name the manoeuvre, :func:`safestart.closed_form.manoeuvre.manoeuvre_of`.
+    """
+
+    names: tuple[str, ...]
+    go: Bools
+    margin: Floats
+    binding: Ints
+    member: Ints
+    drop: Floats
+
+
+@dataclass(frozen=True, slots=True)
+class CertifiedMap:
+    """The certificate of a grid: ``margin``, ``mask`` (GO) and ``inside`` (in the corridor), all (ny, nx)."""
+
+    margin: Floats
+    mask: Bools
+    inside: Bools
+    safe_fraction: float
+
+
+def certify(scenario: Scenario, points: Floats, rest: Rest = Rest.LVLH) -> Certified:
+    """Certify starts at rest, body-frame positions ``points`` (..., 2) or (..., 3) in metres.
+
+    The body frame coincides with LVLH at the start. Raises ``InvalidInput`` when a coordinate is not finite or beyond
+    :data:`FARTHEST`, or the last axis is another.
+    """
+    points = np.asarray(points, dtype=np.float64)
+    if points.ndim == 0 or points.shape[-1] not in (2, 3):
+        raise invalid("points", "last axis of length 2 or 3 (metres)", points.shape)
+    if not (np.abs(points) <= FARTHEST).all():
+        raise invalid("points", f"finite coordinates within {FARTHEST:g} m", "NaN or more")
+    shape, dimensions = points.shape[:-1], points.shape[-1]
+    place = np.ascontiguousarray(points.reshape(-1, dimensions).T)
+    rates, faces = rates_of(scenario, rest), Faces.of(scenario.corridor, dimensions)
+    start = faces.room(place)
+    # Outside the corridor no manoeuvre helps: the margin is the start's own.
+    margin, binding = start.min(axis=0), start.argmin(axis=0)
+    member, drop = np.full(len(margin), BRAKE), np.zeros(len(margin))
+    inside = np.flatnonzero(margin > ROUNDING)
+    place, start = place[:, inside], start[:, inside]
+    found = _Best.of(offers(rates, faces, place, start))
+    lost = found.binding < 0
+    margin[inside] = np.where(lost, _shortfall(rates, place), found.margin)
+    binding[inside] = np.where(lost, len(faces.names), found.binding)
+    member[inside], drop[inside] = found.member, found.drop
+    margin -= ROUNDING
+    return Certified(
+        (*faces.names, OUT_OF_REACH),
+        (margin > 0.0).reshape(shape),
+        margin.reshape(shape),
+        binding.reshape(shape),
+        member.reshape(shape),
+        drop.reshape(shape),
+    )
+
+
+def certify_grid(scenario: Scenario, grid: Grid, rest: Rest = Rest.LVLH) -> CertifiedMap:
+    """Certify every point of a grid: arrays (ny, nx), row-major ``[iy][ix]``. The arithmetic is :func:`certify`'s."""
+    x, y = grid.axes(scenario.corridor)
+    cells = np.empty((2, len(y), len(x)))
+    cells[0], cells[1] = x, y[:, None]
+    place = cells.reshape(2, -1)
+    rates, faces = rates_of(scenario, rest), Faces.of(scenario.corridor, 2)
+    start = faces.room(place)
+    margin = start.min(axis=0)
+    inside = margin >= 0.0
+    within = np.flatnonzero(margin > ROUNDING)
+    place, start = place.take(within, axis=1), start.take(within, axis=1)
+    brake, turn_in = offers(rates, faces, place, start)
+    best = np.maximum(brake.worst, turn_in.worst)
+    lost = best == -np.inf
+    if lost.any():
+        best[lost] = _shortfall(rates, place[:, lost])
+    margin[within] = best
+    margin -= ROUNDING
+    mask = margin > 0.0
+    count = int(np.count_nonzero(inside))
+    fraction = float(np.count_nonzero(mask)) / count if count else 0.0
+    size = (len(y), len(x))
+    return CertifiedMap(margin.reshape(size), mask.reshape(size), inside.reshape(size), fraction)
+
+
+@dataclass(frozen=True, slots=True)
+class _Best:
+    """The best offer for each start; ``binding`` is -1 where there is none."""
+
+    margin: Floats
+    binding: Ints
+    member: Ints
+    drop: Floats
+
+    @classmethod
+    def of(cls, given: list[Offer]) -> _Best:
+        count = len(given[0].flyable)
+        margin, binding = np.full(count, -np.inf), np.full(count, -1)
+        member, drop = np.full(count, BRAKE), np.zeros(count)
+        for offer in given:
+            worst = offer.worst
+            better = worst > margin
+            margin = np.where(better, worst, margin)
+            binding = np.where(better, offer.clearance.argmin(axis=0), binding)
+            member, drop = np.where(better, offer.member, member), np.where(better, offer.drop, drop)
+        return cls(margin, binding, member, drop)
+
+
+def longest_range(rates: Rates) -> float:
+    """The farthest range in metres from which any manoeuvre can be flown; inf where none costs thrust."""
+    limit = max(rates.brake_limit, float(rates.family.reach[-1]))
+    return limit / rates.scale if rates.scale > 0.0 else math.inf
+
+
+def _shortfall(rates: Rates, place: Floats) -> Floats:
+    """Metres, at most 0, by which the start is farther away than :func:`longest_range`."""
+    return np.asarray(np.minimum(longest_range(rates) - np.sqrt((place * place).sum(axis=0)), 0.0))
