@@ -15,7 +15,6 @@ from collections import Counter
 from typing import Any
 
 import numpy as np
-from safestart.exact.watch import watch_of
 
 from benchmarks.timing import median_seconds
 from safestart.closed_form.certified import certify, certify_grid
@@ -27,6 +26,7 @@ from safestart.closed_form.paper import certify_grid as paper_grid
 from safestart.dynamics.cwh import input_matrix, transition_matrix
 from safestart.exact.decide import Verdict, decide
 from safestart.exact.question import MAX_STEPS, Question
+from safestart.exact.watch import watch_of
 from safestart.model.scenario import MAX_RANGE, Chaser, CorridorShape, Floats, Grid, Rest, Scenario, Target
 
 HORIZONS = (60.0, 300.0, 600.0)
