@@ -84,8 +84,9 @@ class Flat(Generic[M]):
         for name in self._omitted:
             if not top[name]:
                 del top[name]
-        for name in self._listed & top.keys():
-            top[name] = [top[name]]
+        for name in self._listed:
+            if name in top:
+                top[name] = [top[name]]
         try:
             parsed: M = self._validate(top)
             return parsed

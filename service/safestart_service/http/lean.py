@@ -7,7 +7,7 @@ itself. Here the query string is split once and validated in one call.
 from __future__ import annotations
 
 import re
-from collections.abc import Awaitable, Callable, Coroutine
+from collections.abc import Awaitable, Callable
 from typing import Any, TypeVar
 from urllib.parse import parse_qsl
 
@@ -60,27 +60,20 @@ def query_route(
     ``instant`` gives the document of a query that takes microseconds, or None: it is sent without more ado.
     """
 
-    async def handle(request: Request) -> Response:
-        return await answer(request, parse(query_values(request.scope["query_string"])))
-
-    async def app(scope: Scope, receive: Receive, send: Send) -> None:
-        query = parse(query_values(scope["query_string"]))
-        document = instant(query)
-        if document is None:
-            response = await answer(Request(scope, receive, send), query)
-            await response(scope, receive, send)
-        else:
-            await send_json(send, document)
-
     class QueryRoute(APIRoute):
-        """Route class for one query: FastAPI's handler where its router is included, less than that where it is not."""
+        """Route class for one query."""
 
-        def __init__(self, *args: Any, **kwargs: Any) -> None:
-            super().__init__(*args, **kwargs)
-            self.app = app
-
-        def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
-            """Handler that replaces dependency resolution."""
-            return handle
+        async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
+            """Serve one request."""
+            if scope["method"] != "GET":
+                await super().handle(scope, receive, send)  # refuses it
+                return
+            query = parse(query_values(scope["query_string"]))
+            document = instant(query)
+            if document is None:
+                response = await answer(Request(scope, receive, send), query)
+                await response(scope, receive, send)
+            else:
+                await send_json(send, document)
 
     return QueryRoute
