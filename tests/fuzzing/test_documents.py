@@ -79,7 +79,8 @@ def test_a_checker_that_does_not_mind_the_sign_is_caught(monkeypatch: pytest.Mon
         statement, "_claim", lambda document, go: statement.number(document, "margin_m", -1e7)
     )
     monkeypatch.setattr(refute.Refutation, "check", lambda self: None)
-    assert any(run("synchronize-no-go", 600, seed).false for seed in (1, 5, 6, 8))
+    # Half of the seeds find it; which ones depends on the last bits of the multipliers.
+    assert any(run("synchronize-no-go", 600, seed).false for seed in range(1, 41))
 
 
 def test_a_checker_that_does_not_mind_the_ends_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -118,7 +118,7 @@ def test_command_line(tmp_path: Path) -> None:
     assert "NO_GO" in done.stdout
     done = runner.invoke(build(), ["verify", str(path)])
     assert done.exit_code == 0
-    assert "3 +- 0.03 deg/s" in done.stdout
+    assert "(2.97 to 3.03 deg/s)" in done.stdout
     done = runner.invoke(build(), ["go-no-go", *point, "--x-m", "12", "--y-m", "60"])
     assert done.exit_code == 0
     assert "UNDECIDED" in done.stdout

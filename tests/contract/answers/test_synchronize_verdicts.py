@@ -126,7 +126,7 @@ def test_command_line(tmp_path: Path) -> None:
     assert (answer["verdict"], answer["end_s"]) == ("GO", 200.0)
     verified = runner.invoke(build(), ["verify", str(path)])
     assert verified.exit_code == 0
-    for said in ("within 0.5 m of", "at most 3 m/s", "keep-out radius 0.5 m"):
+    for said in ("within 0.5 m of", "speed: at most 3.0 m/s", "keep-out radius: 0.5 m"):
         assert said in verified.stdout
     refused = runner.invoke(build(), [*point, "--method", "exact", "--keep-out-m", "1"])
     assert refused.exit_code != 0

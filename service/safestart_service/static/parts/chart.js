@@ -31,8 +31,9 @@ export function draw(place, traces, layout = {}, config = {}) {
   return Plotly.react(place, traces, whole, bar);
 }
 
-matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
-  for (const [place, args] of drawn) if (place.isConnected) draw(place, ...args);
+/** Colours and sizes change with these; no window is resized when a page is printed. */
+for (const medium of ["(prefers-color-scheme: dark)", "print"]) matchMedia(medium).addEventListener("change", async () => {
+  for (const [place, args] of drawn) if (place.isConnected) { await draw(place, ...args); Plotly.Plots.resize(place); }
 });
 
 export function saveButtons(place, name, el) {
