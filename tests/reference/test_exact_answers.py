@@ -10,7 +10,8 @@ import pytest
 from benchmarks.exact_answers import certified, disagreements, one_sided, run
 from benchmarks.peers.dense_lp import DenseLP
 from safestart.closed_form.paper import certify
-from safestart.exact.decide import Verdict, decide
+from safestart.exact.answer import Verdict
+from safestart.exact.decide import decide
 from safestart.exact.prove import proof_of
 from safestart.exact.question import Goal, Question
 from safestart.model.scenario import Scenario

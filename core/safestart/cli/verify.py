@@ -26,7 +26,7 @@ def register(app: typer.Typer) -> None:
         """Check a GO or NO_GO proof. Exit code 0: valid, 1: rejected, 2: unreadable."""
         # Ball arithmetic is loaded here and not with every command.
         from safestart.proofs.checker import check
-        from safestart.proofs.statement import ProofRejected
+        from safestart.proofs.strict import ProofRejected
         from safestart.proofs.wording import asked
 
         document = _load(proof)
