@@ -34,6 +34,7 @@ def test_the_certified_start_that_cannot_stay_has_a_proof(dt: float, steps: int)
     assert inner - 0.01 < answer.upper < -1.148
 
 
+@pytest.mark.slow
 def test_sixty_starts_of_the_sweep() -> None:
     """A short version of the study in benchmarks/exact_answers.py."""
     cases = run(60, 7)
