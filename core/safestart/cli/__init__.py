@@ -39,6 +39,6 @@ def main() -> None:
         sys.stderr.write(f"safestart: {error.detail}\n")
         sys.exit(2)
     except BrokenPipeError:
-        # The reader (head, less) went away: nothing is wrong.
+        # The reader (head, less) closed the pipe; this is not an error.
         sys.stderr.close()
         sys.exit(0)
