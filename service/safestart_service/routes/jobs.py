@@ -114,7 +114,7 @@ async def job(
         seen = tagged(request, job_detail(found, now, base))
         return now.status.ended or (until_change and seen.status_code == 200), seen
 
-    # Not in the threads that compute instant answers: whoever follows a job must not wait for those.
+    # Not in the threads for instant answers: a client that follows a job must not wait for those.
     final, seen = await run_in_threadpool(look)
     if final or wait <= 0:
         return seen

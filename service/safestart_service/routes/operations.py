@@ -1,4 +1,4 @@
-"""For whoever operates the service: alive, ready, metrics."""
+"""For operators of the service: alive, ready, metrics."""
 
 from __future__ import annotations
 

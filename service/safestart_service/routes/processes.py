@@ -1,4 +1,4 @@
-"""What there is to run, and running it."""
+"""List, describe and run the processes."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ async def execute(
     """Light processes answer at once (200); with ``Prefer: respond-async`` they are queued, as heavy ones are."""
     spec = known_process(processID)
     body = await read_body(request)
-    # Its lines together are one list, of which ``prefer`` is the last.
+    # The header's lines form one list; ``prefer`` is only the last line.
     wants_async = prefer is not None and prefers_async(request.headers.getlist("prefer"))
     sync = spec.light and not wants_async
     found, base, by = services(request), base_url(request), caller(request)
