@@ -100,6 +100,13 @@ class UnfitResult(SafestartError):
     title = "The result does not fit its description"
 
 
+class Altered(SafestartError):
+    """What is stored does not have the SHA-256 that was stored with it: it is not given out."""
+
+    slug = "altered"
+    title = "The stored result was altered"
+
+
 class Unavailable(SafestartError):
     """Something this request needs (database, optional package, port) is not there."""
 

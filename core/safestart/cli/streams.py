@@ -44,7 +44,9 @@ class Streams:
         _flush()
         reason = "it is closed" if self._closed and _written() else None
         failure = None if self._stdout is None else self._stdout.failure
-        if failure is not None and failure.errno != errno.EPIPE:  # the reader (head, less) left: nothing is wrong
+        if (
+            failure is not None and failure.errno != errno.EPIPE
+        ):  # the reader (head, less) left: nothing is wrong
             reason = failure.strerror
         if reason is None:
             return code

@@ -10,7 +10,7 @@ import select
 import sqlite3
 import time
 from datetime import UTC, datetime
-from typing import Any
+from typing import Any, cast
 
 from sqlalchemy import Connection, DateTime, Dialect, Engine, event, text
 from sqlalchemy.exc import InvalidatePoolError
@@ -112,6 +112,7 @@ def prepare(engine: Engine) -> None:
         event.listen(engine, "connect", _on_sqlite_connect)
         event.listen(engine, "begin", _on_sqlite_begin)
     else:
+        event.listen(engine, "do_connect", _do_postgresql_connect)
         event.listen(engine, "connect", _on_postgresql_connect)
         event.listen(engine, "checkout", _on_postgresql_checkout)
 
@@ -137,8 +138,17 @@ def _on_sqlite_connect(connection: sqlite3.Connection, _record: Any) -> None:
     cursor.close()
 
 
+def _do_postgresql_connect(_dialect: Any, _record: Any, arguments: Any, options: Any) -> Any:
+    from safestart.store.patient import PatientConnection  # SQLite does without psycopg
+
+    return PatientConnection.connect(*arguments, **options)
+
+
 def _on_postgresql_connect(connection: Any, _record: Any) -> None:
+    from safestart.store.patient import STATEMENT_S
+
     with connection.cursor() as cursor:
+        cursor.execute(f"SET statement_timeout = {int(STATEMENT_S * 1000)}")
         # A process that is stopped in the middle of a transaction would keep its rows locked, and others from taking
         # over.
         cursor.execute(f"SET idle_in_transaction_session_timeout = {int(STOPPED_S * 1000)}")
@@ -151,6 +161,7 @@ def _on_postgresql_checkout(connection: Any, _record: Any, _proxy: Any) -> None:
     # An idle connection has nothing to say, except that its server is gone: seen without asking it, which would cost
     # every transaction a round trip. The pool then drops its connections and makes a new one.
     if not connection.closed:
+        connection.patience_s = type(connection).patience_s
         heard = select.poll()
         heard.register(connection, select.POLLIN)
         if not heard.poll(0):
@@ -167,7 +178,11 @@ def _on_sqlite_begin(connection: Connection) -> None:
 def lock_schema(connection: Connection) -> None:
     """Wait until no other process migrates, for this transaction; however long it takes, as that ends by itself."""
     if connection.dialect.name == "postgresql":
+        from safestart.store.patient import MIGRATION_S
+
         connection.execute(text("SET LOCAL lock_timeout = 0"))
+        connection.execute(text("SET LOCAL statement_timeout = 0"))
+        cast(Any, connection.connection.driver_connection).patience_s = MIGRATION_S
     _wait_for(connection, _SCHEMA_LOCK)
 
 

@@ -21,7 +21,7 @@ def ended(arguments: list[str], redirected: str) -> tuple[int, str]:
     """Exit code and standard error of a command behind a shell's redirection."""
     line = f'exec "$@" {redirected}'
     command = ["sh", "-c", line, "sh", sys.executable, "-m", "safestart", *arguments]
-    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
     return done.returncode, done.stderr
 
 
@@ -112,7 +112,9 @@ def test_a_place_that_cannot_be_written_is_named_before_the_work(
     for name in ("go_no_go.answer", "run.execute", "records._bundle_of"):
         monkeypatch.setattr(f"safestart.cli.{name}", work)
     # A directory: even root cannot write it.
-    monkeypatch.setattr(sys, "argv", ["s", *(a.replace("INPUT", str(asked)) for a in arguments), str(tmp_path)])
+    monkeypatch.setattr(
+        sys, "argv", ["s", *(a.replace("INPUT", str(asked)) for a in arguments), str(tmp_path)]
+    )
     with pytest.raises(SystemExit) as ended:
         main()
     assert ended.value.code == 2
@@ -127,7 +129,9 @@ def test_what_was_there_stays_when_the_work_fails(
     there, new = tmp_path / "there.json", tmp_path / "new.json"
     there.write_text("kept")
     for path in (there, new):
-        monkeypatch.setattr(sys, "argv", ["s", *ASKED, "--proof", str(path)])  # the closed form proves nothing
+        monkeypatch.setattr(
+            sys, "argv", ["s", *ASKED, "--proof", str(path)]
+        )  # the closed form proves nothing
         with pytest.raises(SystemExit) as ended:
             main()
         assert ended.value.code == 2
