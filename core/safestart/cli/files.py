@@ -1,4 +1,4 @@
-"""Files that the commands read and write; what cannot be is bad input, named by its option."""
+"""Files that the commands read and write; an unusable file is bad input, named by its option."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from safestart.errors import invalid
 
 @contextmanager
 def readable(option: str, path: Path | str) -> Iterator[None]:
-    """Raise ``InvalidInput`` for ``option`` where the block cannot read ``path``."""
+    """Raise ``InvalidInput`` for ``option`` when the block cannot read ``path``."""
     with _refused(option, "a readable file", path):
         yield
 
 
 @contextmanager
 def writable(option: str, path: Path) -> Iterator[None]:
-    """Raise ``InvalidInput`` for ``option`` where the block cannot write ``path``."""
+    """Raise ``InvalidInput`` for ``option`` when the block cannot write ``path``."""
     with _refused(option, "a writable path", path):
         yield
 

@@ -41,7 +41,7 @@ def register(app: typer.Typer) -> None:
 
 
 def _show(document: dict[str, Any]) -> None:
-    """Print the verdict on the one start, why, and what the closed form says of it."""
+    """Print the verdict on the start, the reason, and the closed form's verdict."""
     verdict = document["verdict"]
     out.print(f"[bold {'green' if verdict == 'GO' else 'red'}]{verdict}[/]: {document['reason']}")
     for member in document["examples"] or ():
@@ -54,7 +54,7 @@ def _show(document: dict[str, Any]) -> None:
 
 
 def _told(member: dict[str, Any]) -> str:
-    """One member of the sets in a line."""
+    """One line for one member of the sets."""
     margin = member["margin_m"]
     return (
         f"{member['verdict']} for {member['omega_t_deg_s']:.6g} deg/s, {member['a_max_m_s2']:g} m/s^2, "

@@ -1,4 +1,4 @@
-"""``safestart replay, export, import, backup, restore, purge``: what to do with the record of work."""
+"""``safestart replay, export, import, backup, restore, purge``: commands on the record of work."""
 
 from __future__ import annotations
 
@@ -158,7 +158,7 @@ def _bundle_of(job: str, database_url: str) -> Bundle:
 
 @contextmanager
 def _database(url: str, *, new: bool = False) -> Iterator[Database]:
-    """The database; ``new``: one that is not there is made, where otherwise a mistaken path is refused."""
+    """Open the database; ``new`` creates a missing one, which otherwise counts as a wrong path and is refused."""
     from safestart.runtime.settings import settings
     from safestart.store.database import Database
 

@@ -1,4 +1,4 @@
-"""Whole jobs in and out of the store, as bundles hold them."""
+"""Move whole jobs in and out of the store, in the form of bundles."""
 
 from __future__ import annotations
 
@@ -28,16 +28,16 @@ _FACTS = (
 
 
 class Transfer:
-    """Read an ended job with everything that belongs to it; add one that came from elsewhere."""
+    """Reads an ended job with everything that belongs to it; adds a job from elsewhere."""
 
     def __init__(self, database: Database) -> None:
         self._database = database
 
     def read(self, job_id: str) -> Bundle:
-        """Everything of an ended job; raises ``NotFound``, and ``Conflict`` while it has not ended.
+        """All of an ended job; raises ``NotFound``, and ``Conflict`` before its end.
 
-        ``Altered`` when its result is not what was stored: nothing is passed on that was altered since.
-        Who submitted it and which worker ran it stay here.
+        It raises ``Altered`` when the stored result was altered, so that no altered result leaves the store.
+        The names of the submitter and the worker are not exported.
         """
         with self._database.session() as session:
             row = find(session, job_id)
@@ -64,9 +64,9 @@ class Transfer:
             )
 
     def add(self, bundle: Bundle) -> bool:
-        """Add the job under its own id; False when it is here already with the same content.
+        """Add the job under its own id; False when the store already has it with the same content.
 
-        Raises ``Conflict`` when another job or another result has its id, ``InvalidInput`` for facts that are none.
+        Raises ``Conflict`` when another job or result has its id, and ``InvalidInput`` for malformed facts.
         """
         values, events = _values(bundle.job), event_facts(bundle.events)
         status = JobStatus(values["status"])

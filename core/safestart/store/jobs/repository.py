@@ -29,7 +29,7 @@ _ENTRY = tuple(table(JobRow).c[name] for name in ("seq", *(field.name for field 
 
 
 class JobRepository(Submissions, Claims, Shards, Queue, EventLog, Presence):
-    """Everything there is to do with jobs; safe to share between threads."""
+    """All operations on jobs; safe to share between threads."""
 
     def get(self, job_id: str) -> Job:
         """The job; raises ``NotFound``."""
@@ -71,7 +71,7 @@ class JobRepository(Submissions, Claims, Shards, Queue, EventLog, Presence):
         )
 
     def vitals(self) -> Vitals:
-        """What the metrics tell, in one look."""
+        """The values behind the metrics, read in one transaction."""
         with self._database.session() as session:
             oldest = session.execute(
                 select(JobRow.created_at, after().label("now"))

@@ -18,7 +18,7 @@ from safestart.store.records import ArtifactInfo, JobStatus, StoredResult
 
 
 class ResultRepository:
-    """Reads what ended jobs left; all methods raise ``NotFound`` for an unknown job."""
+    """Reads results and artifacts of ended jobs; all methods raise ``NotFound`` for an unknown job."""
 
     def __init__(self, database: Database) -> None:
         self._database = database
@@ -36,7 +36,7 @@ class ResultRepository:
             return StoredResult(row.job_id, row.schema_version, row.document, row.sha256, row.created_at)
 
     def artifact(self, job_id: str, name: str) -> Artifact:
-        """One artifact with its bytes; raises as :meth:`result`, ``NotFound`` names those there are."""
+        """One artifact with its bytes; raises as :meth:`result`, and ``NotFound`` names the existing artifacts."""
         with self._database.session() as session:
             _require_success(find(session, job_id))
             row = session.get(ArtifactRow, (job_id, name))
