@@ -101,7 +101,7 @@ class UnfitResult(SafestartError):
 
 
 class Altered(SafestartError):
-    """What is stored does not have the SHA-256 that was stored with it: it is not given out."""
+    """A stored result whose SHA-256 differs from the one stored with it; the service does not return it."""
 
     slug = "altered"
     title = "The stored result was altered"

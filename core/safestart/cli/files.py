@@ -28,7 +28,7 @@ def writable(option: str, path: Path) -> Iterator[None]:
 
 
 class Target:
-    """A file that is open before the work whose result it will hold. What was in it stays until that is written."""
+    """A file that is opened before the work; its old content stays until the result is written."""
 
     def __init__(self, option: str, path: Path, file: BinaryIO) -> None:
         self._option = option
@@ -50,9 +50,9 @@ class Target:
 
 @contextmanager
 def target(option: str, path: Path | None) -> Iterator[Target | None]:
-    """Open ``path`` for the block, its directory made when it is not there; None for None. Raises ``InvalidInput``.
+    """Open ``path`` for the block and create its directory; None for None. Raises ``InvalidInput``.
 
-    A file that was not there before is gone again when the block fails.
+    The block removes a new file when it fails.
     """
     if path is None:
         yield None

@@ -1,7 +1,8 @@
-"""Standard streams that take no command down: a reader that left is met with silence, a full disk with one sentence.
+"""Standard streams whose write errors do not end a command.
 
-What a command finds is its exit code, too: a proof that is rejected stays rejected when nobody reads why. So a write
-that fails raises nothing in the middle of the work. It is remembered, and told at the end.
+The exit code of a command is part of its answer: a rejected proof is rejected even when nobody reads the reason. A
+failed write therefore raises nothing during the work. The command reports a full disk at its end in one sentence, and
+says nothing when the reader closed the pipe.
 """
 
 from __future__ import annotations
@@ -18,15 +19,15 @@ NOT_WRITTEN = 2
 
 
 class _Kept(io.FileIO):
-    """A file whose first failure to write is kept; what comes later is dropped."""
+    """A file that keeps its first write error and drops all later data."""
 
     failure: OSError | None = None
 
-    def write(self, data: Any, /) -> int | None:
-        """Write, or act as if."""
+    def write(self, data: Any, /) -> int:  # type: ignore[override]
+        """Write the data, or drop it after a failure."""
         if self.failure is None:
             try:
-                return super().write(data)
+                return super().write(data) or 0
             except OSError as error:
                 self.failure = error
         return memoryview(data).nbytes
@@ -40,7 +41,7 @@ class Streams:
         self._closed = closed
 
     def code(self, code: int) -> int:
-        """The exit code of a command that ended with ``code``, after everything was written, or was not."""
+        """Flush the streams and return the exit code of a command that ended with ``code``."""
         _flush()
         reason = "it is closed" if self._closed and _written() else None
         failure = None if self._stdout is None else self._stdout.failure
@@ -57,7 +58,7 @@ class Streams:
 
 @contextmanager
 def patient_streams() -> Iterator[Streams]:
-    """Replace the real standard streams for the block; those that a test or a notebook has put there stay."""
+    """Replace the real standard streams for the block; the streams of a test or a notebook stay."""
     closed = sys.stdout is None
     _occupy()
     before = sys.stdin, sys.stdout, sys.stderr
@@ -80,7 +81,7 @@ def patient_streams() -> Iterator[Streams]:
 
 
 class _Counted(io.StringIO):
-    """Stands for a standard output that was closed before we began."""
+    """Standard output of a process that was started without one."""
 
 
 def _written() -> bool:
@@ -88,7 +89,7 @@ def _written() -> bool:
 
 
 def _occupy() -> None:
-    """Open what is closed of the first three files: a database that got one of their numbers would be written into."""
+    """Open the closed ones of the first three file numbers: output must never go into a database file."""
     while (number := os.open(os.devnull, os.O_RDWR)) <= 2:
         os.set_inheritable(number, True)
     os.close(number)

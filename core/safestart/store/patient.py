@@ -1,7 +1,7 @@
-"""A PostgreSQL connection that waits so long for an answer and no longer.
+"""A PostgreSQL connection that limits how long it waits for an answer.
 
-The server ends a statement that takes too long by itself. One that stands still (a stopped process, a frozen machine or
-volume) does not, and TCP does not notice while its kernel acknowledges: only who asked can.
+The server ends its own long statements. A stopped server process or a frozen volume cannot do that, and TCP does not
+notice either while the kernel acknowledges packets. The client needs its own limit.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ from psycopg import Connection, OperationalError
 
 STATEMENT_S = 40.0
 ANSWER_S = 45.0
-"""Later than the server's own limit: then its words are heard."""
+"""Longer than the server's limit, so that the server's own error arrives first."""
 MIGRATION_S = 7200.0
 
 
 class PatientConnection(Connection[Any]):
-    """Closes itself when its server says nothing for ``patience_s`` in the middle of a statement."""
+    """A connection that closes itself when its server is silent for ``patience_s`` during a statement."""
 
     patience_s = ANSWER_S
 

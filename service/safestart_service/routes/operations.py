@@ -38,7 +38,7 @@ def readyz(request: Request) -> Response:
     try:
         counts, crew = found.jobs.counts(), found.jobs.crew()
     except Unavailable as error:
-        # Anybody may ask: where the database is and what it said is for the log.
+        # Everybody may ask, so the name of the database goes to the log only.
         log.warning("not ready: %s", error.detail)
         raise Unavailable(
             "the database does not answer; the service's log says why", required="a database that answers"

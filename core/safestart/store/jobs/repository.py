@@ -60,7 +60,7 @@ class JobRepository(Submissions, Claims, Shards, Queue, EventLog, Presence):
             rows = rows[:limit][::-1] if newer else rows[:limit]
             if not rows or seq is None:
                 others = False
-            else:  # on the side from which the client came
+            else:  # on the side that the client came from
                 beyond = JobRow.seq < rows[-1].seq if newer else JobRow.seq > rows[0].seq
                 others = bool(session.scalar(select(exists().where(*conditions(wanted), beyond))))
         older, later = (others, more) if newer else (more, others)
@@ -110,7 +110,7 @@ def _encode(kind: str, seq: int) -> str:
 
 
 def _decode(cursor: str) -> tuple[bool, int]:
-    """Whether the page holds newer jobs than the one of the number that follows."""
+    """Direction and start of a page: True for newer jobs, and the number of the job beside the page."""
     required = "the next_cursor or prev_cursor of an earlier page"
     try:
         text = urlsafe_b64decode(cursor + "=" * (-len(cursor) % 4)).decode("ascii")
