@@ -23,7 +23,7 @@ class _Kept(io.FileIO):
 
     failure: OSError | None = None
 
-    def write(self, data: Any, /) -> int:  # type: ignore[override]
+    def write(self, data: Any, /) -> int:
         """Write the data, or drop it after a failure."""
         if self.failure is None:
             try:
