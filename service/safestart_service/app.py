@@ -87,6 +87,7 @@ def create_app(settings: Settings | None = None, database: Database | None = Non
         max_body_bytes=found.settings.max_body_bytes,
         access=found.access,
         timeout_s=found.settings.request_timeout_s,
+        refused=found.metrics.refused,
     )
     # Routes are tried in order and an included router costs more than a route, so the instant verdict comes first.
     app.router.routes.extend(go_no_go.one.routes)

@@ -71,9 +71,11 @@ def _serve(overrides: dict[str, object]) -> None:
         configure(chosen.log_format)
         with suppress(Away):  # the application waits for it and reports that
             database.migrate()
+        app = create_app(chosen, database)
+        refused = app.state.services.metrics.refused
         config = uvicorn.Config(
-            create_app(chosen, database),
-            http=cast(Any, partial(Protocol, places=Places(chosen.max_connections))),
+            app,
+            http=cast(Any, partial(Protocol, places=Places(chosen.max_connections), refused=refused)),
             ws="none",
             access_log=False,
             log_config=None,

@@ -113,6 +113,10 @@ class Metrics:
         child[0]()
         child[1](seconds)
 
+    def refused(self, status: int) -> None:
+        """Count a refusal from before any route: at the gate, or on the wire."""
+        self._requests.labels("*", UNROUTED, str(status)).inc()
+
     def render(self) -> bytes:
         """The exposition text; queries the database, so call it off the event loop."""
         return generate_latest(self.registry)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from typing import Any
+from urllib.parse import quote
 
 from safestart.errors import NotFound
 from safestart.processes.registry import PROCESS_IDS, process
@@ -155,7 +156,7 @@ def result_document(services: Services, job_id: str, base: str) -> dict[str, Any
                 "media_type": info.media_type,
                 "size": info.size,
                 "sha256": info.sha256,
-                "href": f"{base}/jobs/{job_id}/artifacts/{info.name}",
+                "href": f"{base}/jobs/{job_id}/artifacts/{quote(info.name, safe='')}",
             }
             for info in services.results.artifacts(job_id)
         ],

@@ -11,6 +11,7 @@ import itertools
 import logging
 import re
 import secrets
+from collections.abc import Callable
 
 from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -50,12 +51,18 @@ class Limits:
     """ASGI middleware around the whole application."""
 
     def __init__(
-        self, app: ASGIApp, max_body_bytes: int, access: Access | None = None, timeout_s: float = 60.0
+        self,
+        app: ASGIApp,
+        max_body_bytes: int,
+        access: Access | None = None,
+        timeout_s: float = 60.0,
+        refused: Callable[[int], None] = lambda _: None,
     ) -> None:
         self.app = app
         self.max_body_bytes = max_body_bytes
         self.access = access
         self.timeout_s = timeout_s
+        self.refused = refused  # told the status of what no route answers
         self._prefix = secrets.token_hex(4).encode() + b"-"
         self._numbers = itertools.count(1)
 
@@ -84,6 +91,7 @@ class Limits:
 
         refusal = twice or self._refusal(scope, headers)
         if refusal is not None:
+            self.refused(refusal.status)
             problem = problems.of_error(refusal, scope["path"], request_id.decode())
             await _answer(send_with_headers, problem, problems.headers_of(refusal))
             return
@@ -97,6 +105,7 @@ class Limits:
             log.exception("%s %s", scope["method"], scope["path"], extra=about(request=request_id.decode()))
             if started:  # too late for a problem document: the server cuts the connection
                 raise
+            self.refused(500)
             await _answer(send_with_headers, problems.unexpected(scope["path"], request_id.decode()))
 
     def _refusal(self, scope: Scope, headers: dict[bytes, bytes]) -> SafestartError | None:

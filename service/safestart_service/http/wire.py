@@ -10,6 +10,7 @@ import ipaddress
 import logging
 import secrets
 from asyncio import TimerHandle, Transport
+from collections.abc import Callable
 from enum import Enum, auto
 from http import HTTPStatus
 from typing import Any
@@ -52,9 +53,10 @@ class Protocol(Read):
     _seated = False
     _active: Any = None
 
-    def __init__(self, *args: Any, places: Places, **kwargs: Any) -> None:
+    def __init__(self, *args: Any, places: Places, refused: Callable[[int], None], **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
         self._places = places
+        self._refused = refused
         self._held = b""
 
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
@@ -178,6 +180,7 @@ class Protocol(Read):
         """Answer and close; if another answer is due or being sent on this connection, only close."""
         if self.transport.is_closing():
             return
+        self._refused(error.status)
         if self._may_answer():
             request_id = secrets.token_hex(8)
             log.info("refused: %s", error.detail, extra=about(request=request_id))

@@ -54,12 +54,15 @@ class ProcessQuery(BaseModel):
     responses={200: answer(ProcessList, "A page of processes.", ETag=TAG), **refusals(304, 422)},
 )
 async def processes(request: Request, query: Annotated[ProcessQuery, Query()]) -> Response:
-    """Everything that can be run; the link `next` leads to the next page, where there is one."""
+    """Everything that can be run; the links `next` and `prev` lead to the pages beside it."""
     base, end = base_url(request), query.offset + query.limit
     links = [link(this_url(request), "self", "this list")]
     if end < len(PROCESS_IDS):
         further = f"{base}/processes?limit={query.limit}&offset={end}"
         links.append(link(further, "next", "next page"))
+    if query.offset:
+        before = f"{base}/processes?limit={query.limit}&offset={max(0, query.offset - query.limit)}"
+        links.append(link(before, "prev", "previous page"))
     entries = [summary(process(name), base) for name in PROCESS_IDS[query.offset : end]]
     return tagged(request, {"processes": entries, "links": links})
 
