@@ -140,6 +140,7 @@ class JobPage:
 
     jobs: tuple[JobEntry, ...]
     next_cursor: str | None
+    prev_cursor: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
