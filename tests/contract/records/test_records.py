@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 
 from safestart.cli import build
 from safestart.cli.records import age
-from safestart.errors import Conflict, InvalidInput, SafestartError
+from safestart.errors import Altered, Conflict, InvalidInput, SafestartError
 from safestart.records.artifact import Artifact
 from safestart.records.bundle import pack, unpack
 from safestart.store.database import Database
@@ -176,14 +176,16 @@ def test_what_was_altered_in_the_database_is_not_passed_on(database: Database, e
     with database.session(write=True) as session:
         row = session.get_one(ResultRow, job)
         row.document = row.document | {"outputs": row.document["outputs"] | {"corridor_cells": 1}}
-    with pytest.raises(Conflict, match="the result does not have the SHA-256 on record"):
-        Transfer(database).read(job)
+    for read in (Transfer(database).read, ResultRepository(database).result):
+        with pytest.raises(Altered, match="the result does not have the SHA-256 on record"):
+            read(job)
     name = execution.artifacts[0].name
     other = done(database, execution)
     with database.session(write=True) as session:
         session.get_one(ArtifactRow, (other, name)).data = b"forged"
-    with pytest.raises(Conflict, match=f"artifact {name} does not have"):
-        Transfer(database).read(other)
+    for read in (Transfer(database).read, lambda job: ResultRepository(database).artifact(job, name)):
+        with pytest.raises(Altered, match=f"artifact {name} does not have"):
+            read(other)
 
 
 @pytest.mark.parametrize(("text", "seconds"), [("30d", 2592000), ("1.5h", 5400), ("90 min", 5400), ("0s", 0)])
