@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from safestart.errors import invalid
-from safestart.exact.answer import GUARD, Answer, Verdict
+from safestart.exact.answer import GUARD, TOLERANCE, Answer, Verdict
 from safestart.exact.decide import decide as decide_start
 from safestart.exact.question import Question
 from safestart.model.scenario import Floats, Rest
@@ -19,6 +19,8 @@ from safestart.processes.go_no_go.methods.proofs import MOST_PROGRAMS, Solved, p
 from safestart.processes.go_no_go.spec import GoNoGoInputs
 from safestart.runtime.progress import Context
 
+QUICK_TOLERANCE = 0.01
+"""Metres to which margins are known where no document is asked for: verdicts are the same, programs fewer."""
 _MANY = 100
 """Starts from which on building an atlas (some tens of cone programs) pays."""
 
@@ -48,7 +50,7 @@ def prove_all(inputs: GoNoGoInputs, context: Context) -> Verdicts:
 
     def solve(question: Question, starts: Floats, context: Context) -> Solved:
         if question.plain and question.dimensions == 2 and inputs.rest is Rest.LVLH:
-            return _by_atlas(question, starts, context, documents=inputs.proofs)
+            return _by_atlas(question, starts, context, documents=inputs.proofs, tolerance=_tolerance(inputs))
         if len(starts) > MOST_PROGRAMS:
             raise invalid(
                 "states",
@@ -56,9 +58,14 @@ def prove_all(inputs: GoNoGoInputs, context: Context) -> Verdicts:
                 "certified takes more",
                 len(starts),
             )
-        return one_by_one(question, starts, context)
+        return one_by_one(question, starts, context, _tolerance(inputs))
 
     return prove(inputs, solve, context)
+
+
+def _tolerance(inputs: GoNoGoInputs) -> float:
+    """How closely margins are known (m): one of a document as closely as with method exact."""
+    return TOLERANCE if inputs.proofs else QUICK_TOLERANCE
 
 
 def _put(said: Verdicts, places: list[int], found: Verdicts) -> None:
@@ -74,7 +81,9 @@ def _put(said: Verdicts, places: list[int], found: Verdicts) -> None:
             column[k] = value
 
 
-def _by_atlas(question: Question, starts: Floats, context: Context, *, documents: bool) -> Solved:
+def _by_atlas(
+    question: Question, starts: Floats, context: Context, *, documents: bool, tolerance: float
+) -> Solved:
     """Atlas first; what lies in its undecided strip is solved, as far as the number of programs allows.
 
     Few starts ask an atlas that is there and are solved otherwise; many have one built. Thrust and multipliers are
@@ -83,7 +92,7 @@ def _by_atlas(question: Question, starts: Floats, context: Context, *, documents
     many = len(starts) >= _MANY
     atlas = atlas_for(question, float(starts[:, 1].max()), context, make=many)
     if atlas is None:
-        return one_by_one(question, starts, context)
+        return one_by_one(question, starts, context, tolerance)
     lower, upper = atlas.bounds(starts[:, :2])
     answers: list[Answer] = []
     by: list[str] = []
@@ -94,7 +103,7 @@ def _by_atlas(question: Question, starts: Floats, context: Context, *, documents
             answers.append(bare or atlas.answer(start[:2]))
             by.append("atlas")
         else:
-            answers.append(decide_start(question, start, verdict_only=many))
+            answers.append(decide_start(question, start, tolerance=tolerance, verdict_only=many))
             by.append("exact")
             solved += 1
         context.step(len(answers), len(starts), "starts")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from safestart.errors import invalid
-from safestart.exact.answer import Answer
+from safestart.exact.answer import TOLERANCE, Answer
 from safestart.exact.decide import decide as decide_start
 from safestart.exact.question import Question
 from safestart.model.scenario import Floats
@@ -23,10 +23,10 @@ def decide(inputs: GoNoGoInputs, _: Conditions, context: Context) -> Verdicts:
     return prove(inputs, one_by_one, context)
 
 
-def one_by_one(question: Question, starts: Floats, context: Context) -> Solved:
-    """The exact answer for each start (S, 2 d)."""
+def one_by_one(question: Question, starts: Floats, context: Context, tolerance: float = TOLERANCE) -> Solved:
+    """The exact answer for each start (S, 2 d), its margin to ``tolerance`` (m)."""
     answers: list[Answer] = []
     for k, start in enumerate(starts):
-        answers.append(decide_start(question, start))
+        answers.append(decide_start(question, start, tolerance=tolerance))
         context.step(k + 1, len(starts), "starts")
     return answers, ["exact"] * len(answers)
