@@ -1,4 +1,4 @@
-"""One root for every error a caller can cause or meet; each message says what was required and what came.
+"""Errors that a caller can cause or meet, under one root; each message says what was required and what came.
 
 Bad input raises one of these. A numerical failure does not: it is a result code
 (:class:`safestart.engines.base.ResultCode`).
@@ -65,14 +65,14 @@ class Conflict(SafestartError):
 
 
 class LeaseLost(Conflict):
-    """A worker's hold on a job has passed on; whatever it still wants to write is refused."""
+    """A worker lost its lease on a job; the store refuses its further writes."""
 
     slug = "lease-lost"
     title = "Lease lost"
 
 
 class IdempotencyMismatch(SafestartError):
-    """An idempotency key that came back with another request body."""
+    """A request reused an idempotency key with another body."""
 
     status = 422
     slug = "idempotency-mismatch"
@@ -94,14 +94,21 @@ class JobFailed(NotFound):
 
 
 class UnfitResult(SafestartError):
-    """A result that is not what its process describes: it is not kept."""
+    """A result does not match its process description, so it is not stored."""
 
     slug = "unfit-result"
     title = "The result does not fit its description"
 
 
+class Altered(SafestartError):
+    """A stored result whose SHA-256 differs from the one stored with it; the service does not return it."""
+
+    slug = "altered"
+    title = "The stored result was altered"
+
+
 class Unavailable(SafestartError):
-    """Something this request needs (database, optional package, port) is not there."""
+    """Something this request needs (database, optional package, port) is missing."""
 
     status = 503
     slug = "unavailable"
@@ -109,11 +116,11 @@ class Unavailable(SafestartError):
 
 
 class Away(Unavailable):
-    """A server that does not answer now and may later: worth waiting for."""
+    """A server does not answer now but may answer later: a caller may wait for it."""
 
 
 class QueueFull(Unavailable):
-    """As many jobs wait as the service accepts; try again later."""
+    """The queue is full; try again later."""
 
     status = 429
     slug = "queue-full"

@@ -1,4 +1,4 @@
-"""``safestart worker``: added to the command line by an entry point."""
+"""``safestart worker``; an entry point adds it to the command line."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def register(app: typer.Typer) -> None:
         processes: Annotated[int, typer.Option(min=0, max=1024, help="Jobs at once; 0: the setting.")] = 0,
     ) -> None:
         """Claim jobs and run them on Dask until SIGTERM or Ctrl-C; running jobs then go back to the queue."""
-        # Here and not above: every other command starts without Dask.
+        # Imported here, so that every other command starts without Dask.
         from safestart_worker.loop import Options, work
 
         configured = settings()
@@ -32,7 +32,7 @@ def register(app: typer.Typer) -> None:
         options = Options(
             database_url=database_url or configured.url(),
             scheduler=address,
-            # On an existing cluster, its size is the limit unless this one is given.
+            # On an existing cluster the cluster's size is the default limit.
             processes=processes or (0 if address else configured.processes),
             lease_s=configured.lease_s,
             poll_s=configured.poll_s,

@@ -1,4 +1,4 @@
-"""``python -m safestart_worker.health``: exit code 0 when a worker of this host was heard of lately."""
+"""``python -m safestart_worker.health``: exit code 0 when a worker of this host sent a recent heartbeat."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from safestart.store.jobs.repository import JobRepository
 
 
 def main() -> int:
-    """Ask the database, which has the heartbeats."""
+    """Look for a heartbeat in the database."""
     try:
         owners = JobRepository(Database(settings().url())).owners_alive()
     except SafestartError as error:

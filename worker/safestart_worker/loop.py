@@ -1,4 +1,4 @@
-"""The worker: heartbeats, claims as many jobs as can run, one shepherd each, until it is told to stop."""
+"""The worker sends heartbeats, claims as many jobs as can run, and gives each a shepherd, until told to stop."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ from safestart_worker.jobs.shepherd import Rules, Shepherd
 log = logging.getLogger("safestart.worker")
 
 HEARTBEAT_S = 3.0
-# While the database is away there is nothing to do but ask again.
+# Time between retries while the database is unavailable.
 AWAY_S = 2.0
 PURGE_S = 3600.0
-# How long jobs wait for the warm-up. On a shared cluster it may itself wait behind the jobs of others.
+# Longest time that jobs wait for the warm-up, which may queue behind other jobs on a shared cluster.
 WARM_S = 120.0
 WARM_SHARED_S = 10.0
 
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """What a worker is started with.
+    """Options of a worker.
 
-    ``processes`` 0: as many as the cluster has threads. ``keep_s`` 0: ended jobs are kept for ever.
+    ``processes`` 0: as many as the cluster has threads. ``keep_s`` 0: keep ended jobs for ever.
     """
 
     database_url: str
@@ -50,12 +50,12 @@ class Options:
 
     @property
     def rules(self) -> Rules:
-        """What the shepherds need to know."""
+        """The options that the shepherds need."""
         return Rules(self.lease_s, self.max_attempts, self.silence_s)
 
 
 class Worker:
-    """Claims jobs and sees them through."""
+    """Claims jobs and runs them to their ends."""
 
     def __init__(self, options: Options, jobs: JobRepository, cluster: Cluster, owner: str) -> None:
         self._options = options
@@ -64,7 +64,7 @@ class Worker:
         self._owner = owner
         self._capacity = 0
         self._last_beat = 0.0
-        self._likely = False  # the latest claim found a job, so the next one probably does
+        self._likely = False  # the last claim found a job, so the next one probably will
         self._herd: dict[asyncio.Task[None], Shepherd] = {}
         self._freed = asyncio.Event()
         cluster.listen(self._on_report)
@@ -98,12 +98,12 @@ class Worker:
 
     @property
     def _busy(self) -> int:
-        """Jobs that compute. While the end of one is written, its place is free for the next."""
+        """Jobs that compute. A job whose end is being written no longer counts, so the next one can start."""
         return sum(shepherd.computes for shepherd in self._herd.values())
 
     async def _claim(self, stopping: asyncio.Event) -> None:
         options = self._options
-        # No more ends than places wait to be written, for a database that takes claims and no results.
+        # At most one unwritten end per place, in case the database accepts claims but no results.
         while self._busy < self._capacity and len(self._herd) < 2 * self._capacity and not stopping.is_set():
             claim = await asyncio.to_thread(
                 self._jobs.claim, self._owner, options.lease_s, options.max_attempts, likely=self._likely
@@ -122,7 +122,7 @@ class Worker:
         if now - self._last_beat < HEARTBEAT_S:
             return
         threads = await self._cluster.threads()
-        # A process that is being replaced is back before the queue notices: the embedded size is fixed.
+        # The embedded size is fixed: a replaced process comes back before the queue notices.
         wanted = self._options.processes
         self._capacity = wanted if self._cluster.embedded else min(threads, wanted or threads)
         await asyncio.to_thread(self._jobs.heartbeat, self._owner, self._capacity, self._busy)
@@ -133,7 +133,7 @@ class Worker:
             shepherd = self._herd.pop(task)
             error = task.exception()
             if error is not None:
-                # Its lease runs out by itself, and the job is taken up again.
+                # Its lease runs out, and a worker takes the job over.
                 log.error("left to its lease", exc_info=error, extra=about(job=shepherd.claim.job_id))
 
     def _on_report(self, data: dict[str, object]) -> None:
@@ -173,7 +173,7 @@ async def work(options: Options) -> int:
 
 
 async def _migrated(database: Database, stopping: asyncio.Event) -> bool:
-    """Wait for a database that is away; False when told to stop meanwhile. What cannot be mended by waiting raises."""
+    """Wait for an unavailable database; False when told to stop meanwhile. Raises when waiting cannot help."""
     while not stopping.is_set():
         try:
             await asyncio.to_thread(database.migrate)
@@ -187,7 +187,7 @@ async def _migrated(database: Database, stopping: asyncio.Event) -> bool:
 
 
 async def _purge(retention: Retention, keep_s: float) -> None:
-    """Delete what ended longer ago than it is kept, once an hour."""
+    """Once an hour, delete jobs that ended longer ago than ``keep_s``."""
     while keep_s > 0.0:
         try:
             number = await asyncio.to_thread(retention.purge, keep_s)
@@ -200,7 +200,7 @@ async def _purge(retention: Retention, keep_s: float) -> None:
 
 
 async def _announce(jobs: JobRepository, owner: str) -> None:
-    """Be seen, with no room yet, while the cluster starts: jobs then wait for this worker, not for none."""
+    """Send heartbeats with no room while the cluster starts, so that the service shows waiting jobs a worker."""
     while True:
         try:
             await asyncio.to_thread(jobs.heartbeat, owner, 0, 0)
@@ -224,7 +224,7 @@ async def _warm(cluster: Cluster, stopping: asyncio.Event) -> None:
     try:
         warming.result()
     except Exception:
-        # The jobs that need what is broken here will fail with their own reasons; others need not wait for it.
+        # Jobs that need the broken part will fail with their own reasons; the others can run.
         log.exception("warming up failed")
     print(f"done in {time.monotonic() - start:.1f} s", flush=True)
 

@@ -1,4 +1,4 @@
-"""Why a job failed, as a problem document (RFC 9457 members). No stack trace, no secret: those are for the log."""
+"""Why a job failed, as a problem document (RFC 9457 members), without stack traces and secrets."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def _problem(slug: str, title: str, status: int, detail: str, **more: Any) -> di
 
 
 def of_error(error: SafestartError) -> dict[str, Any]:
-    """Problem of one of our errors: what was required and what came."""
+    """Problem for one of our errors: what was required and what came."""
     received = None if error.received is None else str(error.received)[:_SHOWN]
     return _problem(
         error.slug,
@@ -30,7 +30,7 @@ def of_error(error: SafestartError) -> dict[str, Any]:
 
 
 def of_unexpected(error: BaseException, incident: str) -> dict[str, Any]:
-    """Problem of an error nobody expected; ``incident`` finds its stack trace in the worker's log."""
+    """Problem for an unexpected error; ``incident`` finds its stack trace in the worker's log."""
     detail = (
         f"the computation ended with an unexpected {type(error).__name__}; the worker's log has {incident}"
     )
@@ -38,7 +38,7 @@ def of_unexpected(error: BaseException, incident: str) -> dict[str, Any]:
 
 
 def of_timeout(timeout_s: float) -> dict[str, Any]:
-    """Problem of a job that ran longer than it may."""
+    """Problem for a job that exceeded its time limit."""
     return _problem(
         "timeout",
         "Time limit exceeded",
@@ -49,7 +49,7 @@ def of_timeout(timeout_s: float) -> dict[str, Any]:
 
 
 def of_other_source(ours: str, theirs: str) -> dict[str, Any]:
-    """Problem of a job whose parts are computed by different code: nothing could say what its result comes from."""
+    """Problem for a job whose parts were computed by different code, so its result has no single source."""
     return _problem(
         "other-source",
         "Different code",
@@ -62,7 +62,7 @@ def of_other_source(ours: str, theirs: str) -> dict[str, Any]:
 
 
 def of_poison(deaths: int) -> dict[str, Any]:
-    """Problem of a job one of whose tasks took its processes down with it."""
+    """Problem for a job with a task that killed its processes."""
     return _problem(
         "poison",
         "Too many attempts",

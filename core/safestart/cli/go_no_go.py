@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from safestart.cli.console import Json, out, print_json
-from safestart.cli.files import write_json
+from safestart.cli.files import target
 from safestart.cli.options import takes
 from safestart.errors import invalid
 from safestart.processes.go_no_go.one_start import ONE_START
@@ -42,10 +42,10 @@ def register(app: typer.Typer) -> None:
         """May a chaser at rest at this point start its approach? No GO without a proof, but by method paper."""
         given = {name: value for name, value in asked.items() if value is not None}
         inputs = ONE_START.parse(given | {"proofs": proof is not None})
-        found = answer(inputs, Context())
-        document = found.document_of_one()
-        if proof is not None:
-            _write(proof, document["proof"])
+        with target("--proof", proof) as file:
+            document = answer(inputs, Context()).document_of_one()
+            if file is not None:
+                file.write_json(_proved(document["proof"]))
         print_json(document) if as_json else _show(document)
 
 
@@ -66,7 +66,7 @@ def _show(document: dict[str, Any]) -> None:
 
 
 def _told(member: dict[str, Any]) -> str:
-    """One member of the sets in a line."""
+    """One line for one member of the sets."""
     margin = member["margin_m"]
     return (
         f"{member['verdict']} for {member['omega_t_deg_s']:.6g} deg/s, {member['a_max_m_s2']:g} m/s^2, "
@@ -75,7 +75,7 @@ def _told(member: dict[str, Any]) -> str:
     )
 
 
-def _write(path: Path, document: object) -> None:
+def _proved(document: object) -> object:
     if document is None:
         raise invalid("--proof", "a proved verdict (method exact, GO or NO_GO)", "none")
-    write_json("--proof", path, document)
+    return document

@@ -38,7 +38,7 @@ def wilson(successes: int, trials: int, z: float = 1.959963984540054) -> tuple[f
     share, square = successes / trials, z * z / trials
     middle = (share + 0.5 * square) / (1.0 + square)
     half = z / (1.0 + square) * math.sqrt(share * (1.0 - share) / trials + 0.25 * square / trials)
-    # At the ends rounding could leave the interval a hair short of 0 or 1.
+    # Rounding could leave the interval just short of 0 or 1 at the ends.
     low = 0.0 if successes == 0 else max(0.0, middle - half)
     return low, 1.0 if successes == trials else min(1.0, middle + half)
 

@@ -20,7 +20,7 @@ from safestart.errors import invalid
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-# Bounds that no mission exceeds; beyond them the unit is wrong (degrees for radians, millimetres for metres).
+# No mission exceeds these bounds; a value beyond them has the wrong unit (degrees for radians, mm for m).
 MAX_TUMBLE_RATE = math.radians(60.0)
 # An ion engine on a tonne gives about 1e-5; below 1e-6 m/s^2 nothing can be arrested.
 MIN_ACCELERATION, MAX_ACCELERATION = 1e-6, 10.0
@@ -30,7 +30,7 @@ MAX_CELLS = 1_000_000
 
 
 class Rest(StrEnum):
-    """In which frame a start is at rest (paper 000 leaves it open; the two sets differ strongly)."""
+    """The frame in which a start is at rest (paper 000 leaves it open; the two sets differ strongly)."""
 
     LVLH = "lvlh"
     BODY = "body"

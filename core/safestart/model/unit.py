@@ -1,4 +1,4 @@
-"""Directions of vectors, however short or long they are."""
+"""Directions of vectors of any length, without underflow or overflow."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ import numpy as np
 
 from safestart.model.scenario import Floats
 
-# Within these the squares neither underflow nor overflow.
+# Between these limits the squares neither underflow nor overflow.
 _SHORT, _LONG = 1e-140, 1e140
 
 
 def unit(vectors: Floats) -> Floats:
     """Vectors (..., m) of length 1, to rounding, in the directions of ``vectors``; zero where they are zero.
 
-    The square of 1e-160 keeps a few bits only: a vector divided by the root of such squares may come out per cents too
-    long. Such vectors are scaled first.
+    The square of 1e-160 keeps only a few bits, and dividing by the root of such squares gives an error of several
+    per cent. Such vectors are scaled first.
     """
     largest = np.abs(vectors).max(axis=-1, keepdims=True, initial=0.0)
     odd = (largest != 0.0) & ((largest < _SHORT) | (largest > _LONG))

@@ -1,4 +1,4 @@
-"""Pydantic's reports in our words: the field, what was required, what came."""
+"""Translate pydantic's error reports: the field, what was required, what came."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _REQUIRED = {
 
 
 def required(report: Any) -> str:
-    """What one of pydantic's reports asks for."""
+    """What one pydantic report required."""
     template = _REQUIRED.get(report["type"])
     if template is None:
         return str(report["msg"])
@@ -54,7 +54,7 @@ def required(report: Any) -> str:
 
 
 def received(report: Any) -> str:
-    """What came instead, shortened."""
+    """What came, shortened."""
     if report["type"] == "missing":
         return "nothing"
     shown = repr(report.get("input"))
@@ -70,7 +70,7 @@ def refusal(reports: Sequence[Any], prefix: str = "") -> InvalidInput:
 
 
 def error_of(kind: type[Error], reports: Sequence[Any], prefix: str = "") -> Error:
-    """The same as another of our errors."""
+    """The same report as another error class of ours."""
     named = reports[: 1 + _LISTED]
     fields = [prefix + (".".join(str(part) for part in report["loc"]) or "body") for report in named]
     wanted, came = required(reports[0]), received(reports[0])

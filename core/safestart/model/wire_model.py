@@ -6,6 +6,6 @@ from pydantic import BaseModel, ConfigDict
 
 
 class WireModel(BaseModel):
-    """Base of every model that crosses the wire: unknown fields are refused, NaN and infinity too."""
+    """Base of every model that crosses the wire: it refuses unknown fields, NaN and infinity."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, strict=False)

@@ -1,1 +1,1 @@
-"""What every process of the operating system needs: settings, logs, progress, caches, warm-up, supervision."""
+"""Needed by every operating-system process: settings, logs, progress, caches, warm-up, supervision."""

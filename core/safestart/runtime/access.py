@@ -1,8 +1,8 @@
 """Who may do what: roles, callers, and the form of an API key.
 
-A key is ``sst_ID_SECRET``: the public id names it in lists and logs, the secret is 256 random bits. What is kept is the
-SHA-256 of the whole key. A slow password hash would add nothing: it makes guessing dear where secrets are chosen by
-people, and nobody guesses 256 bits; and it would cost every request what it costs a guess.
+A key is ``sst_ID_SECRET``: the public id names it in lists and logs, the secret is 256 random bits. The store keeps
+the SHA-256 of the whole key. A slow password hash protects secrets that people choose; nobody guesses 256 random
+bits, and the slow hash would delay every request.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ class Role(StrEnum):
     ADMIN = "admin"
 
     def allows(self, needed: Role) -> bool:
-        """True when this role is enough for what needs ``needed``."""
+        """True when this role includes the role ``needed``."""
         return _RANK[self] >= _RANK[needed]
 
 
@@ -34,9 +34,9 @@ _RANK = {role: rank for rank, role in enumerate(Role)}
 
 @dataclass(frozen=True, slots=True)
 class Caller:
-    """Who asks, as the audit log names them.
+    """The caller, as the audit log names it.
 
-    ``key_id`` is None without a key: then ``name`` says where the request came from (``local``, ``cli``).
+    Without a key ``key_id`` is None and ``name`` says where the request came from (``local``, ``cli``).
     """
 
     key_id: str | None
@@ -47,15 +47,15 @@ class Caller:
 
 
 LOCAL = Caller(None, "local", Role.SUBMIT)
-"""A caller without a key, on a service that asks for none. Administration asks for a key always."""
+"""A caller without a key, on a service that requires none. Administration always requires a key."""
 
 
 def new_key() -> tuple[str, str]:
-    """A fresh key: its id and the whole key, which is shown once and not kept."""
+    """Make a key; returns its id and the whole key, which is shown once and never stored."""
     key_id = secrets.token_hex(6)
     return key_id, f"{PREFIX}_{key_id}_{secrets.token_urlsafe(32)}"
 
 
 def key_digest(key: bytes) -> bytes:
-    """What is kept of a key: 32 bytes."""
+    """The 32 bytes that are stored of a key."""
     return sha256(key).digest()

@@ -1,4 +1,4 @@
-"""What was computed before, found by the content of the question: a cache that may forget, never a record."""
+"""A cache of earlier answers, keyed by the content of the question. It may forget; it is not a record."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from typing import Protocol
 
 
 class Shelf(Protocol):
-    """Bytes by content key; losing them costs time and nothing else."""
+    """Bytes by content key; losing them costs only time."""
 
     def find(self, key: str) -> bytes | None:
-        """The bytes kept under ``key``, None when there are none (or the place they are kept is away)."""
+        """The bytes stored under ``key``; None when there are none or the storage is unavailable."""
 
     def keep(self, key: str, data: bytes) -> None:
-        """Keep ``data`` under ``key``; may be declined silently."""
+        """Store ``data`` under ``key``; the cache may silently decline."""
 
 
 class _Empty:

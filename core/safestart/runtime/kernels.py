@@ -1,12 +1,12 @@
-"""Compiled kernels and their cache on disk: no stale code, and no broken file, ever runs.
+"""Compiled kernels and their cache on disk, which never runs stale code or a broken file.
 
-Numba freezes every global that a kernel reads, its constants and the kernels it calls, but keys its cache by the
-bytecode of the one function and the time of its one file. A changed constant or callee of another file would
-therefore run as the old machine code. The cache of a :func:`compiled` function is keyed by all of it: the source text
-behind every function that it calls, at any depth, the value of every constant, and the fields of its record arguments.
+Numba freezes every global that a kernel reads, its constants and the kernels it calls. But its cache key covers
+only the bytecode of the one function and the time of its file, so a constant or callee changed in another file
+would still run as the old machine code. The cache key of a :func:`compiled` function covers all of it: the source
+text of every function that it calls, at any depth, the value of every constant, and the fields of its record
+arguments.
 
-A cache is no record: what cannot be read is compiled again, what cannot be written is not kept, and one line of log
-says so.
+An unreadable cache file is compiled again, an unwritable one is skipped, and one log line says so.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ _CONSTANTS = (bool, int, float, complex, str, bytes, type(None), np.generic, tup
 def compiled(**options: Any) -> Callable[[Any], Any]:
     """Decorator: ``numba.njit(nogil=True, **options)`` with a cache keyed by everything the code depends on.
 
-    ``options`` are Numba's, without ``cache``. Where no place for a cache can be written, the kernel is compiled for
-    this process alone.
+    ``options`` are Numba's, without ``cache``. Without a writable cache folder the kernel is compiled for this
+    process alone.
     """
 
     def decorate(function: Any) -> Any:
@@ -54,17 +54,17 @@ class KernelCache(FunctionCache):
     """Numba's cache of one function, with a key that covers its dependencies and a digest of every file's content."""
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """The compiled code of a signature, or None where there is none that can be trusted."""
+        """The compiled code of a signature, or None when no trusted code exists."""
         try:
             return super().load_overload(sig, target_context)
-        except Exception as error:  # whatever a damaged file makes pickle do
+        except Exception as error:  # a damaged file can make pickle raise anything
             _say("a kept kernel cannot be read and is compiled again", error)
             with suppress(Exception):
                 self.flush()  # an index that cannot be read could not be written either
             return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Keep the compiled code of a signature, where that is possible."""
+        """Store the compiled code of a signature, if possible."""
         try:
             super().save_overload(sig, data)
         except Exception as error:  # a full or read-only disk, a damaged index
@@ -143,7 +143,7 @@ def _text_digest(module: str) -> str:
 
 
 def _records(argument: Any) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """Name and fields of every record among the argument's types: Numba keys them by the types of their fields only."""
+    """Name and fields of every record among the argument types; Numba's own key has only the field types."""
     if isinstance(argument, types.NamedTuple | types.NamedUniTuple):
         yield argument.instance_class.__qualname__, tuple(argument.fields)
     if isinstance(argument, types.BaseTuple):

@@ -1,6 +1,6 @@
-"""Logs on stderr: one line per event, as text or as JSON, with the job or the request that it is about.
+"""Logs on stderr: one line per event, as text or as JSON, with its job or request.
 
-A call that is about a job says so with ``extra=about(job=...)``; both formats show it.
+A call names its job with ``extra=about(job=...)``; both formats show it.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ _SUBJECTS = ("job", "request")
 
 
 def about(**subjects: str) -> dict[str, Any]:
-    """What a log record is about: ``job`` and ``request`` by their ids."""
+    """The subject of a log record: ``job`` and ``request`` ids."""
     return subjects
 
 
@@ -28,7 +28,7 @@ def configure(form: LogFormat) -> None:
     logging.getLogger("safestart").setLevel(logging.INFO)
     logging.captureWarnings(True)
     for logger in logging.root.manager.loggerDict.values():
-        # Libraries that brought handlers of their own (Dask did) keep them, and who reads lines gets one form.
+        # Libraries with their own handlers (Dask) would keep them; readers of the log need one format.
         for own in logger.handlers if isinstance(logger, logging.Logger) else ():
             own.setFormatter(lines)
 
@@ -67,7 +67,7 @@ def _subjects(record: logging.LogRecord) -> dict[str, str]:
 
 
 def _line(text: str) -> str:
-    """Text of others (a path, a name) cannot begin a line of its own, nor colour or move what a terminal shows."""
+    """Escape foreign text (a path, a name): it must not start a new line or send control codes to a terminal."""
     if text.isprintable():
         return text
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)

@@ -1,7 +1,7 @@
-"""Guard of one supervised command: ends it when the supervisor goes away. Run as a script, imports nothing of ours.
+"""Guard of one supervised command: ends the command when the supervisor dies. A script that imports nothing of ours.
 
-``orphan_guard.py FD GRACE_S COMMAND...``: FD is the reading end of a pipe that only the supervisor writes to.
-It works wherever there are pipes, and needs no help from the command.
+``orphan_guard.py FD GRACE_S COMMAND...``: FD is the reading end of a pipe whose writing end only the supervisor
+holds. It works wherever pipes exist, and needs no help from the command.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from types import FrameType
 
 
 def main() -> None:
-    """Run the command; pass on SIGTERM and SIGINT to it; end as it ends."""
+    """Run the command, pass SIGTERM and SIGINT on to it, and exit with its code."""
     pipe, grace_s, command = int(sys.argv[1]), float(sys.argv[2]), sys.argv[3:]
     try:
         child = subprocess.Popen(command)
@@ -35,7 +35,7 @@ def main() -> None:
     if orphaned.is_set():
         _sweep()
     if code < 0:
-        # End by the same signal, so that the supervisor can say which it was.
+        # End by the same signal, so that the supervisor can name it.
         if -code != signal.SIGKILL:
             signal.signal(-code, signal.SIG_DFL)
         os.kill(os.getpid(), -code)
@@ -43,7 +43,7 @@ def main() -> None:
 
 
 def _watch(pipe: int, grace_s: float, child: subprocess.Popen[bytes], orphaned: threading.Event) -> None:
-    os.read(pipe, 1)  # returns when the supervisor is gone
+    os.read(pipe, 1)  # returns when the supervisor has died
     orphaned.set()
     child.terminate()
     time.sleep(grace_s)

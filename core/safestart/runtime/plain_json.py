@@ -1,7 +1,7 @@
-"""JSON that says one thing to every reader: each name of an object once, every number finite.
+"""Unambiguous JSON: each name of an object appears once, and every number is finite.
 
-Of two values for one name, one reader takes the first and another the last. NaN and infinity are no JSON, and 1e999
-would become one of them.
+With two values for one name, some readers take the first and some the last. JSON has no NaN or infinity, and 1e999
+would become infinity.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Any
 
 
 class NameTwice(ValueError):
-    """An object in which ``name`` comes twice."""
+    """An object contains ``name`` twice."""
 
     def __init__(self, name: str) -> None:
         super().__init__(f"an object with the name {json.dumps(name[:100])} twice")
@@ -20,12 +20,12 @@ class NameTwice(ValueError):
 
 
 def loads(text: str | bytes) -> Any:
-    """The document; raises ``NameTwice``, or ``ValueError`` and ``RecursionError`` as :func:`json.loads`."""
+    """Parse a document; raises ``NameTwice``, or ``ValueError`` and ``RecursionError`` as :func:`json.loads`."""
     return json.loads(text, object_pairs_hook=_unique, parse_constant=_finite, parse_float=_finite)
 
 
 def require_unique_names(text: str | bytes) -> None:
-    """Raise ``NameTwice`` for a document that is valid otherwise; builds nothing of it."""
+    """Raise ``NameTwice`` when an otherwise valid document repeats a name; builds no objects."""
     json.loads(text, object_pairs_hook=_check, parse_float=len, parse_int=len)
 
 

@@ -1,4 +1,4 @@
-"""The precision of ball arithmetic is one number for the whole process, all threads together: one at a time sets it."""
+"""The precision of ball arithmetic is one number for all threads of the process, so one thread at a time sets it."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ _LOCK = RLock()
 
 @contextmanager
 def precise(bits: int) -> Iterator[None]:
-    """Balls of so many bits inside; what was set before, afterwards.
+    """Use this many bits inside the block, and restore the earlier precision afterwards.
 
-    Another user of the library could still change it meanwhile: balls stay sound then, only wider, and what is too wide
-    is refused where it is used.
+    Other users of the library could still change it meanwhile. Balls then stay sound but get wider, and the code
+    that uses them refuses balls that are too wide.
     """
     with _LOCK:
         before = flint.ctx.prec

@@ -1,4 +1,4 @@
-"""What a running computation may say and must ask: progress done, and whether to stop."""
+"""What a running computation reports and asks: its progress, and whether to stop."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Context:
     """Passed to every process and engine.
 
     ``report(done, total, message)`` receives real work units (cells, time steps); ``cancelled()`` is polled;
-    ``shelf`` may hold what was computed before. The default context is silent, never cancelled, with an empty shelf.
+    ``shelf`` may hold earlier results. The default context is silent, never cancelled, and has an empty shelf.
     """
 
     report: Callable[[float, float, str], None] = field(default=_silent)
@@ -36,7 +36,7 @@ class Context:
         self.report(done, total, message)
 
     def part(self, start: float, share: float, total: float, label: str) -> Context:
-        """Context of a sub-task that fills ``share`` units of ``total`` from ``start`` on."""
+        """Context of a sub-task that covers ``share`` units of ``total``, beginning at ``start``."""
 
         def report(done: float, of: float, message: str) -> None:
             text = f"{label}: {message}" if message else label

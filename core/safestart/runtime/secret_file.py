@@ -1,4 +1,4 @@
-"""The database's password from a file: whoever may inspect the process sees its environment."""
+"""Read the database's password from a file, because anyone who may inspect the process sees its environment."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ _REQUIRED = "a readable file that holds the password of the database"
 
 
 def with_password(url: str, file: str) -> str:
-    """``url`` with the password in ``file``, when it is one of PostgreSQL with a user and no password.
+    """Add the password in ``file`` to ``url`` when this is a PostgreSQL URL with a user and no password.
 
-    Raises ``InvalidInput`` for a file that holds no password. Any other URL stays as it is: the store refuses what it
-    cannot use.
+    Raises ``InvalidInput`` for a file without a password. Any other URL is returned unchanged; the store refuses
+    those it cannot use.
     """
     scheme, separator, rest = url.partition("://")
     user, at, place = rest.partition("@")

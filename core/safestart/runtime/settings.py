@@ -24,7 +24,7 @@ from safestart.runtime.secret_file import with_password
 
 _PREFIX = "SAFESTART_"
 _OTHERS = ("SAFESTART_TEST_POSTGRESQL", "SAFESTART_CHROMIUM", "SAFESTART_SCREENSHOTS")
-"""Variables of the test suite, whose processes have its environment."""
+"""Variables of the test suite; the processes it starts inherit them."""
 
 
 class Settings(BaseSettings):
@@ -105,7 +105,7 @@ class Settings(BaseSettings):
         return init_settings, env_settings, _file(settings_cls)
 
     def url(self) -> str:
-        """The database URL with its password; the default directory is made when it is not there."""
+        """The database URL with its password; creates the default directory if it is missing."""
         if self.database_url:
             return with_password(self.database_url, self.database_password_file)
         folder = user_data_path("safestart")
@@ -114,20 +114,20 @@ class Settings(BaseSettings):
 
 
 def _file(kind: type[BaseSettings]) -> TomlConfigSettingsSource:
-    """The settings of the file; raises ``InvalidInput`` for one that is named and is not there, or is no TOML."""
+    """Read the settings file; raises ``InvalidInput`` when a named file is missing or is not TOML."""
     named = os.environ.get("SAFESTART_CONFIG")
     path = Path(named) if named else user_config_path("safestart") / "safestart.toml"
     if named and not path.is_file():
         raise invalid("SAFESTART_CONFIG", "the path of a TOML file", named)
     try:
         return TomlConfigSettingsSource(kind, toml_file=path)
-    except (OSError, ValueError) as error:  # what is not TOML or not UTF-8 is a ValueError
+    except (OSError, ValueError) as error:  # invalid TOML or UTF-8 is a ValueError
         raise invalid(str(path), "a readable TOML file in UTF-8", str(error)) from None
 
 
 @cache
 def settings() -> Settings:
-    """The process-wide settings; raises ``InvalidInput`` that names the wrong setting."""
+    """The process-wide settings; raises ``InvalidInput`` and names the wrong setting."""
     _require_known(os.environ)
     try:
         return Settings()  # type: ignore[call-arg, unused-ignore]
@@ -136,24 +136,24 @@ def settings() -> Settings:
 
 
 def _require_known(variables: Iterable[str]) -> None:
-    """Raise ``InvalidInput`` for a variable of ours that names no setting: misspelt, it would count for nothing."""
+    """Raise ``InvalidInput`` for a ``SAFESTART_`` variable that names no setting: a misspelt one would be ignored."""
     known = [_PREFIX + name.upper() for name in (*Settings.model_fields, "config")]
     for name in sorted(variables):
         if name.upper().startswith(_PREFIX) and name.upper() not in known and name not in _OTHERS:
             near = get_close_matches(name.upper(), known, n=1)
             like = f", such as {near[0]}" if near else ""
             required = f"the name of a setting{like} (docs/settings.md)"
-            # What it holds may be a password.
+            # Its value may be a password.
             raise InvalidInput(f"{name}: required {required}", field=name, required=required, received=name)
 
 
 def _fit(report: Any) -> dict[str, Any]:
-    """A report of pydantic's that says which names there are, and nothing of what a table or an array holds."""
+    """A pydantic report that names the fields and hides the contents of tables and arrays."""
     fit = dict(report)
     if fit["type"] == "extra_forbidden":
         near = get_close_matches(str(fit["loc"][0]), Settings.model_fields, n=1)
         like = f", such as {near[0]}" if near else ""
         fit |= {"type": "value_error", "ctx": {"error": f"the name of a setting{like} (docs/settings.md)"}}
-    if isinstance(fit.get("input"), dict | list):  # a URL with its password may be in there
+    if isinstance(fit.get("input"), dict | list):  # it may contain a URL with its password
         fit["input"] = type(fit["input"])
     return fit

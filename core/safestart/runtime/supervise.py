@@ -1,7 +1,7 @@
-"""Keep child commands running: start them, start one again that dies, stop all of them together.
+"""Keep child commands running: start them, restart those that die, stop all of them together.
 
 Each command runs under :mod:`safestart.runtime.orphan_guard`, a small process that reads from a pipe this process
-holds open: when this process goes away, however it does, the pipe closes and the guard ends its command.
+holds open. When this process ends for any reason, the pipe closes and the guard ends its command.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from pathlib import Path
 
 FIRST_PAUSE_S = 0.5
 LONGEST_PAUSE_S = 30.0
-# A child that ran this long was well: the next pause is the first one again.
+# A child that ran this long was healthy: the restart pause begins again at its shortest.
 WELL_AFTER_S = 30.0
 GRACE_S = 10.0
 _TICK_S = 0.1
-# How our command line ends on wrong settings and the like: a new start would end the same way.
+# Exit code of our command line on wrong settings; a restart would end the same way.
 _USAGE_ERROR = 2
 _GUARD = Path(__file__).with_name("orphan_guard.py")
 
 
 @dataclass(frozen=True, slots=True)
 class Child:
-    """A command to keep running, and the name it has in messages."""
+    """A command to keep running, and its name in messages."""
 
     name: str
     command: Sequence[str]
@@ -54,7 +54,7 @@ class Supervisor:
     def run(self) -> int:
         """Run until SIGINT or SIGTERM (exit code 0), or until a child refuses to start (its exit code).
 
-        Only in the main thread: it takes the two signals over while it runs.
+        Call it in the main thread only: it handles the two signals while it runs.
         """
         before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
         for number in before:
@@ -95,7 +95,7 @@ class Supervisor:
 
 
 class _Kept:
-    """One child with its present process."""
+    """One child with its current process."""
 
     def __init__(self, child: Child, grace_s: float) -> None:
         self.child = child
@@ -122,7 +122,7 @@ class _Kept:
         self._started = time.monotonic()
 
     def ended(self) -> int | None:
-        """Exit code (negative: signal) when the process has just ended; starts it again when its pause is over."""
+        """Exit code (negative: signal) when the process has just ended; restarts it when its pause is over."""
         if self._process is None:
             if time.monotonic() >= self._again_at:
                 self.start()
@@ -135,7 +135,7 @@ class _Kept:
         return code
 
     def plan_restart(self) -> float:
-        """Seconds until the next start: doubled every time, the first again after a good run."""
+        """Seconds until the next start: doubled every time, reset after a good run."""
         if time.monotonic() - self._started >= WELL_AFTER_S:
             self._pause = FIRST_PAUSE_S
         pause, self._pause = self._pause, min(2 * self._pause, LONGEST_PAUSE_S)
@@ -143,12 +143,12 @@ class _Kept:
         return pause
 
     def ask_to_end(self) -> None:
-        """SIGTERM; the guard hands it to the command alone, which ends its own processes in order."""
+        """Send SIGTERM; the guard passes it to the command alone, which ends its own processes in order."""
         if self._process is not None and self._process.poll() is None:
             self._process.terminate()
 
     def end(self, within_s: float) -> bool:
-        """Wait, then kill whatever is left of the session. False: it had to be killed."""
+        """Wait, then kill whatever is left of the session. Returns False when it had to kill."""
         if self._process is None:
             return True
         in_time = True
@@ -162,7 +162,7 @@ class _Kept:
     def _sweep(self) -> None:
         """Kill what the command left behind in its process group, and forget the process."""
         assert self._process is not None
-        with suppress(ProcessLookupError, PermissionError):  # nobody is left (macOS says so with the second)
+        with suppress(ProcessLookupError, PermissionError):  # no process is left (macOS raises the second)
             os.killpg(self._process.pid, signal.SIGKILL)
         self._process.wait()
         self._process = None

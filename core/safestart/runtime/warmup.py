@@ -1,6 +1,6 @@
-"""Run every hot kernel once, so that compilation does not fall into the first job.
+"""Run every hot kernel once, so that the first job does not wait for compilation.
 
-In parts that several processes can compile at once; what one compiles, Numba's cache on disk gives to the others.
+Several processes can compile parts at the same time and share the results through Numba's cache on disk.
 """
 
 from __future__ import annotations
@@ -53,10 +53,10 @@ PARTS = MappingProxyType[str, Callable[[], None]](
         "reachable sets": _sets,
     }
 )
-"""What to compile, by name, dearest first: from nothing 19, 18, 9, 5 and 4 s of one core."""
+"""What to compile, by name, slowest first: without a cache 19, 18, 9, 5 and 4 s of one core."""
 
 
 def warm(*parts: str) -> None:
-    """Solve a tiny problem for each of the parts, or for all; kernels stay in this process and in Numba's cache."""
+    """Solve a tiny problem for each named part, or for all; kernels stay in this process and in Numba's cache."""
     for part in parts or PARTS:
         PARTS[part]()

@@ -1,4 +1,4 @@
-"""What is going to be removed says so in its answers: ``Deprecation`` (RFC 9745), ``Sunset`` (RFC 8594), and a link."""
+"""Announce removals in answers: ``Deprecation`` (RFC 9745), ``Sunset`` (RFC 8594), and a link."""
 
 from __future__ import annotations
 
@@ -13,10 +13,11 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 @dataclass(frozen=True, slots=True)
 class Notice:
-    """A call, or one query parameter of it, that is deprecated from ``since`` on and may be gone from ``until`` on.
+    """A call, or one of its query parameters, that is deprecated from ``since`` on and may be removed from
+    ``until`` on.
 
-    With ``value`` only that value of the parameter is. Times are aware; ``link`` is the address of the page that says
-    what to use instead.
+    With ``value`` only that value of the parameter is. Times are aware; ``link`` is the address of the page that names
+    the replacement.
     """
 
     since: datetime
@@ -30,7 +31,7 @@ class Notice:
             raise ValueError(f"until: required after {self.since}, received {self.until}")
 
     def headers(self) -> list[tuple[bytes, bytes]]:
-        """Header fields of every answer that it concerns."""
+        """Header fields of every affected answer."""
         sunset = format_datetime(self.until.astimezone(UTC), usegmt=True)
         return [
             (b"deprecation", b"@%d" % int(self.since.timestamp())),
@@ -39,7 +40,7 @@ class Notice:
         ]
 
     def concerns(self, scope: Scope) -> bool:
-        """True when this request uses what is deprecated."""
+        """True when this request uses the deprecated call or parameter."""
         if self.parameter is None:
             return True
         asked = parse_qsl(scope["query_string"].decode("latin-1"), keep_blank_values=True)
@@ -63,7 +64,7 @@ NOTICES: dict[tuple[str, str], Notice] = {
 
 
 class Deprecation:
-    """ASGI middleware that adds the fields; installed only where there is a notice."""
+    """ASGI middleware that adds the fields; installed only when notices exist."""
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
@@ -93,7 +94,8 @@ def _telltales() -> tuple[bytes, ...]:
 
 
 def mark(document: dict[str, Any]) -> None:
-    """Say the same in an OpenAPI description; raises ``KeyError`` for a notice about what is not there."""
+    """Mark the same in an OpenAPI description; raises ``KeyError`` for a notice about an unknown call or
+    parameter."""
     for (method, path), notice in NOTICES.items():
         operation = document["paths"][path][method.lower()]
         if notice.value is not None:

@@ -58,7 +58,12 @@ QUICK: dict[str, Inputs | tuple[Inputs, ...]] = {
     "go-no-go/certified-body": starts_asked(method="certified", rest="body"),
     "go-no-go/certified-solid": {**POINT, "states": SOLID, "method": "certified"},
     "go-no-go/certified-corridor": starts_asked(method="certified", corridor=CORRIDOR, mean_motion_rad_s=0.0),
-    "go-no-go/certified-still": {"omega_t_deg_s": 0, "a_max_m_s2": 0.01, "states": STARTS, "method": "certified"},
+    "go-no-go/certified-still": {
+        "omega_t_deg_s": 0,
+        "a_max_m_s2": 0.01,
+        "states": STARTS,
+        "method": "certified",
+    },
     "go-no-go/default": starts_asked(),
     "go-no-go/default-sliver": SLIVER,
     "go-no-go/exact": proved(),

@@ -1,1 +1,1 @@
-"""The Dask cluster that jobs run on, and what runs in its task processes."""
+"""The Dask cluster that runs the jobs, and the code of its task processes."""

@@ -1,7 +1,7 @@
-"""Who may speak with a Dask cluster: certificates of its own for the embedded one, Dask's configuration elsewhere.
+"""Access to a Dask cluster: own certificates for the embedded cluster, Dask's configuration elsewhere.
 
-Dask runs the code it is sent. On loopback ports every local account could send it some, so the embedded cluster, too,
-takes only connections whose other end has its certificate.
+Dask runs any code it receives, and every local account can reach a loopback port. So the embedded cluster, too,
+accepts only connections whose peer has its certificate.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from distributed.comm.core import CommClosedError
 from safestart.errors import InvalidInput, SafestartError, Unavailable
 
 _NAMES = "DASK_DISTRIBUTED__COMM__TLS__{CA_FILE,CLIENT__CERT,CLIENT__KEY}"
-# What is thrown away with its process must not end sooner, nor with a clock that is set.
+# The certificate lives as long as its process: it must not expire earlier or depend on the clock.
 _FROM, _TO = datetime(1970, 1, 1, tzinfo=UTC), datetime(9999, 12, 31, tzinfo=UTC)
 
 
 def throwaway() -> Security:
-    """A new key and its certificate, kept in memory; who has both is let in, and nobody else.
+    """A new key and its certificate, kept in memory; the cluster admits only processes that have both.
 
-    Dask's own ``Security.temporary`` begins now and ends in a year: with a clock that was set, or after a year, no task
+    Dask's own ``Security.temporary`` is valid from now for one year: after a clock change, or after a year, no task
     process could come back.
     """
     key = ec.generate_private_key(ec.SECP256R1())
@@ -58,11 +58,12 @@ def throwaway() -> Security:
 
 
 def configured(scheduler: str) -> Security:
-    """The certificates of Dask's configuration; raises ``InvalidInput`` when ``scheduler`` needs them and they lack."""
+    """The certificates of Dask's configuration; raises ``InvalidInput`` when ``scheduler`` needs them and they are
+    missing."""
     try:
         security = Security()
         complete = security.get_connection_args("client")["ssl_context"] is not None
-    except (OSError, ValueError) as error:  # a file that is not there, or has no certificate
+    except (OSError, ValueError) as error:  # the file is missing or has no certificate
         raise _wrong(f"certificates that can be read ({_NAMES})", str(error)) from error
     encrypted = normalize_address(scheduler).startswith("tls://")
     if encrypted and not complete:
@@ -73,13 +74,13 @@ def configured(scheduler: str) -> Security:
 
 
 def refused(scheduler: str, error: Exception) -> SafestartError:
-    """Why there is no connection to ``scheduler``."""
+    """Why the connection to ``scheduler`` fails."""
     required = "the address of a running Dask scheduler"
     cause = error.__cause__
     if isinstance(cause, ssl.SSLCertVerificationError):
         required = f"a scheduler whose certificate is signed by {_NAMES.partition('{')[0]}CA_FILE"
         received = f"another certificate from {scheduler} ({cause.verify_message})"
-    elif isinstance(cause, ssl.SSLError) and "ALERT" not in str(cause.reason):  # an alert is an answer in TLS
+    elif isinstance(cause, ssl.SSLError) and "ALERT" not in str(cause.reason):  # a TLS alert is an answer
         required, received = "a scheduler that answers in TLS", f"no TLS from {scheduler}"
     elif isinstance(error, CommClosedError) and scheduler.startswith("tls://"):
         required = "a scheduler that accepts the certificate of the client"

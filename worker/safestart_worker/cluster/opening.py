@@ -1,4 +1,4 @@
-"""A Dask cluster to work on: an embedded one of local processes, or an existing one by its address."""
+"""Open a Dask cluster: an embedded one of local processes, or an existing one by its address."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _ONE_THREAD = {
 async def open_cluster(
     scheduler: str, processes: int, max_attempts: int, owner: str
 ) -> AsyncIterator[Cluster]:
-    """Connect to ``scheduler``, or start an embedded cluster when it is empty; closed at the end."""
+    """Connect to ``scheduler``, or start an embedded cluster when it is empty; the block's end closes it."""
     async with AsyncExitStack() as stack:
         folder = stack.enter_context(_private_folder())
         with dask.config.set({**_config(max_attempts), "temporary-directory": folder}):
@@ -58,32 +58,32 @@ async def open_cluster(
 
 
 def _private_folder() -> TemporaryDirectory[str]:
-    """Dask imports from where its processes keep their files, and others may write to the place it takes by itself."""
+    """A private folder: Dask imports from its processes' working folder, and others may write to its default one."""
     return TemporaryDirectory(
         prefix="safestart-", dir=dask.config.get("temporary-directory", None), ignore_cleanup_errors=True
     )
 
 
 def _embedded(processes: int, security: Security) -> LocalCluster:
-    """Processes of one thread each on the loopback interface, without dashboard, for who has the certificate."""
+    """Processes of one thread each on the loopback interface, without dashboard; peers need the certificate."""
     return LocalCluster(
         n_workers=processes,
         threads_per_worker=1,
         processes=True,
         host="127.0.0.1",
         security=security,
-        # Dask always opens a port for its pages: a free one, not the well-known one, and without pages (_config).
+        # Dask always opens a port for its dashboard: take a free one, without pages (_config).
         dashboard_address=None,
         scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
         memory_limit=int(_MEMORY_SHARE * MEMORY_LIMIT / max(processes, 1)),
-        # Dask warns of every process that is ended on purpose; what matters of it our own lines say.
+        # Dask warns about every process that we end on purpose; our own log lines say what matters.
         silence_logs=logging.ERROR,
         asynchronous=True,
     )
 
 
 async def _short_cut(cluster: LocalCluster) -> str:
-    """Address of the scheduler within this process: half of all messages are between it and us, and need no TLS."""
+    """In-process address of the scheduler: half of all messages are between it and us and need no TLS."""
     scheduler: Any = cluster.scheduler
     await scheduler.listen("inproc://", allow_offload=False)
     address: str = scheduler.listeners[-1].contact_address
@@ -94,12 +94,12 @@ def _config(max_attempts: int) -> dict[str, Any]:
     return {
         # Dask counts deaths beyond the first allowed ones; we count attempts.
         "distributed.scheduler.allowed-failures": max_attempts - 1,
-        # Dask gives a lost process up for ever when its successor is not there after 15 s, which on a loaded machine
-        # it is not; we wait for it, and give up ourselves when jobs have waited in vain (see signs).
+        # By default Dask gives a lost process up when its successor takes more than 15 s, as it does on a loaded
+        # machine. We wait longer, and give up ourselves when jobs get nowhere (see liveness).
         "distributed.deploy.lost-worker-timeout": "1000 hours",
-        # Events are for progress only: the database keeps what is worth keeping.
+        # Events carry progress only; the database is the record.
         "distributed.admin.low-level-log-length": 1000,
-        # Read before the process imports NumPy or Numba.
+        # The process reads these before it imports NumPy or Numba.
         "distributed.nanny.pre-spawn-environ": {**_ONE_THREAD, "MALLOC_TRIM_THRESHOLD_": "65536"},
         "distributed.scheduler.http.routes": [],
         "distributed.worker.http.routes": [],

@@ -1,4 +1,4 @@
-"""Progress on its way out of a task process: at most a few events per second, over Dask's event topics."""
+"""Send progress out of a task process: at most a few events per second, over Dask's event topics."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ PERIOD_S = 0.2
 
 
 class Reporter:
-    """Sends the real units done of a task of the job ``key``; what comes faster than ``PERIOD_S`` is dropped."""
+    """Sends the units of work done by a task of the job ``key``; drops reports that come faster than ``PERIOD_S``."""
 
     def __init__(self, key: str, topic: str, worker: Worker, shard: int | None = None) -> None:
         self._about = {"key": key} if shard is None else {"key": key, "shard": shard}
@@ -22,11 +22,11 @@ class Reporter:
         self._last = -PERIOD_S
 
     def started(self) -> None:
-        """Say that the task begins; a second time for the same key means that its first process was lost."""
+        """Report that the task begins; a second report for the same key means that its first process was lost."""
         self._send({"kind": "started", "pid": os.getpid(), "address": self._worker.address})
 
     def report(self, done: float, total: float, message: str) -> None:
-        """Send units done of units in total."""
+        """Send the units done and the units in total."""
         elapsed = time.monotonic() - self._start
         if elapsed - self._last < PERIOD_S and done < total:
             return

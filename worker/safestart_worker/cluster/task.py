@@ -1,6 +1,6 @@
-"""What runs in a task process: a job, or a shard of one, from raw inputs to an outcome that says how it ended.
+"""Code of a task process: it runs a job, or a shard of one, from raw inputs to an outcome that says how it ended.
 
-Nothing is raised: errors become part of the outcome, so that no exception class and no stack trace has to travel.
+It raises nothing: errors become part of the outcome, so no exception class or stack trace has to travel.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from safestart.runtime.progress import Context
 from safestart_worker.cluster.report import Reporter
 from safestart_worker.problems import of_error, of_unexpected
 
-# Keys of the jobs whose tasks in this process were asked to stop; see request_stop.
+# Keys of the jobs whose tasks in this process must stop; see request_stop.
 _stopping: set[str] = set()
 _lock = threading.Lock()
 
@@ -43,7 +43,7 @@ class Outcome:
 
 @dataclass(frozen=True, slots=True)
 class ShardOutcome:
-    """How a shard ended: what it gave, or a problem; ``by`` is the source that computed it."""
+    """How a shard ended: its result, or a problem; ``by`` is the source that computed it."""
 
     part: Part | None
     by: str
@@ -58,7 +58,7 @@ def request_stop(key: str) -> None:
 
 
 def load() -> None:
-    """Import what every process needs, so that the first job does not wait for it."""
+    """Import the modules that every process needs, so that the first job does not wait for them."""
     for process_id in PROCESS_IDS:
         process(process_id).runner()
     versions()
@@ -72,7 +72,7 @@ def run_job(process_id: str, inputs: dict[str, Any], key: str, topic: str) -> Ou
 def run_merge(
     process_id: str, inputs: dict[str, Any], parts: list[Part], started: datetime, key: str, topic: str
 ) -> Outcome:
-    """Run the end of a sharded job to its outcome."""
+    """Run the merge of a sharded job to its outcome."""
     return _whole(lambda context: merge(process_id, inputs, parts, started, context), key, topic)
 
 

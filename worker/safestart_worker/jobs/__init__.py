@@ -1,1 +1,1 @@
-"""Claimed jobs on their way through the cluster."""
+"""Run claimed jobs on the cluster."""

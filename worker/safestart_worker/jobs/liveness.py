@@ -1,6 +1,7 @@
-"""Signs of life of a job that reports nothing: a computation may be silent for long, a lost one stays silent for ever.
+"""Signs of life of a silent job.
 
-Looks at what cannot lie: processor time of the task processes, and what the scheduler says of the tasks.
+A healthy computation may report nothing for a long time; a lost one never reports again. The processor time of the
+task processes and the scheduler's view of the tasks tell them apart.
 """
 
 from __future__ import annotations
@@ -14,12 +15,12 @@ from distributed import Future
 
 from safestart_worker.cluster.cluster import Cluster
 
-# Share of one core below which a process does not compute. A waiting one takes 1 to 2 % for its event loop.
+# A process that uses less than this share of a core does not compute; its idle event loop takes 1 to 2 %.
 LEAST_SHARE = 0.04
 
 
 class Finding(Enum):
-    """What a look says of the tasks of a job."""
+    """What one check finds about the tasks of a job."""
 
     ALIVE = "alive"
     HUNG = "their processes do nothing"
@@ -28,7 +29,7 @@ class Finding(Enum):
 
 
 class Signs:
-    """Watches one job; silent and lifeless for ``patience_s`` on end, it is found so."""
+    """Watches one job and reports it lost after ``patience_s`` of silence without signs of life."""
 
     def __init__(self, cluster: Cluster, patience_s: float) -> None:
         self._cluster = cluster
@@ -39,15 +40,15 @@ class Signs:
 
     @property
     def period_s(self) -> float:
-        """Time between looks."""
+        """Time between checks."""
         return min(10.0, self._patience_s / 4)
 
     def heard(self) -> None:
-        """A report has come: silence begins anew."""
+        """Note a report: the silence starts again from zero."""
         self._seen = None
 
     async def look(self, futures: Sequence[Future[Any]]) -> Finding:
-        """What is the matter with the tasks that the job waits for, if it has been so for long enough."""
+        """What is wrong with the tasks that the job waits for, once it has lasted long enough."""
         if not futures:
             self.heard()
             return Finding.ALIVE

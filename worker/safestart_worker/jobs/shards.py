@@ -1,7 +1,7 @@
-"""A sharded job on the cluster: shards in a window, each kept in the store as it ends, then the merge.
+"""A sharded job on the cluster: a window of shards, each stored as it ends, then the merge.
 
-Shards that the store has already, from a worker that was lost, are not done again; those of other code are. All of a
-job is computed by one source, the one that its provenance names.
+Shards that a lost worker stored are reused, unless other code computed them. One source computes the whole job, the
+one that its provenance names.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ from safestart_worker.jobs.work import Journal, spared
 Answer = TypeVar("Answer")
 
 RETRY_S = 1.0
-# Shards that wait on the cluster per thread, so that no thread waits for us. Jobs of one task go first.
+# Shards queued on the cluster per thread, so that no thread idles. Jobs of one task go first.
 _AHEAD, _PRIORITY = 2, -1
 
 
 class Sharded:
-    """A job that is many tasks."""
+    """A job of many tasks."""
 
     whole = False
 
@@ -64,7 +64,7 @@ class Sharded:
         self._done = self._total = 0
 
     async def run(self) -> Outcome:
-        """Run the shards that are missing, then the merge."""
+        """Run the missing shards, then the merge."""
         try:
             parts = self._sharding.parts(self._spec.parse(self._claim.inputs))
         except SafestartError as error:
@@ -81,7 +81,7 @@ class Sharded:
     async def _shards(
         self, parts: list[dict[str, Any]], contents: list[str], missing: deque[int]
     ) -> Outcome | None:
-        """Run the missing shards; None when all are in the store, the outcome of the job when one failed."""
+        """Run the missing shards; returns None when the store has all, or the job's outcome when one failed."""
         window = _AHEAD * max(1, await self._cluster.threads())
         waiting: dict[asyncio.Future[ShardOutcome], int] = {}
         while waiting or (missing and not self._ending):
@@ -126,7 +126,7 @@ class Sharded:
     def _run(
         self, number: int, function: Callable[..., Answer], *arguments: Any
     ) -> Coroutine[Any, Any, Answer]:
-        """Submit a task now; what is returned waits for its result."""
+        """Submit a task now; returns a coroutine that waits for its result."""
 
         def submit(again: int) -> Future[Answer]:
             key = f"{self._key}-{number}" + (f"-again-{again}" if again else "")
@@ -137,7 +137,7 @@ class Sharded:
         return spared(submit(0), submit, lambda: self._starts.get(number, 0), self._most)
 
     async def _store(self, call: Callable[[], Answer]) -> Answer:
-        """Call the store; while the database is away, try until it is back or the lease is lost."""
+        """Call the store; while the database is unavailable, retry until it is back or the lease is lost."""
         self._storing = True
         try:
             while True:
@@ -152,11 +152,11 @@ class Sharded:
             self._storing = False
 
     def awaited(self) -> list[Future[Any]]:
-        """Shards under way, or the merge; none while the store is asked."""
+        """The running shards, or the merge; none during calls to the store."""
         return [] if self._storing else list(self._futures.values())
 
     def on_report(self, data: dict[str, Any]) -> None:
-        """Follow the progress of the shards together; the merge counts as one more."""
+        """Follow the progress of all shards; the merge counts as one more."""
         number = int(data.get("shard", self._total))
         if data["kind"] == "started":
             starts = self._starts[number] = self._starts.get(number, 0) + 1
@@ -181,12 +181,12 @@ class Sharded:
         await self._cluster.stop(self._key, list(self._futures.values()), outcome)
 
     async def leave(self, outcome: asyncio.Task[Outcome]) -> None:
-        """End every task if the cluster stays; finished shards are in the store."""
+        """End every task if the cluster stays; the store keeps the finished shards."""
         self._ending = True
         await self._cluster.leave(self._key, list(self._futures.values()), outcome)
 
     def forget(self) -> None:
-        """Let go of every task."""
+        """Release every task."""
         self._ending = True
         for future in self._futures.values():
             future.release()

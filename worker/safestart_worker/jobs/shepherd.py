@@ -1,4 +1,4 @@
-"""One claimed job on the cluster, from submission to its end in the database."""
+"""Follow one claimed job on the cluster, from submission to its end in the database."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ Answer = TypeVar("Answer")
 
 TICK_S = 0.25
 WRITE_PERIOD_S = 0.5
-# A dismissal is noticed with the renewal, so that comes at least this often.
+# The renewal notices a dismissal, so it comes at least this often.
 RENEW_PERIOD_S = 1.0
 RETRY_S = 1.0
 
 
 @dataclass(frozen=True, slots=True)
 class Rules:
-    """The settings a shepherd keeps to."""
+    """The settings of a shepherd."""
 
     lease_s: float
     max_attempts: int
@@ -72,20 +72,20 @@ class Shepherd:
         self._shown = False
         self._on_over = on_over
         self.computes = True
-        """False once its computation is over, while its end is written."""
+        """False once the computation is over and only the job's end is being written."""
 
     def on_report(self, data: dict[str, Any]) -> None:
-        """Take in a report of one of its tasks."""
+        """Handle a report of one of its tasks."""
         self._signs.heard()
         if self._work is not None:
             self._work.on_report(data)
 
     async def run(self, stopping: asyncio.Event) -> None:
-        """Run the job to its end; when ``stopping`` is set, give it back to the queue."""
+        """Run the job to its end; give it back to the queue when ``stopping`` is set."""
         self._say(f"process {self.claim.process_id}, attempt {self.claim.attempt}")
         work = self._work = self._begin()
         outcome = asyncio.ensure_future(work.run())
-        # A task that was ended on purpose ends with an error that nobody else looks at.
+        # A task that we ended on purpose ends with an error; retrieve it here, as nobody else does.
         outcome.add_done_callback(lambda task: task.cancelled() or task.exception())
         outcome.add_done_callback(self._over)
         try:
@@ -146,7 +146,7 @@ class Shepherd:
         return await self._finish(work, outcome)
 
     async def _look(self, work: Work) -> None:
-        """Start a silent and lifeless job again, with a new process, or with a new cluster where that is no help."""
+        """Restart a lost job in a new process, or on a new cluster when a new process does not help."""
         found = await self._signs.look(work.awaited())
         if found is Finding.ALIVE:
             return
@@ -177,20 +177,18 @@ class Shepherd:
         if end.document is None:
             return await self._fail(end.problem or {})
         document = end.document
-        if (
-            self._shown or self._journal.notes
-        ):  # a job that was over before it showed anything needs no last step
+        if self._shown or self._journal.notes:  # a job that ended before its first report needs no last step
             await self._write_progress()
         return await self._end(
             "successful", lambda: self._jobs.succeed(self.claim, document, end.artifacts, end.versions)
         )
 
     async def _count_deaths(self) -> bool:
-        """Count the deaths of its task processes as attempts; False when none is left."""
+        """Count the deaths of its task processes as attempts; False when no attempt is left."""
         most = self._rules.max_attempts
         while self._journal.deaths:
             left = await self._try(lambda: self._jobs.restarted(self.claim, most))
-            if left is None:  # the database is away: counted when it is back
+            if left is None:  # the database is unavailable: count when it is back
                 return True
             self._journal.deaths -= 1
             if not left:
@@ -211,7 +209,8 @@ class Shepherd:
         self._say("back in the queue")
 
     async def _end(self, what: str, write: Callable[[], None]) -> None:
-        """Write the end of the job; while the database is away, try until it is back or the lease is lost."""
+        """Write the end of the job; while the database is unavailable, retry until it is back or the lease is
+        lost."""
         while True:
             try:
                 await asyncio.to_thread(write)
@@ -231,7 +230,7 @@ class Shepherd:
             await self._try(partial(self._jobs.progress, self.claim, *fresh))
 
     async def _try(self, call: Callable[[], Answer]) -> Answer | None:
-        """Call the store in a thread; a database that is away for a while does not end the computation."""
+        """Call the store in a thread; a database outage does not end the computation."""
         try:
             return await asyncio.to_thread(call)
         except Unavailable as error:

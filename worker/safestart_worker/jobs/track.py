@@ -1,20 +1,20 @@
-"""Progress of one job as its worker sees it: percent, message, estimated seconds left."""
+"""Progress of one job, as its worker measures it: percent, message, estimated seconds left."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-# Weight of a new estimate of the time left against the previous one counted down.
+# Weight of a new estimate of the time left, against the previous estimate minus the time since.
 _SMOOTHING = 0.3
-# A running job never shows 100: that is what successful says.
+# A running job never shows 100, which means successful.
 _MOST = 99.9
 
 
 @dataclass(slots=True)
 class Track:
-    """From units done to percent and time left; percent never falls while the same task process runs.
+    """Turns units done into percent and time left; percent never falls while the same task process runs.
 
-    ``found`` is the share that was done before the time began: finished shards of an earlier worker.
+    ``found`` is the share done before this run: finished shards of an earlier worker.
     """
 
     percent: float = 0.0
@@ -25,14 +25,14 @@ class Track:
     _fresh: bool = field(default=False)
 
     def restart(self) -> None:
-        """The task begins again from nothing, in another process."""
+        """The task starts from nothing in another process."""
         self.percent, self.message, self.eta_s, self._elapsed, self._fresh = 0.0, "", None, 0.0, False
 
     def update(self, done: float, total: float, elapsed_s: float, message: str) -> None:
-        """Take in one report.
+        """Handle one report.
 
-        The time left is the time so far scaled by the work left, smoothed against the last estimate minus the
-        time since.
+        The time left is the time so far scaled by the work left, smoothed with the last estimate minus the time
+        since.
         """
         share = min(max(done / total, 0.0), 1.0) if total > 0 else 0.0
         percent = max(self.percent, min(100.0 * share, _MOST))

@@ -1,4 +1,4 @@
-"""A claimed job as work on the cluster; here the usual kind, one task. The other kind is in ``shards``."""
+"""A claimed job as work on the cluster. This file has jobs of one task; ``shards`` has jobs of many."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Answer = TypeVar("Answer")
 
 
 class Journal:
-    """What is known of a running job: progress, deaths of its process, notes for its events, lines for the log."""
+    """The state of a running job: progress, deaths of its process, notes for its events, lines for the log."""
 
     def __init__(self, job_id: str) -> None:
         self.job_id = job_id
@@ -34,19 +34,19 @@ class Journal:
 
 
 class Work(Protocol):
-    """What a shepherd sees through; ``outcome`` is the asyncio task that runs :meth:`run`.
+    """The work that a shepherd follows; ``outcome`` is the asyncio task that runs :meth:`run`.
 
-    ``whole``: one task is the job, so that the death of its process costs the job an attempt.
+    ``whole``: the job is one task, so the death of its process costs the job an attempt.
     """
 
     whole: bool
 
     async def run(self) -> Outcome:
-        """Run to the outcome; Dask's and the store's errors pass through."""
+        """Run to the outcome; does not catch errors of Dask and of the store."""
         ...
 
     def on_report(self, data: dict[str, Any]) -> None:
-        """Take in a report of one of the tasks."""
+        """Handle a report of one of the tasks."""
         ...
 
     def awaited(self) -> Sequence[Future[Any]]:
@@ -58,14 +58,14 @@ class Work(Protocol):
         ...
 
     async def leave(self, outcome: asyncio.Task[Outcome]) -> None:
-        """End it as far as that goes in a short time: somebody else will run the job."""
+        """End it as far as a short time allows: another worker will run the job."""
         ...
 
     def forget(self) -> None:
-        """Let go of every task, so that :meth:`run` ends by itself.
+        """Release every task, so that :meth:`run` ends by itself.
 
-        Never by cancelling it: Dask's client gathers results for all that wait in one coroutine, and whoever is
-        cancelled while waiting there takes it down for everybody.
+        Cancelling :meth:`run` would harm other jobs: one coroutine of Dask's client gathers results for all
+        waiters, and cancelling one waiter cancels it for all.
         """
         ...
 
@@ -73,15 +73,15 @@ class Work(Protocol):
 async def spared(
     future: Future[Answer], again: Callable[[int], Future[Answer]], starts: Callable[[], int], most: int
 ) -> Answer:
-    """Result of a task, submitted ``again`` where Dask gives it up for deaths that were not its own.
+    """Result of a task; calls ``again`` to submit it anew when Dask gives it up for deaths that it did not cause.
 
-    Dask blames the death of a process on all tasks that it was to run, those that only waited there too. The task's own
-    are the ``starts`` that came to no end, of which ``most`` are made. One that takes its process down before it can
-    report a start has ``most`` submissions.
+    Dask blames the death of a process on all tasks assigned to it, those that only waited too. The task's own
+    deaths are its unfinished ``starts``, at most ``most``. A task that kills its process before it can report a
+    start gets ``most`` submissions.
     """
     for submissions in range(1, most + 1):
         try:
-            # The client is asynchronous, and so is its result; Dask's annotations know only the other kind.
+            # The client is asynchronous, so its result is too; Dask's annotations know only the synchronous kind.
             return await cast(Awaitable[Answer], future.result())
         except KilledWorker:
             if submissions == most or starts() >= most:
@@ -91,7 +91,7 @@ async def spared(
 
 
 class Whole:
-    """A job that is one task."""
+    """A job of one task."""
 
     whole = True
 
@@ -136,5 +136,5 @@ class Whole:
         await self._cluster.leave(self._key, [self._future], outcome)
 
     def forget(self) -> None:
-        """Let go of the task."""
+        """Release the task."""
         self._future.release()

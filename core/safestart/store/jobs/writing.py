@@ -20,7 +20,8 @@ _ARTIFACT = insert(table(ArtifactRow)).inline()
 def add_result(
     session: Session, job_id: str, document: dict[str, Any], artifacts: tuple[Artifact, ...]
 ) -> None:
-    """Insert the document with its hash, each artifact with size and hash; what has a content key is cached, too."""
+    """Insert the document with its hash and each artifact with size and hash; also cache artifacts with a content
+    key."""
     result = {
         "job_id": job_id,
         "schema_version": document.get("schema_version", 1),

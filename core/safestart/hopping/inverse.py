@@ -1,0 +1,75 @@
+"""Inverse problems of an approach: at which angles it takes a wanted time, or costs a wanted fuel.
+
+Time falls from 0 deg to a least value beyond the R-bar and rises again; fuel rises to a peak near 63 deg and falls
+again. So there may be no angle, or one, or more; all up to the last fold are found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from safestart.errors import invalid
+from safestart.hopping.approach import Approach, approach, distances
+from safestart.hopping.hop_time import fold_deg
+from safestart.model.scenario import number
+
+_SAMPLES = 181
+
+MEASURES: dict[str, Callable[[Approach], float]] = {
+    "orbits": lambda a: a.orbits,
+    "fuel_1norm": lambda a: a.fuel_1norm,
+    "fuel_2norm": lambda a: a.fuel_2norm,
+}
+
+
+def greatest_angle(start: float, hold: float, hops: int, gamma: float | None = None) -> float:
+    """Angle, deg, up to which every hop of the approach exists; 180 where none has a fold."""
+    d = distances(start, hold, hops, gamma)
+    folds = [fold_deg(rho) for rho in (d[1:] / d[:-1]).tolist()]
+    return min((fold for fold in folds if fold is not None), default=180.0)
+
+
+def angles_for(
+    measure: str,
+    value: float,
+    mean_motion: float,
+    start: float,
+    hold: float,
+    hops: int,
+    gamma: float | None = None,
+) -> list[float]:
+    """Every angle, deg, at which a measure (``orbits``, ``fuel_1norm``, ``fuel_2norm``; m/s) has the value.
+
+    Ascending, from 0 deg to the first fold; empty where none has. Between sampled angles (about 0.8 deg apart) a
+    measure is taken to pass the value once. Raises ``InvalidInput``.
+    """
+    if measure not in MEASURES:
+        raise invalid("measure", f"one of {', '.join(MEASURES)}", measure)
+    number("value", value, 0.0, 1e6)
+    end = greatest_angle(start, hold, hops, gamma) - 1e-9
+
+    def excess(angle: float) -> float:
+        return MEASURES[measure](approach(mean_motion, angle, start, hold, hops, gamma)) - value
+
+    angles = np.linspace(0.0, end, _SAMPLES).tolist()
+    values = [excess(angle) for angle in angles]
+    found = [angle for angle, at in zip(angles, values, strict=True) if at == 0.0]
+    found += [
+        _bisect(excess, angles[k], angles[k + 1], values[k])
+        for k in range(len(angles) - 1)
+        if values[k] * values[k + 1] < 0.0
+    ]
+    return sorted(found)
+
+
+def _bisect(function: Callable[[float], float], low: float, high: float, at_low: float) -> float:
+    while high - low > 1e-10:
+        middle = 0.5 * (low + high)
+        at = function(middle)
+        if at * at_low > 0.0:
+            low = middle
+        else:
+            high = middle
+    return 0.5 * (low + high)

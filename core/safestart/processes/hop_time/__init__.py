@@ -1,0 +1,1 @@
+"""The hop-time process: how long one hop takes, at once."""
