@@ -69,8 +69,7 @@ class Deprecation:
 
 
 def mark(document: dict[str, Any]) -> None:
-    """Mark the same in an OpenAPI description; raises ``KeyError`` for a notice about an unknown call or
-    parameter."""
+    """Mark them in an OpenAPI description; raises ``KeyError`` for a notice about an unknown call or parameter."""
     for (method, path), notice in NOTICES.items():
         operation = document["paths"][path][method.lower()]
         if notice.parameter is None:

@@ -33,8 +33,7 @@ def _document(inputs: GoNoGoInputs, context: Context) -> dict[str, Any]:
 
 
 def _instant(inputs: GoNoGoInputs) -> dict[str, Any] | None:
-    """The document of a question that takes microseconds, else None: a cone program would block every other
-    request."""
+    """The document of a question that takes microseconds, else None: a cone program would block other requests."""
     return _document(inputs, _SILENT) if METHODS[inputs.method].at_once else None
 
 

@@ -1,4 +1,4 @@
-"""The methods by name, as on the wire; one line each. Light: the module of a method is imported when it is asked."""
+"""The methods by wire name; one line each. Light to import: a method's module is imported at its first use."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ Decide = Callable[..., Any]
 
 @dataclass(frozen=True, slots=True)
 class Method:
-    """A way to answer.
+    """A method to answer.
 
-    ``text`` is what the wire says of it. ``decide`` names the function, ``module:function``, from inputs, the paper's
-    conditions at every start, and a context to :class:`Verdicts`; it raises ``InvalidInput`` for what it does not know.
-    ``proves``: a GO and a NO_GO come with proof documents when asked for. ``at_once``: one start takes microseconds,
-    so that a service may answer it on its event loop.
+    ``text`` describes it on the wire. ``decide`` names the function, ``module:function``, from inputs, the paper's
+    conditions at every start, and a context to :class:`Verdicts`; it raises ``InvalidInput`` for unsupported inputs.
+    ``proves``: GO and NO_GO come with proof documents on request. ``at_once``: one start takes microseconds, so that a
+    service may answer it on its event loop.
     """
 
     name: str
@@ -49,7 +49,7 @@ _ALL = (
 
 METHODS = {method.name: method for method in _ALL}
 DEFAULT, PROVING = "closed_form", "exact"
-"""The method when none is named, and when a proof is wanted of one that has none."""
+"""The default method, also for a proof when the named method has none."""
 
 if TYPE_CHECKING:
     MethodName = str

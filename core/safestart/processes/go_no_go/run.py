@@ -1,4 +1,4 @@
-"""Run go-no-go: the paper's conditions at every start, and the verdicts of the method asked for."""
+"""Run go-no-go: the paper's conditions at every start, and the verdicts of the requested method."""
 
 from __future__ import annotations
 

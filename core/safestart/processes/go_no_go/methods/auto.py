@@ -1,4 +1,4 @@
-"""Method auto: the verdicts of ``exact``, by an atlas where there is one or where many starts make one pay."""
+"""Method auto: the verdicts of ``exact``, from an atlas if one exists or if many starts make building one pay."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from safestart.processes.go_no_go.spec import GoNoGoInputs
 from safestart.runtime.progress import Context
 
 _MANY = 100
-"""Starts from which on building an atlas (some tens of cone programs) pays."""
+"""With at least this many starts, building an atlas (some tens of cone programs) pays."""
 
 
 def decide(inputs: GoNoGoInputs, _: Conditions, context: Context) -> Verdicts:
-    """Atlases know planar starts at rest in LVLH, asked to stay; the others are solved one by one."""
+    """Atlases cover planar starts at rest in LVLH and the question `stay`; others are solved one by one."""
 
     def solve(question: Question, starts: Floats, context: Context) -> list[Answer]:
         if question.plain and question.dimensions == 2 and inputs.rest is Rest.LVLH:
@@ -35,9 +35,9 @@ def decide(inputs: GoNoGoInputs, _: Conditions, context: Context) -> Verdicts:
 
 
 def _by_atlas(question: Question, starts: Floats, context: Context) -> list[Answer]:
-    """Atlas first; what lies in its undecided strip is solved, as far as the number of programs allows.
+    """Ask the atlas first and solve starts in its undecided strip, up to the limit on programs.
 
-    Few starts ask an atlas that is there and are solved otherwise; many have one built.
+    Few starts use an existing atlas or are solved; many starts have one built.
     """
     many = len(starts) >= _MANY
     atlas = atlas_for(question, float(starts[:, 1].max()), context, make=many)

@@ -1,4 +1,4 @@
-"""Method closed_form: the paper's conditions decide. GO is no proof, and NO_GO means not certified."""
+"""Method closed_form: the paper's conditions decide. GO is not a proof, and NO_GO means not certified."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _TAKEN = frozenset(
     {
         *ScenarioInput.model_fields,
         *("states", "rest", "method", "proofs"),
-        # Details of questions that are refused themselves, and the time, which the conditions do not depend on.
+        # Details of refused questions, and the time, on which the conditions do not depend.
         *(
             "horizon_s",
             "within_s",
@@ -27,11 +27,11 @@ _TAKEN = frozenset(
         ),
     }
 )
-"""Inputs that may be given; every other one is refused unless it is the default, which asks for nothing."""
+"""Supported inputs; any other input must have its default value, which asks for nothing."""
 
 
 def decide(inputs: GoNoGoInputs, conditions: Conditions, context: Context) -> Verdicts:
-    """A start is GO where its smallest margin is positive."""
+    """A start is GO when its smallest margin is positive."""
     if not inputs.model_fields_set <= _TAKEN:
         _refuse(inputs)
     context.step(1, 1)
