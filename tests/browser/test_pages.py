@@ -20,7 +20,7 @@ from tests.browser.conftest import SHOTS, Visit
 from tests.waiting import until
 
 SLIVER = "omega_t_deg_s=2&a_max_m_s2=0.05&x_m=9.364&y_m=81.044"
-"""Certified by the closed form; no thrust history stays."""
+"""Certified by the paper's conditions; no thrust history stays."""
 SMALL = {"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "grid": {"nx": 21, "ny": 21, "y_max_m": 150}}
 QUICK = ["analytical", "exact", "backward", "monte_carlo"]
 SLOW = SMALL | {"engines": ["hamilton_jacobi"], "hamilton_jacobi": {"frame": "body", "accuracy": "very_high"}}
@@ -74,7 +74,7 @@ def test_a_new_user_flies_a_start(visit: Visit) -> None:
     visit.shot("explore-lvlh")
 
 
-def test_explore_shows_where_the_closed_form_is_wrong(visit: Visit, tmp_path: Path) -> None:
+def test_explore_shows_where_the_paper_is_wrong(visit: Visit, tmp_path: Path) -> None:
     page = explore(visit, SLIVER)
     words = page.locator(".answer .word")
     expect(words.nth(0)).to_have_text("NO GO")

@@ -15,7 +15,7 @@ import numpy as np
 
 from safestart.atlas.extent import Ceiling, Witness
 from safestart.errors import invalid
-from safestart.exact.decide import GUARD, Answer, Multiplier, Verdict
+from safestart.exact.answer import GUARD, Answer, Multiplier, Verdict
 from safestart.exact.question import Question
 from safestart.model.scenario import Floats
 

@@ -10,7 +10,7 @@ from safestart.atlas.atlas import Atlas
 from safestart.atlas.extent import Ceiling, Extent, NotSolved, Witness
 from safestart.atlas.sandwich import Sandwich, Support, refine
 from safestart.errors import invalid
-from safestart.exact.decide import GUARD
+from safestart.exact.answer import GUARD
 from safestart.exact.question import Question
 from safestart.exact.watch import watch_of
 from safestart.model.scenario import MAX_RANGE, Floats, number

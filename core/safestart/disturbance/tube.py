@@ -16,7 +16,8 @@ import numpy as np
 
 from safestart.disturbance.ancillary import LONGEST_INTERVAL, reach_of
 from safestart.errors import invalid
-from safestart.exact.decide import TOLERANCE, Answer, Verdict, decide
+from safestart.exact.answer import TOLERANCE, Answer, Verdict
+from safestart.exact.decide import decide
 from safestart.exact.question import Question
 from safestart.model.scenario import MIN_ACCELERATION, Chaser, CorridorShape, Floats, Scenario, number
 

@@ -12,14 +12,12 @@ import math
 import numpy as np
 
 from safestart.errors import invalid
-from safestart.exact.answer import GUARD, TOLERANCE, Answer, Multiplier, Verdict
+from safestart.exact.answer import GUARD, TOLERANCE, Answer, Verdict
 from safestart.exact.question import Question
 from safestart.exact.search import Search
 from safestart.exact.synchronize import synchronize
 from safestart.exact.watch import watch_of
 from safestart.model.scenario import Floats, number
-
-__all__ = ["GUARD", "TOLERANCE", "Answer", "Multiplier", "Verdict", "decide"]
 
 
 def decide(

@@ -18,7 +18,8 @@ from safestart.proofs.balls import PRECISION, Motion
 from safestart.proofs.family_statement import StatedForAll, read
 from safestart.proofs.refute import Refutation
 from safestart.proofs.single import Verified
-from safestart.proofs.statement import ProofRejected, Stated
+from safestart.proofs.statement import Stated
+from safestart.proofs.strict import ProofRejected
 from safestart.proofs.wording import lines_for_all
 from safestart.runtime.precision import precise
 

@@ -16,8 +16,6 @@ from flint import fmpq
 from safestart.proofs.strict import LARGEST, ProofRejected, fields, number, part, shown, vector
 from safestart.proofs.weights import Limits, Weight, limits_of, parts_of
 
-__all__ = ["SCHEMA", "ProofRejected", "Stated", "check_seal", "digest_of", "read"]
-
 SCHEMA = "safestart-proof/1"
 DOCUMENT = ("schema", "digest", "verdict", "margin_m", "question", "start")
 """Fields of every kind of document."""

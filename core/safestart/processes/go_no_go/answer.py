@@ -11,7 +11,10 @@ from safestart.processes.wire import NO_SYNC_LIMIT, finite
 
 
 class Verdicts(NamedTuple):
-    """A method's results for S starts, each a list of S; None when the question has no such column."""
+    """A method's results for S starts, each a list of S; None when the question has no such column.
+
+    ``decided_by`` names what decided each start; without it the method itself decided all.
+    """
 
     verdict: list[str]
     margin_m: Sequence[float | None]
@@ -19,6 +22,7 @@ class Verdicts(NamedTuple):
     end_s: list[float | None] | None = None
     examples: list[list[dict[str, Any]]] | None = None
     proof: list[dict[str, Any] | None] | None = None
+    decided_by: list[str | None] | None = None
 
 
 class Answer(NamedTuple):
@@ -40,6 +44,7 @@ class Answer(NamedTuple):
             "r_sync_reason": NO_SYNC_LIMIT if limit is None else None,
             "faces": list(found.faces),
             "verdict": said.verdict,
+            "decided_by": self.decided_by(),
             "margin_m": said.margin_m,
             "face_margins_m": found.face_margin,
             "range_margin_m": [finite(value) for value in found.range_margin],
@@ -57,6 +62,7 @@ class Answer(NamedTuple):
         limit = finite(found.limit)
         return {
             "verdict": said.verdict[0],
+            "decided_by": self.decided_by()[0],
             "margin_m": said.margin_m[0],
             "range_margin_m": finite(found.range_margin[0]),
             "binding": found.binding[0],
@@ -72,3 +78,10 @@ class Answer(NamedTuple):
             "question": inputs.question,
             "rest": inputs.rest.value,
         }
+
+    def decided_by(self) -> list[str | None]:
+        """What decided each start, None for those that nothing decided."""
+        said = self.verdicts
+        if said.decided_by is not None:
+            return said.decided_by
+        return [None if word == "UNDECIDED" else self.inputs.method for word in said.verdict]

@@ -7,7 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from safestart.model.scenario import MAX_RANGE
-from safestart.processes.go_no_go.method_registry import DEFAULT, METHODS, MethodName
+from safestart.processes.go_no_go.method_registry import DEFAULT, METHODS, RENAMED, MethodName
 from safestart.processes.go_no_go.uncertainty import HalfWidths
 from safestart.processes.wire import Horizon
 
@@ -18,7 +18,13 @@ class QuestionFields(HalfWidths):
     """Method and exact question; only the proving methods accept fields other than the method."""
 
     method: MethodName = Field(
-        DEFAULT, description=" ".join(f"{method.name}: {method.text}." for method in METHODS.values())
+        DEFAULT,
+        description=" ".join(
+            [
+                *(f"{method.name}: {method.text}." for method in METHODS.values()),
+                *(f"{old}: deprecated name of {new}." for old, new in RENAMED.items()),
+            ]
+        ),
     )
     question: QuestionKind = Field(
         "stay",

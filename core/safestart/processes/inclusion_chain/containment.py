@@ -9,7 +9,8 @@ import numpy as np
 from safestart.atlas.survey import build
 from safestart.closed_form.paper import certify_grid
 from safestart.engines.exact import containment_horizon
-from safestart.exact.decide import Verdict, decide
+from safestart.exact.answer import Verdict
+from safestart.exact.decide import decide
 from safestart.model.scenario import Floats, Grid
 from safestart.processes.inclusion_chain.evidence import proof_at
 from safestart.processes.inclusion_chain.regions import question_of, state_at

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from safestart.engines.base import ResultCode
-from safestart.exact.decide import Verdict, decide
+from safestart.exact.answer import Verdict
+from safestart.exact.decide import decide
 from safestart.exact.prove import proof_of
 from safestart.exact.question import Question
 from safestart.model.metrics import ratio

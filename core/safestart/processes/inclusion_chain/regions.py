@@ -16,7 +16,8 @@ from safestart.disturbance.tube import Disturbance, Tube, tube_of
 from safestart.engines.base import Engine, Problem, ResultCode
 from safestart.engines.exact import Exact
 from safestart.engines.hamilton_jacobi import HamiltonJacobi
-from safestart.exact.decide import Verdict, decide
+from safestart.exact.answer import Verdict
+from safestart.exact.decide import decide
 from safestart.exact.question import Goal, Question
 from safestart.model.scenario import Bools, Floats, Rest, Scenario, SetKind
 from safestart.processes.inclusion_chain.spec import ChainInputs

@@ -9,7 +9,8 @@ import numpy as np
 
 from safestart.attitude.body_frame import body_to_lvlh
 from safestart.closed_form.paper import certify, certify_grid
-from safestart.exact.decide import Verdict, decide
+from safestart.exact.answer import Verdict
+from safestart.exact.decide import decide
 from safestart.exact.question import Question
 from safestart.model.scenario import MAX_ACCELERATION, MIN_ACCELERATION, Chaser, Grid, Rest, Scenario, Target
 from safestart.processes.base import ProcessOutput
