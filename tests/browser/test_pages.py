@@ -158,6 +158,7 @@ def test_a_benchmark_from_form_to_result(visit: Visit) -> None:
     expect(page.locator(".matrix")).to_have_count(4)
     expect(page.locator(".masks .nsewdrag").first).to_be_visible()
     expect(page.locator(".agreement")).to_contain_text("cells")
+    expect(page.locator(".masks .legendtext")).to_have_count(4)
     expect(page.locator("text=paper: IoU with HJ")).to_be_visible()
     with page.expect_download() as download:
         page.click("a[download='maps.npz']")
