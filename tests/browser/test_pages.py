@@ -165,6 +165,9 @@ def test_a_benchmark_from_form_to_result(visit: Visit) -> None:
     assert Path(download.value.path()).read_bytes()[:2] == b"PK"
     visit.shot("benchmark")
     page.emulate_media(media="print")
+    pictures = "[...document.querySelectorAll('.masks, .masks .main-svg')]"
+    heights = page.evaluate(f"{pictures}.map((e) => Math.round(e.getBoundingClientRect().height))")
+    assert len(set(heights)) == 1, "a picture has the size of its place on paper"
     report = until(lambda: one_page(page), "a report of one page")
     (SHOTS / "report.pdf").write_bytes(report)
     page.emulate_media(media="screen")
