@@ -13,6 +13,7 @@ from safestart.processes.inclusion_chain.spec import ALL_SETS
 
 _COLUMNS: tuple[tuple[str, Justify], ...] = (
     ("deg/s", "right"),
+    ("whose", "left"),
     ("claimed", "left"),
     ("cells", "right"),
     ("outside", "right"),
@@ -35,7 +36,7 @@ def register(group: typer.Typer) -> None:
         ] = True,
         as_json: Json = False,
     ) -> None:
-        """Eq. (12): S_tube in S_ana in S_sync in S_HJpos, at 0.10 m/s^2 and 40 s: does it hold, and where not?"""
+        """Eq. (12): S_tube in S_ana in S_sync in S_HJpos, at 0.10 m/s^2 and 40 s, and with the sound certificate."""
         document = chain_document(rate or list(published.TABLE2), level_sets=level_sets)
         print_json(document) if as_json else show(document)
 
@@ -64,6 +65,7 @@ def show(document: dict[str, Any]) -> None:
                 said.append(f"{point['omega_t_deg_s']:g} deg/s, {where}: {found['evidence']}")
             table.add_row(
                 f"{point['omega_t_deg_s']:g}",
+                link["whose"],
                 f"{link['inner']} in {link['outer']}",
                 str(cells[link["inner"]]),
                 "-" if link["cells"] is None else str(link["cells"]),

@@ -16,7 +16,7 @@ from safestart.campaign.tally import Flagged, Known, Rows, Tally, Total
 from safestart.processes.sweep.spec import SweepInputs
 from safestart.processes.sweep.split import DRAWN_OWN
 
-# Of the false GOs of the closed form, this many are kept with their numbers.
+# Of the false GOs of a closed form, this many are kept with their numbers.
 FALSE_GO_KEPT = 20
 
 
@@ -46,7 +46,7 @@ def study_of(inputs: SweepInputs) -> Study:
 def outcome_of(inputs: SweepInputs) -> list[Column]:
     """The start, one verdict per certificate (unknown: not asked), what each controller flew.
 
-    Not recorded: ``cell`` (unknown outside a grid); ``undecided``: the exact answer is; ``false_go``: the closed form
+    Not recorded: ``cell`` (unknown outside a grid); ``undecided``: the exact answer is; ``false_go``: a closed form
     certifies what exact proves NO_GO; ``watched``: certified by any, or by none asked; ``spared_...``: not one of the
     certified starts that violated.
     """
