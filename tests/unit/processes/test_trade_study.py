@@ -22,6 +22,8 @@ def test_every_operating_point_agrees_with_coverage() -> None:
     cells = execute("coverage", {**asked, "omega_t_deg_s": [1, 3]}).document["outputs"]["cells"]
     for point, cell in zip(points, cells, strict=True):
         assert 100.0 * point["certified_fraction"] == pytest.approx(cell["safe_percent"])
+        assert 100.0 * point["paper_fraction"] == pytest.approx(cell["paper_percent"])
+        assert point["certified_fraction"] <= point["exact_fraction"] + 0.05
         assert point["exact_inner_m2"] <= point["exact_outer_m2"] <= outputs["corridor_area_m2"]
         assert point["exact_fraction"] >= point["flown_fraction"] - 0.05
         assert point["certified_flown"] >= 0.98

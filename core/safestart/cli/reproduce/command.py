@@ -100,7 +100,7 @@ def register(app: typer.Typer) -> None:
 
 
 def table1_cells() -> list[dict[str, float]]:
-    """The 20 cells of Table 1, percent: ``paper`` as printed, ``ours`` by the same conditions, ``certified`` soundly."""
+    """The 20 cells of Table 1, percent: ``paper`` printed, ``ours`` by the same conditions, ``certified`` soundly."""
     inputs = {
         "omega_t_deg_s": list(published.TABLE1_SAFE_PERCENT),
         "a_max_m_s2": list(published.TABLE1_THRUST_M_S2),

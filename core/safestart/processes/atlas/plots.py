@@ -11,6 +11,7 @@ from matplotlib.patches import Patch, Polygon
 from safestart.atlas.atlas import Atlas
 from safestart.closed_form.by_name import ClosedForm, map_of
 from safestart.engines.registry import engine_spec
+from safestart.engines.spec import LineStyle
 from safestart.model.scenario import Grid, Scenario
 from safestart.processes.base import Artifact
 from safestart.processes.plotting import draw_corridor, figure, png
@@ -18,7 +19,7 @@ from safestart.processes.plotting import draw_corridor, figure, png
 _GO, _NO_GO = "#56B4E9", "#E69F00"
 _FINE = 400
 
-_FORMS: tuple[tuple[ClosedForm, str, str], ...] = (
+_FORMS: tuple[tuple[ClosedForm, str, LineStyle], ...] = (
     ("certified", "certified", "-"),
     ("paper", "analytical", "--"),
 )

@@ -108,6 +108,7 @@ def _links(regions: Mapping[str, Region]) -> list[dict[str, Any]]:
     claimed = {
         (whose, *link): None
         for whose, chain in (("ours", CHAIN), ("paper", PAPER_CHAIN))
+        if whose == "ours" or not regions.keys().isdisjoint(("tube", "analytical"))
         for link in pairwise(name for name in chain if name in regions)
     }
     return [
