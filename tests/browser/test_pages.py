@@ -158,12 +158,16 @@ def test_a_benchmark_from_form_to_result(visit: Visit) -> None:
     expect(page.locator(".matrix")).to_have_count(4)
     expect(page.locator(".masks .nsewdrag").first).to_be_visible()
     expect(page.locator(".agreement")).to_contain_text("cells")
+    expect(page.locator(".masks .legendtext")).to_have_count(4)
     expect(page.locator("text=paper: IoU with HJ")).to_be_visible()
     with page.expect_download() as download:
         page.click("a[download='maps.npz']")
     assert Path(download.value.path()).read_bytes()[:2] == b"PK"
     visit.shot("benchmark")
     page.emulate_media(media="print")
+    pictures = "[...document.querySelectorAll('.masks, .masks .main-svg')]"
+    heights = page.evaluate(f"{pictures}.map((e) => Math.round(e.getBoundingClientRect().height))")
+    assert len(set(heights)) == 1, "a picture has the size of its place on paper"
     report = until(lambda: one_page(page), "a report of one page")
     (SHOTS / "report.pdf").write_bytes(report)
     page.emulate_media(media="screen")

@@ -49,7 +49,7 @@ def _distinct(values: list[T]) -> list[T]:
 
 
 DISTINCT = AfterValidator(_distinct)
-"""For a list that names nothing twice."""
+"""For a list without repeated names."""
 Certificate = Annotated[
     ClosedForm,
     Field(
@@ -103,7 +103,7 @@ class ScenarioInput(WireModel):
 
 
 class Confusion(WireModel):
-    """A certificate (positive: certified) against what is so (actual); shares without a case are null."""
+    """A certificate (positive: certified) against the truth (actual); shares without a case are null."""
 
     tp: int
     fp: int

@@ -94,8 +94,7 @@ def _telltales() -> tuple[bytes, ...]:
 
 
 def mark(document: dict[str, Any]) -> None:
-    """Mark the same in an OpenAPI description; raises ``KeyError`` for a notice about an unknown call or
-    parameter."""
+    """Mark them in an OpenAPI description; raises ``KeyError`` for a notice about an unknown call or parameter."""
     for (method, path), notice in NOTICES.items():
         operation = document["paths"][path][method.lower()]
         if notice.value is not None:

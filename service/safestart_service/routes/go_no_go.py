@@ -34,8 +34,7 @@ def _document(inputs: GoNoGoInputs, context: Context) -> dict[str, Any]:
 
 
 def _instant(inputs: GoNoGoInputs, query: bytes) -> dict[str, Any] | None:
-    """The document of a question that takes microseconds, else None: a cone program would block every other
-    request."""
+    """The document of a question that takes microseconds, else None: a cone program would block other requests."""
     found = run.at_once(inputs, _SILENT)
     return None if found is None else _linked(found.document_of_one(), inputs, query)
 

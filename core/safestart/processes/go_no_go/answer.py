@@ -1,4 +1,4 @@
-"""The answer of go-no-go: what a method says of the starts, beside the paper's conditions there, as documents."""
+"""The answer of go-no-go as documents: a method's verdicts on the starts beside the paper's conditions."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from safestart.processes.wire import NO_SYNC_LIMIT, finite
 
 
 class Verdicts(NamedTuple):
-    """What a method says of S starts, a list of S each; None where the question has no such column.
+    """A method's results for S starts, each a list of S; None when the question has no such column.
 
-    ``decided_by`` names what decided each start; None for it all: the method itself.
+    ``decided_by`` names what decided each start; without it the method itself decided all.
     """
 
     verdict: list[str]
@@ -26,7 +26,7 @@ class Verdicts(NamedTuple):
 
 
 class Answer(NamedTuple):
-    """Question, conditions and verdicts; its two documents are written here and nowhere else."""
+    """Question, conditions and verdicts; only this class writes the two documents."""
 
     inputs: GoNoGoInputs
     conditions: Conditions

@@ -1,4 +1,4 @@
-"""The methods by name, as on the wire; one line each. Light: the module of a method is imported when it is asked."""
+"""The methods by wire name; one line each. Light to import: a method's module is imported at its first use."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ Decide = Callable[..., Any]
 
 @dataclass(frozen=True, slots=True)
 class Method:
-    """A way to answer.
+    """A method to answer.
 
-    ``text`` is what the wire says of it. ``decide`` names the function, ``module:function``, from inputs, the paper's
-    conditions at every start, and a context to :class:`Verdicts`; it raises ``InvalidInput`` for what it does not know.
-    ``proves``: a GO and a NO_GO come with proof documents when asked for. ``sound``: no GO that cannot be flown.
-    ``at_once``: one start takes microseconds, so that a service may answer it on its event loop. ``first`` names what
-    is asked before of one start, a function from inputs and conditions to :class:`Verdicts` in microseconds, or None.
+    ``text`` describes it on the wire. ``decide`` names the function, ``module:function``, from inputs, the paper's
+    conditions at every start, and a context to :class:`Verdicts`; it raises ``InvalidInput`` for unsupported inputs.
+    ``proves``: GO and NO_GO come with proof documents on request. ``sound``: every GO can be flown. ``at_once``: one
+    start takes microseconds, so that a service may answer it on its event loop. ``first`` names a function that is
+    tried before on a single start, from inputs and conditions to :class:`Verdicts` in microseconds, or None.
     """
 
     name: str
@@ -63,9 +63,9 @@ _ALL = (
 
 METHODS = {method.name: method for method in _ALL}
 RENAMED = {"closed_form": "paper"}
-"""Deprecated names, still taken."""
+"""Deprecated names, still accepted."""
 DEFAULT, PROVING = "auto", "exact"
-"""The method when none is named, and when a proof is wanted of one that has none."""
+"""The default method, and the method for a proof when the named one has none."""
 UNPROVED = tuple(name for name in (*METHODS, *RENAMED) if not METHODS[RENAMED.get(name, name)].sound)
 """Names of methods whose GO may be impossible to fly."""
 

@@ -1,4 +1,4 @@
-"""One start, flat: the question as a query string or a command line asks it, and its answer without arrays."""
+"""One start: the flat question of a query string or a command line, and its answer without arrays."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What may be asked of one start beyond the closed form: the exact questions, as they appear on the wire."""
+"""The exact questions about one start, beyond the closed form, as they appear on the wire."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ QuestionKind = Literal["stay", "synchronize"]
 
 
 class QuestionFields(HalfWidths):
-    """Method and exact question; all but the method is for the methods that prove."""
+    """Method and exact question; only the proving methods accept fields other than the method."""
 
     method: MethodName = Field(
         DEFAULT,

@@ -1,4 +1,4 @@
-"""Run go-no-go: the verdicts of the method asked for, and the paper's conditions at every start beside them."""
+"""Run go-no-go: the verdicts of the requested method, and the paper's conditions at every start beside them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From which horizon on every certified start is in another set; and the certified starts that cannot stay at all."""
+"""The horizon from which every certified start is in another set, and the certified starts that cannot stay."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ def fine_atlas(inputs: ChainInputs) -> Atlas:
 
 
 def in_synchronize(inputs: ChainInputs, inner: str, starts: Floats, context: Context) -> dict[str, Any]:
-    """Smallest horizon at which `synchronize` is GO for every start (P, 2); it may end at any time, so the set grows.
+    """Smallest horizon at which `synchronize` is GO for every start (P, 2); its end is free, so the set grows.
 
-    Each start is asked at the horizon that the ones before it needed, and only one that fails there is bisected; the
-    farthest go first, since they need the longest.
+    Each start is tried at the horizon that the earlier ones needed and bisected only if it fails there; the farthest
+    starts come first, as they need the longest.
     """
     last = round(inputs.containment_up_to_s / DT_S)
     ordered = starts[np.argsort(-np.hypot(starts[:, 0], starts[:, 1]), kind="stable")]

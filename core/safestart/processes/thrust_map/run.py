@@ -87,7 +87,8 @@ def _turning(inputs: ThrustMapInputs, rate: float) -> float:
 
 
 def _least(enough: Callable[[float], bool], low: float, tolerance: float) -> float | None:
-    """Smallest thrust from ``low`` on that is enough, from above to a relative ``tolerance``; None: none is."""
+    """Smallest sufficient thrust from ``low`` on, rounded up within a relative ``tolerance``; None: no thrust
+    suffices."""
     if enough(low):
         return low
     high = MAX_ACCELERATION

@@ -1,4 +1,4 @@
-"""Method auto: ``certified`` where that says GO, else an atlas if there is one or many starts pay for one, or exact."""
+"""Method auto: ``certified`` if it says GO, else an atlas if one exists or many starts pay for one, else ``exact``."""
 
 from __future__ import annotations
 
@@ -20,13 +20,14 @@ from safestart.processes.go_no_go.spec import GoNoGoInputs
 from safestart.runtime.progress import Context
 
 QUICK_TOLERANCE = 0.01
-"""Metres to which margins are known where no document is asked for: verdicts are the same, programs fewer."""
+"""Accuracy of margins (m) without proof documents: the verdicts are the same with fewer programs."""
 _MANY = 100
-"""Starts from which on building an atlas (some tens of cone programs) pays."""
+"""With at least this many starts, building an atlas (some tens of cone programs) pays."""
 
 
 def decide(inputs: GoNoGoInputs, _: Conditions, context: Context) -> Verdicts:
-    """What the certificate says GO to is decided; the other starts, and questions it does not know, are proved."""
+    """The certificate's GOs stand; the other starts, and questions outside the certificate, go to the proving
+    methods."""
     if not certified.answers(inputs):
         return prove_all(inputs, context)
     found = certified.certificates(inputs)
@@ -46,7 +47,7 @@ def decide(inputs: GoNoGoInputs, _: Conditions, context: Context) -> Verdicts:
 
 
 def prove_all(inputs: GoNoGoInputs, context: Context) -> Verdicts:
-    """Atlases know planar starts at rest in LVLH, asked to stay; the others are solved one by one."""
+    """Atlases cover planar starts at rest in LVLH and the question `stay`; others are solved one by one."""
 
     def solve(question: Question, starts: Floats, context: Context) -> Solved:
         if question.plain and question.dimensions == 2 and inputs.rest is Rest.LVLH:
@@ -64,12 +65,12 @@ def prove_all(inputs: GoNoGoInputs, context: Context) -> Verdicts:
 
 
 def _tolerance(inputs: GoNoGoInputs) -> float:
-    """How closely margins are known (m): one of a document as closely as with method exact."""
+    """Accuracy of margins (m): with proof documents that of method exact."""
     return TOLERANCE if inputs.proofs else QUICK_TOLERANCE
 
 
 def _put(said: Verdicts, places: list[int], found: Verdicts) -> None:
-    """Write the answers on some of the starts into those on all."""
+    """Write the answers on some starts into the answers on all."""
     pairs: tuple[tuple[Any, Any], ...] = (
         (said.verdict, found.verdict),
         (said.margin_m, found.margin_m),
@@ -84,10 +85,10 @@ def _put(said: Verdicts, places: list[int], found: Verdicts) -> None:
 def _by_atlas(
     question: Question, starts: Floats, context: Context, *, documents: bool, tolerance: float
 ) -> Solved:
-    """Atlas first; what lies in its undecided strip is solved, as far as the number of programs allows.
+    """Ask the atlas first and solve starts in its undecided strip, up to the limit on programs.
 
-    Few starts ask an atlas that is there and are solved otherwise; many have one built. Thrust and multipliers are
-    gathered only for few starts or where ``documents`` are to be written of them.
+    Few starts use an existing atlas or are solved; many starts have one built. Thrust and multipliers are collected
+    only for few starts or for ``documents``.
     """
     many = len(starts) >= _MANY
     atlas = atlas_for(question, float(starts[:, 1].max()), context, make=many)

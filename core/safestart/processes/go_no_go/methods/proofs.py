@@ -1,4 +1,4 @@
-"""What the proving methods share: the question and the starts in LVLH, sets around them, proof documents."""
+"""Shared by the proving methods: the question and the starts in LVLH, sets around them, proof documents."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ def _end(question: Question, answer: Answer) -> float | None:
 def _proof(
     disturbance: Disturbance | None, question: Question, start: Floats, answer: Answer
 ) -> dict[str, Any] | None:
-    """The document of a decided answer; None where it is not."""
+    """The document of a decided answer; None for an undecided one."""
     if answer.verdict is Verdict.UNDECIDED:
         return None
     if disturbance is None:
