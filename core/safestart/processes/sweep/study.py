@@ -47,8 +47,8 @@ def outcome_of(inputs: SweepInputs) -> list[Column]:
     """The start, one verdict per certificate (unknown: not asked), and the flight of each controller.
 
     Not recorded: ``cell`` (unknown outside a grid); ``undecided``: the exact answer is UNDECIDED; ``false_go``: a
-    closed form certifies a start that exact proves NO_GO; ``watched``: certified by any, or by none asked; ``spared_...``: not one of the
-    certified starts that violated.
+    closed form certifies a start that exact proves NO_GO; ``watched``: certified by any, or by none asked;
+    ``spared_...``: not one of the certified starts that violated.
     """
     columns = [Column(name, Kind.NUMBER) for name in ("omega_t_deg_s", "a_max_m_s2", "x_m", "y_m")]
     columns += [Column(f"certified_{name}", Kind.FLAG) for name in inputs.certificates]
