@@ -1,1 +1,4 @@
-"""How the target turns: ``attitude`` is the interface, ``spin`` the steady one, ``body_frame`` its planar formulas."""
+"""How the target turns: ``attitude`` is the interface; ``spin``, ``torque_free`` and ``table`` the ways to turn.
+
+``in_lvlh`` takes an attitude from inertial axes to LVLH, ``body_frame`` holds the planar formulas.
+"""

@@ -1,4 +1,4 @@
-"""One case of a campaign, and random numbers that belong to a case or to a block of cases, never to a worker."""
+"""One case of a campaign, and random numbers per case or block of cases, never per worker."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from safestart.model.scenario import Floats
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """Case ``index`` of a campaign (0 for the first), with the parameters that its design gives it."""
+    """Case ``index`` of a campaign (0 for the first), with its parameters from the design."""
 
     index: int
     seed: int = 0
     parameters: Mapping[str, float] = field(default_factory=dict)
 
     def generator(self, stream: int = 0) -> np.random.Generator:
-        """Random numbers of this case alone; another ``stream`` gives others that are independent of them.
+        """Random numbers of this case alone; each ``stream`` gives independent numbers.
 
         Philox is counter-based: key ``seed``, counter (0, 0, index, 1 + stream). Counters that end with 0 belong to
         the noise of the flights of :mod:`safestart.simulation`: a study may use both with one seed.
@@ -35,7 +35,7 @@ def generator(seed: int, *key: int) -> np.random.Generator:
 def uniform_run(seed: int, key: tuple[int, ...], first: int, count: int, block: int) -> Floats:
     """Numbers in [-1, 1) of ``count`` cases from ``first`` on, (count,): each block of cases is drawn whole.
 
-    The number of a case depends on seed, key and the case alone, whatever run it is asked in.
+    The number of a case depends only on seed, key and the case, not on the run of cases asked for.
     """
     begin = first // block
     blocks = range(begin, -(-(first + count) // block))

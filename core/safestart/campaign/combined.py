@@ -1,4 +1,4 @@
-"""Several tallies in one: by name, or one for each group of cases."""
+"""Several tallies in one: by name, or one per group of cases."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Each:
 
 @dataclass(frozen=True, slots=True)
 class Grouped:
-    """A tally for each value of a column of whole numbers; rows without a value are left out."""
+    """A tally for each value of an integer column; rows without a value are left out."""
 
     by: str
     tally: Tally

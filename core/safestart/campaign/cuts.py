@@ -1,10 +1,10 @@
-"""Where a campaign is cut into shards: a matter of its cases alone, never of how many workers there are. Light."""
+"""Cut a campaign into shards, by its cases alone and not by the number of workers. Light to import."""
 
 from __future__ import annotations
 
 
 def runs(total: int, most: int) -> list[tuple[int, int]]:
-    """``(first, count)`` of runs of at most ``most`` cases that are ``total`` together."""
+    """``(first, count)`` of runs of at most ``most`` cases, ``total`` in all."""
     return [(first, min(most, total - first)) for first in range(0, total, most)]
 
 

@@ -22,7 +22,7 @@ class Design(Protocol):
         ...
 
     def parameters(self, first: int, count: int) -> list[Parameters]:
-        """Of ``count`` cases from ``first`` on; those of a case do not depend on the run it is asked in."""
+        """Parameters of ``count`` cases from ``first`` on; those of a case do not depend on the run asked for."""
         ...
 
 

@@ -1,4 +1,4 @@
-"""Rows that a campaign keeps whole: the worst of them, the first of a kind, or all of a small one."""
+"""Rows that a campaign keeps whole: the worst, the first of a kind, or all rows of a small campaign."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from safestart.campaign.table import CASE, Array, Table
 class Kept:
     """The first ``most`` rows in ascending order of the columns ``by``, then of the case's number.
 
-    What is unknown or not finite comes before every number. Only rows with the flag ``where`` count, where one is
-    named. The rows are JSON-able, with every column.
+    Unknown or non-finite values come before every number. If ``where`` names a flag, only rows with it count. The
+    rows are JSON-able, with every column.
     """
 
     most: int

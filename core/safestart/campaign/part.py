@@ -1,4 +1,4 @@
-"""What one shard of a campaign gave."""
+"""The result of one shard of a campaign."""
 
 from __future__ import annotations
 

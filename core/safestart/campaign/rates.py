@@ -13,7 +13,7 @@ from safestart.model.metrics import ConfusionMatrix, ratio, wilson
 
 @dataclass(frozen=True, slots=True)
 class Share:
-    """How often a flag is set where it is known, with its Wilson interval of 95 %."""
+    """How often a flag is set among the rows where it is known, with its Wilson interval of 95 %."""
 
     flag: str
 
@@ -39,7 +39,7 @@ class Share:
 
 @dataclass(frozen=True, slots=True)
 class Confusion:
-    """A prediction against what was so, over the rows in which the prediction is known."""
+    """A prediction against the truth, over the rows with a known prediction."""
 
     predicted: str
     actual: str

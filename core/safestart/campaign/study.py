@@ -1,4 +1,4 @@
-"""A campaign as a whole: what its cases are, what is known of each, what is said of all. Light to import."""
+"""A whole campaign: its cases, the outcome of each, and the tally of all. Light to import."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from safestart.runtime.progress import Context
 Simulate = Callable[[Case, Context], Mapping[str, Any]]
 """The outcome of one case, by column; None where a value is unknown.
 
-A numerical failure is an outcome, too: a flag or a text says so, and the case counts as no success.
+A numerical failure is an outcome, too: a flag or a text marks it, and the case does not count as a success.
 """
 
 
 @dataclass(frozen=True, slots=True)
 class Totals:
-    """What ``shards`` finished shards say together, and the seconds they took."""
+    """The joint result of ``shards`` finished shards, and the seconds they took."""
 
     said: Any
     shards: int
@@ -73,7 +73,7 @@ class Study:
         return self.part(first, Table.of_rows(self.columns, rows), time.perf_counter() - begin)
 
     def part(self, number: int, table: Table, run_s: float) -> Part:
-        """One shard from its table, for those who simulate many cases at once; ``number`` grows with the shards."""
+        """One shard from its table, for studies that simulate many cases at once; ``number`` grows with the shards."""
         recorded = math.ceil(self.records * len(table) / len(self.design))
         data = b""
         if recorded:
@@ -83,7 +83,7 @@ class Study:
         return Part({"number": number, "tally": self.tally.of(table), "run_s": run_s}, data)
 
     def total(self, documents: Iterable[dict[str, Any]]) -> Totals:
-        """What some or all shards say, whatever order they come in."""
+        """The joint result of some or all shards, in any order."""
         state = self.tally.of(Table.joined(self.columns, ()))
         run_s, shards = 0.0, 0
         for document in sorted(documents, key=lambda one: int(one["number"])):

@@ -17,7 +17,7 @@ Array = np.ndarray[tuple[int], np.dtype[Any]]
 
 
 class Kind(StrEnum):
-    """What a column holds; the values are the names of NumPy and Arrow for it."""
+    """The type of a column; the values are its names in NumPy and Arrow."""
 
     INTEGER = "int64"
     SMALL = "int32"
@@ -28,7 +28,7 @@ class Kind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """A column of outcomes; one that is not ``recorded`` serves the tallies only."""
+    """A column of outcomes; an unrecorded column serves only the tallies."""
 
     name: str
     kind: Kind
@@ -38,7 +38,7 @@ class Column:
 _FILLER = {Kind.INTEGER: 0, Kind.SMALL: 0, Kind.NUMBER: 0.0, Kind.FLAG: False, Kind.TEXT: ""}
 
 CASE = Column("case", Kind.INTEGER)
-"""Every table has it: the number of the case."""
+"""The number of the case; every table has this column."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +53,7 @@ class Table:
     def of(cls, columns: Sequence[Column], values: Mapping[str, Any]) -> Table:
         """From arrays (M,), or masked arrays where values are unknown.
 
-        Raises ``InvalidInput`` unless there is one for each column, of its kind, all of one length.
+        Raises ``InvalidInput`` unless each column has one array of its type and all have one length.
         """
         _check(columns, values)
         arrays: dict[str, Array] = {}
@@ -84,7 +84,7 @@ class Table:
 
     @classmethod
     def joined(cls, columns: Sequence[Column], tables: Sequence[Table]) -> Table:
-        """All rows of the tables, which have the same columns."""
+        """All rows of tables with the same columns."""
         empty = [np.empty(0, dtype=bool)]
         return cls(
             tuple(columns),
@@ -121,7 +121,7 @@ class Table:
         )
 
     def listed(self, name: str) -> list[Any]:
-        """A column for JSON: None for what is unknown or not a finite number."""
+        """A column for JSON: None for unknown values and non-finite numbers."""
         values, known = self.values[name].tolist(), self.known(name).tolist()
         return [
             value if here and not (isinstance(value, float) and not math.isfinite(value)) else None

@@ -1,7 +1,7 @@
-"""What is counted over the cases of a campaign: small JSON-able states of shards that add up to one.
+"""Counts over the cases of a campaign: each shard gives a small JSON-able state, and the states add up.
 
-The states of all tallies but :class:`~safestart.campaign.spread.Spread` add up to the same in any order; those of a
-spread are added in the order of the shards. ``said`` turns the state of all cases into what a document says.
+The sum does not depend on the order, except for :class:`~safestart.campaign.spread.Spread`, whose states are added
+in the order of the shards. ``said`` turns the state of all cases into the document's value.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from safestart.campaign.table import Table
 
 
 class Tally(Protocol):
-    """Something counted."""
+    """One count over the cases."""
 
     def of(self, table: Table) -> Any:
-        """State of these rows; of none, the state to start from."""
+        """State of these rows; without rows, the initial state."""
         ...
 
     def add(self, state: Any, more: Any) -> Any:
@@ -26,7 +26,7 @@ class Tally(Protocol):
         ...
 
     def said(self, state: Any) -> Any:
-        """What a document says of it."""
+        """The document's value."""
         ...
 
 
@@ -79,13 +79,13 @@ class Total(_Number):
     column: str
 
     def of(self, table: Table) -> int:
-        """Add up what is known."""
+        """Add up the known values."""
         return int(table.values[self.column][table.known(self.column)].sum())
 
 
 @dataclass(frozen=True, slots=True)
 class Values:
-    """How often each value of a column of texts occurs; rows without one are left out."""
+    """How often each value of a text column occurs; rows without a value are left out."""
 
     column: str
 

@@ -1,4 +1,4 @@
-"""How the commands speak: JSON alone on stdout, progress on stderr (a bar on a terminal, lines elsewhere)."""
+"""Output of the commands: JSON alone on stdout, progress on stderr (a bar on a terminal, lines elsewhere)."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from safestart.runtime.progress import Context
 Justify = Literal["left", "right"]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout and nothing else.")]
 
-# Tables are this wide at least: in a pipe or a log, and in a narrow terminal, which then folds whole lines
-# instead of cutting figures off.
+# Least width of a table in a pipe, a log or a narrow terminal, which then folds lines instead of cutting figures
+# off.
 _LEAST_WIDTH = 112
 
 
@@ -48,7 +48,7 @@ def print_json(document: Any) -> None:
 
 
 def number(value: float | None, digits: int = 3) -> str:
-    """A figure for a table; a dash where there is none."""
+    """A figure for a table; a dash when there is none."""
     return "-" if value is None else f"{value:.{digits}f}"
 
 
@@ -63,7 +63,7 @@ def seconds(value: float | None) -> str:
 
 @contextmanager
 def reporting(title: str) -> Iterator[Context]:
-    """Context whose progress a person sees on stderr while the work runs."""
+    """Context that shows its progress on stderr while the work runs."""
     with _bar(title) if err.is_terminal else _lines(title) as context:
         yield context
 
@@ -106,7 +106,7 @@ def _lines(title: str) -> Iterator[Context]:
         nonlocal shown, first
         percent = 100.0 * done / total if total else 100.0
         if shown < 0.0:
-            # Work that was under way already says nothing about the speed from here on.
+            # Work done before this moment says nothing about the speed from here on.
             first = percent
         if percent < shown + 10.0:
             return

@@ -1,4 +1,4 @@
-"""``safestart demo``: the command; what it does is in :mod:`safestart.cli.showcase`."""
+"""The command ``safestart demo``; :mod:`safestart.cli.showcase` does the work."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def register(app: typer.Typer) -> None:
     @app.command("demo")
     def demo(as_json: Json = False) -> None:
         """Start everything, submit the Table 2 benchmarks over HTTP, follow them, print the table, stop."""
-        # The HTTP client is loaded here and not with every command.
+        # Imported here, so that other commands do not load the HTTP client.
         from safestart.cli.showcase import demonstrate
 
         demonstrate(as_json)

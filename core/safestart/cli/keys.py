@@ -46,7 +46,7 @@ def create(
     if as_json:
         print_json({**_document(record), "key": key})
         return
-    # The key alone on standard output: it can be piped into a file or a secret store.
+    # Only the key on standard output, so that it can be piped into a file or a secret store.
     out.print(key, soft_wrap=True, highlight=False)
     until = "never expires" if record.expires_at is None else f"expires {_moment(record.expires_at)}"
     err.print(
@@ -137,7 +137,7 @@ def _database(url: str | None) -> Iterator[Database]:
 
 
 def _operator() -> Caller:
-    """Whoever works beside the database: the account's name is all there is to know."""
+    """The caller beside the database: only the account's name is known."""
     try:
         name = f"cli:{getpass.getuser()}"
     except (KeyError, OSError):

@@ -1,4 +1,4 @@
-"""Options of a command from the flat parameters of a model: name, type, default and help are the model's."""
+"""Options of a command from the flat parameters of a model: the model gives name, type, default and help."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Command = TypeVar("Command", bound=Callable[..., None])
 def takes(inputs: flat.Flat[Any], *, without: Container[str] = ()) -> Callable[[Command], Command]:
     """Give a command an option for each parameter; it receives them as keyword arguments, beside its own.
 
-    Texts are taken as they come: the model says what is wrong with them.
+    Texts pass unchecked: the model validates them.
     """
     options = [_option(name, one) for name, one in inputs.parameters.items() if name not in without]
     options.sort(key=lambda option: option.default is not Parameter.empty)  # required ones first
@@ -50,7 +50,7 @@ def _option(name: str, parameter: flat.Parameter) -> Parameter:
 
 
 def _words(annotation: Any) -> list[str]:
-    """The words that a parameter takes, where it takes words."""
+    """The words that a parameter accepts, if it accepts words."""
     if get_origin(annotation) is Literal:
         return [str(word) for word in get_args(annotation)]
     if isinstance(annotation, type) and issubclass(annotation, Enum):

@@ -1,4 +1,4 @@
-"""What ``safestart demo`` does: the whole path on this machine, from the POST to the printed Table 2."""
+"""The work of ``safestart demo``: the whole path on this machine, from the POST to the printed Table 2."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def _running() -> Iterator[httpx.Client]:
 
 
 def _free_port(wanted: int) -> int:
-    """The configured port when it is free, so that printed URLs stay good under ``safestart up``; else any."""
+    """The configured port if it is free, so that printed URLs stay valid under ``safestart up``; else any port."""
     for port in (wanted, 0):
         with socket.socket() as probe:
             probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

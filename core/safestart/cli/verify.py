@@ -24,9 +24,9 @@ def register(app: typer.Typer) -> None:
         as_json: Json = False,
     ) -> None:
         """Check a proof: GO, NO_GO, or a plan with burns that fail. Exit code 0: valid, 1: rejected, 2: unreadable."""
-        # Ball arithmetic is loaded here and not with every command.
+        # Imported here, so that other commands do not load ball arithmetic.
         from safestart.proofs.checker import check
-        from safestart.proofs.statement import ProofRejected
+        from safestart.proofs.strict import ProofRejected
         from safestart.proofs.wording import asked
 
         document = _load(proof)

@@ -14,12 +14,9 @@ import numpy as np
 from scipy.integrate import DOP853
 
 from safestart.errors import invalid
+from safestart.model.orbit import EARTH_RADIUS, MU
 from safestart.model.scenario import Floats
 
-MU = 3.986004418e14
-"""Gravitational parameter of the Earth, m^3/s^2 (EGM2008)."""
-RADIUS = 6_378_137.0
-"""Equatorial radius, m."""
 J2 = 1.08262668e-3
 
 _RELATIVE, _ABSOLUTE = 1e-12, 1e-9
@@ -39,7 +36,7 @@ class Orbit:
         if not mean_motion > 0.0:
             raise invalid("mean_motion", "more than 0 rad/s for two-body motion", mean_motion)
         radius = (MU / mean_motion**2) ** (1.0 / 3.0)
-        if radius < RADIUS:
+        if radius < EARTH_RADIUS:
             raise invalid("mean_motion", "an orbit above the Earth's surface", mean_motion)
         return cls(radius, inclination)
 
@@ -57,7 +54,7 @@ def gravity(position: Floats) -> Floats:
     r2 = x * x + y * y + z * z
     r = math.sqrt(r2)
     point = -MU / (r2 * r)
-    bulge = 1.5 * J2 * RADIUS * RADIUS / r2
+    bulge = 1.5 * J2 * EARTH_RADIUS * EARTH_RADIUS / r2
     ratio = 5.0 * z * z / r2
     across = point * (1.0 + bulge * (1.0 - ratio))
     return np.array([across * x, across * y, point * (1.0 + bulge * (3.0 - ratio)) * z])

@@ -12,9 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from safestart.dynamics.cwh import transition_matrix
-from safestart.dynamics.two_body import MU, RADIUS
 from safestart.errors import invalid
 from safestart.hopping.hop_time import hop_phases, past_the_fold
+from safestart.model.orbit import EARTH_RADIUS as RADIUS
+from safestart.model.orbit import MU
 from safestart.model.scenario import Floats, number
 
 MOST_HOPS = 100

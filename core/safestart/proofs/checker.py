@@ -1,4 +1,5 @@
-"""Any proof document checked: single starts, families, disturbances, plans with burns that fail."""
+"""Check any proof document: single starts (``single.py``), families (``family.py``), disturbances
+(``disturbed.py``), plans with burns that fail (``abort/``)."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""The record of work apart from the database: artifacts, bundles, provenance, and the comparison of results."""
+"""The record of work outside the database: artifacts, bundles, provenance, and the comparison of results."""

@@ -1,4 +1,4 @@
-"""A file that belongs to a result; shared by the processes that make it and the store that keeps it."""
+"""A file that belongs to a result; processes make artifacts and the store keeps them."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""One finished job as one file that opens without a server: a ZIP whose manifest holds the SHA-256 of every part.
+"""One finished job as one file that opens without a server: a ZIP with a manifest of the SHA-256 of every part.
 
 ``manifest.json`` names format, job and files; the SHA-256 of the manifest itself, the seal, stands for the whole
-bundle: who has it from a trusted place can tell that nothing was altered.
+bundle: a reader who has the seal from a trusted place can detect any change.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ FORMAT, VERSION = "safestart-bundle", 1
 MOST_BYTES = 2 * 1024**3
 MANIFEST = "manifest.json"
 _FOLDER = "artifacts/"
-_EPOCH = (1980, 1, 1, 0, 0, 0)  # no time of packing: the same job gives the same bytes
+_EPOCH = (1980, 1, 1, 0, 0, 0)  # no packing time: the same job gives the same bytes
 _MANIFEST = {"format", "version", "job", "result_sha256", "files", "media_types"}
 _FILE = {"sha256", "size"}
 _DOCUMENTS = {"job.json", "events.json", "result.json", "index.html"}
@@ -75,7 +75,7 @@ def pack(bundle: Bundle) -> tuple[bytes, str]:
 
 
 def unpack(data: bytes, seal: str | None = None) -> Bundle:
-    """Open a bundle; raises ``InvalidInput`` that names every part that is not as the manifest says.
+    """Open a bundle; raises ``InvalidInput`` that names every part that differs from the manifest.
 
     With ``seal`` the manifest must have that SHA-256.
     """
@@ -107,7 +107,7 @@ def unpack(data: bytes, seal: str | None = None) -> Bundle:
 
 
 def own_page(data: bytes, bundle: Bundle) -> bool:
-    """Whether the page inside is the one that this version makes of the job: nothing else vouches for what it says."""
+    """Whether this version renders the same page from the job; nothing else checks what the page says."""
     there = _read(data).get("index.html")
     return there is None or there == page(bundle.job, bundle.result, bundle.events, bundle.artifacts).encode()
 
@@ -134,7 +134,7 @@ def _read(data: bytes) -> dict[str, bytes]:
 
 
 def _differences(manifest: Any, files: Mapping[str, bytes]) -> list[str]:
-    """What is not as the manifest says."""
+    """The parts that differ from the manifest."""
     try:
         if (manifest["format"], manifest["version"]) != (FORMAT, VERSION):
             return [f"format {manifest['format']!r} version {manifest['version']!r} is not known here"]
@@ -163,7 +163,7 @@ def _differences(manifest: Any, files: Mapping[str, bytes]) -> list[str]:
 
 
 def _contradictions(manifest: Any, job: Any, result: Any, artifacts: tuple[Artifact, ...]) -> list[str]:
-    """Parts that do not belong together, however well each fits the manifest."""
+    """Parts that contradict each other although each matches the manifest."""
     if job["id"] != manifest.get("job"):
         return ["job.json is of another job"]
     if (job["status"] == "successful") is (result is None):
@@ -174,7 +174,7 @@ def _contradictions(manifest: Any, job: Any, result: Any, artifacts: tuple[Artif
         return ["result.json has another content hash than the manifest says"]
     if result["process"]["id"] != job["process_id"]:
         return ["result.json is of another process than job.json"]
-    # The result's inputs are complete; the job's are what was asked for.
+    # The result has all inputs, defaults included; the job has only those that the client sent.
     wrong = [
         f"job.json and result.json differ in {path}" for path in _unlike(job["inputs"], result["inputs"])
     ]
@@ -188,7 +188,7 @@ def _contradictions(manifest: Any, job: Any, result: Any, artifacts: tuple[Artif
 
 
 def _unlike(asked: Any, used: Any, path: str = "inputs") -> list[str]:
-    """Where the inputs asked for are not among those used."""
+    """Where the inputs sent differ from the inputs used."""
     if isinstance(asked, dict) and isinstance(used, dict):
         absent = [f"{path}.{name}" for name in asked if name not in used]
         return absent + [p for n in asked if n in used for p in _unlike(asked[n], used[n], f"{path}.{n}")]

@@ -1,4 +1,4 @@
-"""The page inside a bundle: a finished job to read in a browser, from its own folder, without a script."""
+"""The page inside a bundle: shows a finished job in a browser, from its own folder, without a script."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _STYLE = (
 )
 _HASH = b64encode(sha256(_STYLE.encode()).digest()).decode()
 _POLICY = f"default-src 'none'; img-src 'self' file:; style-src 'sha256-{_HASH}'"
-"""Whatever a job may say, the page loads its own pictures and nothing else."""
+"""Whatever text a job contains, the page loads only its own pictures."""
 _MOST_ROWS, _MOST_TEXT = 200, 300
 
 
@@ -31,7 +31,7 @@ def page(
     events: Sequence[Mapping[str, Any]],
     artifacts: Sequence[Artifact],
 ) -> str:
-    """HTML of one job: what it was and came to, pictures, outputs, files, inputs, provenance, events."""
+    """HTML of one job: facts, outcome, pictures, outputs, files, inputs, provenance, events."""
     title = f"{escape(str(job['process_id']))}: {escape(str(job['status']))}"
     parts = [
         f"<h1>{title}</h1><p>safestart job <code>{escape(str(job['id']))}</code></p>",
@@ -75,7 +75,7 @@ def _picture(item: Artifact) -> str:
 
 
 def _outputs(outputs: Mapping[str, Any]) -> str:
-    """Tables beneath each other, as wide as they are; everything else as one."""
+    """Show lists of objects as tables one below the other, at full width, and everything else as one table."""
     tables = {name: value for name, value in outputs.items() if _is_rows(value)}
     rest = {name: value for name, value in outputs.items() if name not in tables}
     return _table(rest) + "".join(
@@ -116,7 +116,7 @@ def _table(mapping: Mapping[str, Any]) -> str:
 def _rows(rows: Sequence[Mapping[str, Any]]) -> str:
     shown = rows[:_MOST_ROWS]
     names = list(dict.fromkeys(name for row in shown for name in row))
-    # Words say what a row is about, so they come first; what is large is folded up and comes last.
+    # Texts come first, as they say what a row is about; large values are folded and come last.
     names.sort(
         key=lambda name: min((_weight(row[name]) for row in shown if row.get(name) is not None), default=3)
     )

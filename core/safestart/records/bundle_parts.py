@@ -1,12 +1,14 @@
-"""What the documents inside a bundle must be: whoever seals one anew can write anything into them."""
+"""Checks of the documents inside a bundle: anyone can alter them and seal the bundle anew."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Iterable
 from typing import Annotated, Any, Literal
+from unicodedata import category
 
 from pydantic import (
+    AfterValidator,
     AwareDatetime,
     BaseModel,
     BeforeValidator,
@@ -19,16 +21,18 @@ from pydantic import (
 from safestart.errors import InvalidInput, invalid
 from safestart.model.validation import validation_error
 
+_NOT_PRINTED = frozenset({"Cc", "Cf", "Cn", "Co", "Cs", "Zl", "Zp"})
+
 
 def _storable(value: Any) -> Any:
-    """Text that every database keeps: PostgreSQL refuses NUL, and half a surrogate pair is no text."""
+    """Text that every database accepts: PostgreSQL refuses NUL, and half a surrogate pair is not text."""
     if isinstance(value, str) and ("\0" in value or value != value.encode(errors="replace").decode()):
         raise ValueError("text without NUL and lone surrogates")
     return value
 
 
 def _json(value: Any) -> Any:
-    """A document that can be answered with again: no NaN, no infinity, no number or text beyond what JSON keeps."""
+    """A document that the service can serve as JSON: no NaN, no infinity, no number or text that JSON cannot hold."""
     try:
         text = json.dumps(value, ensure_ascii=False, allow_nan=False)
         text.encode()
@@ -44,13 +48,19 @@ def _whole(digits: str) -> int:
     return int(digits)
 
 
+def _printing(name: str) -> str:
+    if any(category(letter) in _NOT_PRINTED for letter in name):
+        raise ValueError("a name without control, format and unassigned characters")
+    return name
+
+
 _Text = Annotated[str, BeforeValidator(_storable)]
 _Count = Annotated[int, Field(ge=0, lt=2**31, strict=True)]
 _Document = Annotated[dict[str, Any], BeforeValidator(_json)]
 
 
 class Closed(BaseModel):
-    """A field that is not known here would be passed on unread: it is refused."""
+    """Refuses unknown fields, which would otherwise be passed on unchecked."""
 
     model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
 
@@ -84,14 +94,14 @@ class EventFacts(Closed):
 
 
 class ProcessFacts(Closed):
-    """What a result says of its process."""
+    """The process part of a result."""
 
     id: _Text
     version: _Text
 
 
 class Provenance(BaseModel):
-    """Where a result came from: the hash of every artifact; the rest describes and is kept as it came."""
+    """The origin of a result: checks the hash of every artifact and keeps the rest unchanged."""
 
     artifacts: dict[str, str]
 
@@ -107,9 +117,13 @@ class ResultFacts(Closed):
 
 
 class ArtifactFacts(BaseModel):
-    """Name and media type of a file. The name is no path: who unpacks a bundle writes where that leads."""
+    """Name and media type of a file.
 
-    name: Annotated[_Text, Field(pattern=r"^[^/\\:]{1,255}$")]
+    The name must not be a path: unpacking would write to it. It has no control or format characters, because pages,
+    header lines and links show it.
+    """
+
+    name: Annotated[_Text, AfterValidator(_printing), Field(pattern=r"^[^/\\:]{1,255}$")]
     media_type: Annotated[str, Field(pattern=r"^[\x20-\x7e]{1,255}$")]
 
 
@@ -117,7 +131,7 @@ _EVENTS = TypeAdapter(list[EventFacts])
 
 
 def job_facts(job: Any) -> dict[str, Any]:
-    """The facts of a job, times as times; raises ``InvalidInput``."""
+    """The facts of a job, with parsed times; raises ``InvalidInput``."""
     try:
         return JobFacts.model_validate(job).model_dump()
     except ValidationError as error:
@@ -125,7 +139,7 @@ def job_facts(job: Any) -> dict[str, Any]:
 
 
 def event_facts(events: Any) -> list[dict[str, Any]]:
-    """The events, times as times; raises ``InvalidInput``."""
+    """The events, with parsed times; raises ``InvalidInput``."""
     try:
         return [event.model_dump() for event in _EVENTS.validate_python(events)]
     except ValidationError as error:
@@ -133,7 +147,7 @@ def event_facts(events: Any) -> list[dict[str, Any]]:
 
 
 def require_result(result: Any) -> None:
-    """Raise ``InvalidInput`` for a result that cannot be kept or compared."""
+    """Raise ``InvalidInput`` for a result that cannot be stored or compared."""
     try:
         ResultFacts.model_validate(_json(result))
     except ValidationError as error:
@@ -143,7 +157,7 @@ def require_result(result: Any) -> None:
 
 
 def require_names(files: Iterable[tuple[Any, Any]]) -> None:
-    """Raise ``InvalidInput`` for names and media types of artifacts that no process gives."""
+    """Raise ``InvalidInput`` for artifact names and media types that no process produces."""
     for name, media_type in files:
         try:
             ArtifactFacts(name=name, media_type=media_type)

@@ -1,4 +1,4 @@
-"""When two results count as the same: canonical JSON without the keys that only tell time."""
+"""Equality of results: canonical JSON without the timing keys."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ TIMING_KEYS = frozenset({"run_s", "compile_s", "speedup_vs_hj", "started", "fini
 
 
 def comparable(document: Any) -> Any:
-    """The document without its timing keys, at every depth: equal for equal (inputs, seed), times aside."""
+    """The document without its timing keys, at every depth; the same for the same inputs and seed."""
     if isinstance(document, dict):
         return {key: comparable(value) for key, value in document.items() if key not in TIMING_KEYS}
     if isinstance(document, list | tuple):
@@ -24,10 +24,10 @@ def canonical(document: Any) -> str:
 
 
 def digest(document: Any) -> str:
-    """SHA-256 that identifies a result: over the canonical JSON of :func:`comparable`, provenance left out.
+    """SHA-256 that identifies a result: over the canonical JSON of :func:`comparable`, without provenance.
 
-    Where and with which versions something was computed is not what was computed: a replay elsewhere has the
-    same hash if its inputs and outputs are the same.
+    Machine and versions do not belong to it: a replay elsewhere has the same hash if its inputs and outputs are the
+    same.
     """
     if isinstance(document, dict):
         document = {key: value for key, value in document.items() if key != "provenance"}

@@ -1,4 +1,4 @@
-"""What produced a result: package versions, Python, source, machine. Imports nothing heavy."""
+"""The origin of a result: package versions, Python, source, machine. Light to import."""
 
 from __future__ import annotations
 
@@ -67,14 +67,14 @@ def _packages() -> tuple[tuple[str, str], ...]:
 
 @cache
 def source() -> str:
-    """SHA-256 of the source of this package, as it was when it was first asked for."""
+    """SHA-256 of the source of this package, taken at the first call."""
     return source_digest(Path(__file__).resolve().parents[1])
 
 
 def source_digest(package: Path) -> str:
     """SHA-256 over the names and bytes of a package's modules.
 
-    A revision does not tell what was changed since, and an installed package has none.
+    A git revision does not show later changes, and an installed package has no revision.
     """
     digest = sha256()
     for file in sorted(package.rglob("*.py"), key=lambda file: file.relative_to(package).as_posix()):
@@ -90,7 +90,7 @@ def _cpu_model() -> str:
                 if line.startswith("model name"):
                     return line.partition(":")[2].strip()
         except OSError:
-            pass  # a sandbox without /proc: the generic answer below will do
+            pass  # a sandbox without /proc: use the generic answer below
     return platform.processor() or platform.machine()
 
 
@@ -99,7 +99,7 @@ def _git_revision(source: Path) -> str | None:
     for folder in source.parents:
         marker = folder / ".git"
         try:
-            if marker.is_file():  # a linked work tree: the file says where its git directory is
+            if marker.is_file():  # a linked work tree: the file names its git directory
                 marker = (folder / marker.read_text().partition("gitdir:")[2].strip()).resolve()
             if marker.is_dir():
                 return _head(marker)

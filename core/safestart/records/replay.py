@@ -1,7 +1,7 @@
-"""Run a stored job again and compare: bit for bit where that is promised, within a named tolerance elsewhere.
+"""Run a stored job again and compare: bit for bit where promised, otherwise within a stated tolerance.
 
-Bit for bit is promised for the same source, the same versions of the packages that compute, and the same processor.
-Elsewhere the last bits of floating-point sums may differ, and each process names the tolerance it keeps to.
+We promise equality bit for bit for the same source, the same versions of the computing packages, and the same
+processor. Otherwise the last bits of floating-point sums may differ, and each process states its tolerance.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from safestart.runtime.plain_json import loads
 from safestart.runtime.progress import Context
 
 MOST_DIFFERENCES = 50
-# What has no part in a computation.
+# Packages that do not affect results.
 _NOT_COMPUTING = frozenset({"safestart-service", "safestart-worker", "distributed", "pydantic", "sqlalchemy"})
 Verdict = Literal["identical", "within tolerance", "different"]
 
@@ -36,8 +36,8 @@ class Replay:
     """Outcome of a replay.
 
     ``kept`` says whether the promise was kept: identical where ``promise`` is bitwise (``tolerance`` None), within
-    the tolerance elsewhere. ``environment`` names what is not as it was, ``differences`` where the results differ,
-    ``uncompared`` the artifacts that the verdict says nothing of: pictures of which the bytes differ.
+    the tolerance otherwise. ``environment`` names what changed since, ``differences`` where the results differ, and
+    ``uncompared`` the artifacts that the verdict does not cover: pictures with different bytes.
     """
 
     verdict: Verdict
@@ -57,20 +57,20 @@ def replay(
 ) -> Replay:
     """Run the process of a result document again on its inputs and compare outputs and artifacts.
 
-    ``artifacts`` are the stored files by name. Raises ``NotFound`` for a process that is gone and ``InvalidInput``
-    for inputs that it does not take any more.
+    ``artifacts`` are the stored files by name. Raises ``NotFound`` for a process that no longer exists and
+    ``InvalidInput`` for inputs that it no longer accepts.
     """
     _require_result(document)
     process_id = document["process"]["id"]
     again = execute(process_id, document["inputs"], context)
-    # As the store would give it back: numbers of NumPy are plain ones there.
+    # As the store would return it, with NumPy numbers as plain numbers.
     now = json.loads(canonical(again.document))
     environment = changed(document["provenance"], now["provenance"])
     if document["process"] != now["process"]:
         environment += (f"process: {_shown(document['process'])} before, {_shown(now['process'])} here",)
     tolerance = process(process_id).replay_tolerance if environment else None
     files = {item.name: item for item in again.artifacts}
-    # Inputs and seed are what the outputs answer: they are the same or another question was asked.
+    # Inputs and seed must be equal, or the replay answers another question.
     asked = [
         *differing(document["inputs"], now["inputs"], path="inputs"),
         *_named(document["provenance"], now),
@@ -95,7 +95,7 @@ def replay(
 
 
 def _require_result(document: Mapping[str, Any]) -> None:
-    """Raise ``InvalidInput`` for anything but a result: a field that is not known here would not be compared."""
+    """Raise ``InvalidInput`` for anything but a result; unknown fields would not be compared."""
     fields = {"schema_version", "process", "inputs", "outputs", "provenance"}
     missing = [name for name in sorted(fields) if name not in document]
     unknown = sorted(set(document) - fields)
@@ -120,7 +120,7 @@ def _named(before: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
 
 
 def _hashes(stated: Mapping[str, Any], artifacts: Mapping[str, bytes]) -> list[str]:
-    """Artifacts that are not those which the result names."""
+    """Stored artifacts that differ from those that the result names."""
     there = {name: sha256(data).hexdigest() for name, data in artifacts.items()}
     return [
         f"artifact {name}: not the one that the result names"
@@ -130,8 +130,8 @@ def _hashes(stated: Mapping[str, Any], artifacts: Mapping[str, bytes]) -> list[s
 
 
 def changed(before: Mapping[str, Any], now: Mapping[str, Any]) -> tuple[str, ...]:
-    """What of the environment that computes is not as it was; empty where bit for bit is promised."""
-    # The revision only stands in for the source where that is not on record: it does not tell what was changed since.
+    """Changes of the computing environment; empty where we promise equality bit for bit."""
+    # Compare revisions only when the source hash is not on record: a revision does not show later changes.
     source = "source_sha256" if before.get("source_sha256") else "git_revision"
     pairs = [(name, before.get(name), now.get(name)) for name in (source, "python")]
     was, here = _object(before.get("machine")), _object(now.get("machine"))
@@ -152,7 +152,7 @@ def _object(value: Any) -> Mapping[str, Any]:
 def differing(before: Any, now: Any, tolerance: float | None = None, path: str = "outputs") -> list[str]:
     """Where two documents differ, times aside.
 
-    Numbers a, b count as equal when |a - b| <= ``tolerance`` max(1, |a|, |b|); without a tolerance, when they are.
+    Numbers a, b count as equal when |a - b| <= ``tolerance`` max(1, |a|, |b|), or without a tolerance when a = b.
     """
     return list(_walk(comparable(before), comparable(now), tolerance, path))
 
@@ -201,7 +201,7 @@ def _is_picture(name: str) -> bool:
 
 
 def _close(name: str, before: bytes, now: bytes, tolerance: float | None) -> bool:
-    """Arrays, tables and documents by value; pictures are drawn from what is compared already, and are not."""
+    """Compare arrays, tables and documents by value. Skip pictures: they show data that is compared already."""
     if tolerance is None:
         return False
     ending = name.rpartition(".")[2]
@@ -214,7 +214,7 @@ def _close(name: str, before: bytes, now: bytes, tolerance: float | None) -> boo
             return not differing(_table(before), _table(now), tolerance)
         return ending == "npz" and _archives_close(before, now, tolerance)
     except (ValueError, RecursionError, OSError, EOFError, KeyError, zipfile.BadZipFile):
-        # What cannot be read is not what was written here.
+        # An unreadable file differs from the one written here.
         return False
 
 

@@ -1,1 +1,1 @@
-"""The record of work: jobs, results, artifacts, events. SQLAlchemy lives here and nowhere else."""
+"""The record of work: jobs, results, artifacts, events. Only this package uses SQLAlchemy."""

@@ -1,6 +1,6 @@
 """Backup and restore: one SQLite file that holds every table, whichever database it was made from.
 
-A restored backup may go to either kind of database, so that this is also the way from SQLite to PostgreSQL.
+A backup can be restored into either kind of database, so this is also the way from SQLite to PostgreSQL.
 """
 
 from __future__ import annotations
@@ -18,16 +18,17 @@ from safestart.store.database import Database
 from safestart.store.models import Base
 
 _BATCH = 100
-# Alive today, not in a backup.
+# Only true at the moment, so left out of a backup.
 _LEFT_OUT = frozenset({"workers"})
-# Not a record of anybody's: replaced. The migrations have made rows of the counters, a service that runs keeps a cache.
+# A restore replaces these tables, which hold nobody's record: migrations fill the counters, and a running service
+# fills the cache.
 _REPLACED = frozenset({"tally", "cache"})
 
 
 def backup(database: Database, target: Path) -> int:
     """Write a consistent copy to ``target`` while everything runs; returns the number of jobs in it.
 
-    Raises ``InvalidInput`` when the file is there already or cannot be written.
+    Raises ``InvalidInput`` when the file exists already or cannot be written.
     """
     try:
         return _backup(database, target)
@@ -56,9 +57,10 @@ def _backup(database: Database, target: Path) -> int:
 
 
 def restore(database: Database, source: Path) -> int:
-    """Fill an empty database from a backup, of this version or an older one; returns the number of jobs.
+    """Fill an empty database from a backup of this version or an older one; returns the number of jobs.
 
-    Raises ``Conflict`` when the database holds jobs, keys or an audit log, ``InvalidInput`` for a file that is none.
+    Raises ``Conflict`` when the database holds jobs, keys or an audit log, and ``InvalidInput`` for a file that is
+    not a backup.
     """
     if not source.is_file():
         raise _refused(source, "a backup", "no file")
@@ -84,7 +86,7 @@ def _copy_file(source: Path, target: Path) -> None:
     try:
         with closing(sqlite3.connect(source)) as one, closing(sqlite3.connect(target)) as two:
             one.backup(two)
-            two.execute("PRAGMA journal_mode = DELETE")  # one file, nothing beside it
+            two.execute("PRAGMA journal_mode = DELETE")  # one file, without a journal file beside it
     except sqlite3.Error as error:
         raise Unavailable(f"backup: {source} could not be copied to {target}: {error}") from None
 
@@ -100,7 +102,7 @@ def _copy_rows_to(database: Database, target: Path) -> None:
 
 
 def _copy_rows(source: Connection, target: Connection) -> None:
-    """Every row of every table, parents first, a batch at a time."""
+    """Copy every row of every table, parents first, a batch at a time."""
     for table in Base.metadata.sorted_tables:
         if table.name in _LEFT_OUT:
             continue
@@ -113,7 +115,7 @@ def _copy_rows(source: Connection, target: Connection) -> None:
 
 
 def _continue_numbers(target: Connection, table: Table) -> None:
-    """PostgreSQL: the next number of a column that counts by itself comes after those that were copied."""
+    """PostgreSQL: make the next number of each counting column follow the copied ones."""
     column = table.autoincrement_column
     if target.dialect.name != "postgresql" or column is None or column.type.python_type is not int:
         return
@@ -126,7 +128,7 @@ def _continue_numbers(target: Connection, table: Table) -> None:
 
 
 def _check(path: Path) -> int:
-    """The file is a sound SQLite database of ours; returns its number of jobs."""
+    """Check that the file is an intact SQLite database of ours; returns its number of jobs."""
     try:
         with closing(sqlite3.connect(path)) as connection:
             said = connection.execute("PRAGMA integrity_check").fetchone()[0]
@@ -139,7 +141,7 @@ def _check(path: Path) -> int:
 
 
 def _require_empty(connection: Connection) -> None:
-    """Raise ``Conflict`` where anybody's record is: what is restored must not mix with it."""
+    """Raise ``Conflict`` when the database holds a record: restored rows must not mix with it."""
     for table in Base.metadata.sorted_tables:
         if table.name in _LEFT_OUT | _REPLACED:
             continue

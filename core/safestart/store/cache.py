@@ -1,4 +1,4 @@
-"""Cache by content key beside the record of work: bounded, oldest out first, and never in the way of an answer."""
+"""Cache by content key beside the record of work: bounded, drops the oldest first, and never blocks an answer."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ log = logging.getLogger("safestart.store")
 
 
 class Cache:
-    """A :class:`safestart.runtime.cache.Shelf` over the database; one that is away finds nothing and keeps nothing."""
+    """A :class:`safestart.runtime.cache.Shelf` over the database; during an outage it finds and stores nothing."""
 
     def __init__(self, database: Database, most_bytes: int = MOST_BYTES) -> None:
         self._database, self._most = database, most_bytes
 
     def find(self, key: str) -> bytes | None:
-        """The bytes kept under ``key``; None when there are none, or when they are not those that were kept."""
+        """The bytes stored under ``key``; None when there are none or they were altered."""
         try:
             with self._database.session() as session:
                 row = session.execute(
@@ -39,7 +39,7 @@ class Cache:
         return bytes(row.data)
 
     def keep(self, key: str, data: bytes) -> None:
-        """Keep ``data`` under ``key``, in the place of what was there."""
+        """Store ``data`` under ``key``, replacing earlier data."""
         try:
             with self._database.session(write=True) as session:
                 shelve(session, key, data, self._most)
@@ -48,7 +48,7 @@ class Cache:
 
 
 def shelve(session: Session, key: str, data: bytes, most_bytes: int = MOST_BYTES) -> None:
-    """Keep ``data`` under ``key`` in this transaction, and drop the oldest entries beyond ``most_bytes`` in all."""
+    """Store ``data`` under ``key`` in this transaction, and drop the oldest entries beyond ``most_bytes`` in total."""
     if len(data) > min(MOST_BYTES_EACH, most_bytes):
         return
     session.execute(delete(CacheRow).where(CacheRow.key == key))

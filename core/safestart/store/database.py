@@ -1,4 +1,4 @@
-"""The database: its engine, its sessions, and the one place where database errors become ours."""
+"""The database: its engine, its sessions, and the only place that turns database errors into ours."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from safestart.store import schema
 from safestart.store.dialect import BUSY_TIMEOUT_S, prepare
 from safestart.store.url import REQUIRED, parse, refused, shown, without_secrets
 
-# A server that is gone without a word is noticed; libpq waits for ever by itself.
+# Keepalives detect a server that vanished; without them libpq waits for ever.
 _POSTGRESQL = {
     "connect_timeout": 10,
     "tcp_user_timeout": 30_000,
     "keepalives_idle": 10,
     "keepalives_interval": 5,
 }
-# What libpq says where waiting would not help: at that stage there is no code to tell it by.
+# libpq's messages for errors that waiting cannot cure; at that stage there are no error codes.
 _REFUSALS = (
     "authentication failed",
     "no password supplied",
@@ -47,7 +47,7 @@ class Database:
         self.shown = shown(self._url)
         self._engine = _engine(self._url)
         prepare(self._engine)
-        # Same pool; the option makes SQLite take the write lock at the start of the transaction.
+        # Same pool; with this option SQLite takes the write lock at the start of the transaction.
         self._writer = self._engine.execution_options(safestart_write=True)
         self._writing = Lock()
 
@@ -67,18 +67,18 @@ class Database:
 
     @property
     def one_writer(self) -> bool:
-        """True where a transaction that may write keeps all others from writing."""
+        """True when a transaction that may write blocks all other writers."""
         return self._engine.dialect.name == "sqlite"
 
     @property
     def file(self) -> Path | None:
-        """The file of a SQLite database; None for another."""
+        """The file of a SQLite database; None for other databases."""
         sqlite = self._url.get_backend_name() == "sqlite"
         return Path(str(self._url.database)) if sqlite else None
 
     @contextmanager
     def snapshot(self) -> Iterator[Connection]:
-        """A connection that sees one moment of the database for as long as it is open; for reading only."""
+        """A read-only connection that sees one snapshot of the database while it is open."""
         with self._translated(), self._engine.connect() as connection:
             if connection.dialect.name == "postgresql":
                 connection = connection.execution_options(isolation_level="REPEATABLE READ")
@@ -86,12 +86,12 @@ class Database:
                 yield connection
 
     def migrate(self) -> None:
-        """Bring the schema to this version's; safe when several processes do it at once."""
+        """Migrate the schema to this version's; safe when several processes do it at once."""
         with self._translated():
             schema.migrate(self._writer)
 
     def ping(self) -> None:
-        """Ask the database for an answer; raises ``Unavailable`` when none comes."""
+        """Query the database; raises ``Unavailable`` when no answer comes."""
         with self.session() as session:
             session.execute(text("SELECT 1"))
 
@@ -101,8 +101,8 @@ class Database:
 
     @contextmanager
     def _turn(self) -> Iterator[None]:
-        """Threads that write to SQLite wait here in turn: there they would sleep and look again, ever more rarely."""
-        mine = self._writing.acquire(timeout=BUSY_TIMEOUT_S)  # then SQLite itself says that it is busy
+        """Writers to SQLite queue here: inside SQLite they would sleep for longer and longer times between tries."""
+        mine = self._writing.acquire(timeout=BUSY_TIMEOUT_S)  # then SQLite itself reports that it is busy
         try:
             yield
         finally:
@@ -117,7 +117,7 @@ class Database:
             raise self._unavailable(error) from error
 
     def _unavailable(self, error: SQLAlchemyError) -> Unavailable:
-        # Never str(error): it holds the statement and its parameters.
+        # Never str(error): it contains the statement and its parameters.
         reason = str(error.orig) if isinstance(error, DBAPIError) else type(error).__name__
         if isinstance(error, NoConnection):
             reason = "all connections of this process are in use"
@@ -132,7 +132,7 @@ class Database:
 
 
 def _away(error: SQLAlchemyError) -> bool:
-    """A PostgreSQL server that cannot be reached, starts or stops; not one that refuses us."""
+    """True when a PostgreSQL server is unreachable, starting or stopping; False when it refuses us."""
     if not isinstance(error, OperationalError):
         return False
     state = getattr(error.orig, "sqlstate", None)

@@ -1,7 +1,7 @@
-"""All that differs between SQLite and PostgreSQL: the clock, the kind of transaction, the schema lock.
+"""All differences between SQLite and PostgreSQL: the clock, the kind of transaction, the schema lock.
 
-Leases are compared on the database's clock, never on a client's: workers on several machines then agree on
-who holds a job, however far their own clocks are apart.
+Leases use the database's clock, never a client's: workers on several machines then agree on who holds a job, even
+if their own clocks differ.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import select
 import sqlite3
 import time
 from datetime import UTC, datetime
-from typing import Any
+from typing import Any, cast
 
 from sqlalchemy import Connection, DateTime, Dialect, Engine, event, text
 from sqlalchemy.exc import InvalidatePoolError
@@ -24,18 +24,18 @@ STOPPED_S = 10.0
 _WAL_BYTES = 64 * 1024 * 1024
 _SCHEMA_LOCK = 0x5AFE57A27
 _QUEUE_LOCK = 0x5AFE57A28
-# SQLite keeps times as text; this layout is what SQLAlchemy writes, so that text order is time order.
+# SQLite stores times as text; this is SQLAlchemy's layout, in which text order is time order.
 _SQLITE_TIME = "'%Y-%m-%d %H:%M:%f000', 'now'"
 
 
 class UtcTime(TypeDecorator[datetime]):
-    """A timezone-aware UTC time; SQLite keeps it without zone, so the zone is put back when it is read."""
+    """A timezone-aware UTC time; SQLite stores it without zone, so reading adds the zone again."""
 
     impl = DateTime(timezone=True)
     cache_ok = True
 
     def process_bind_param(self, value: datetime | None, dialect: Dialect) -> datetime | None:  # noqa: ARG002
-        """Turn an aware time into UTC; a naive one is a mistake in our code."""
+        """Turn an aware time into UTC; a naive time is a mistake in our code."""
         if value is None:
             return None
         if value.tzinfo is None:
@@ -51,7 +51,7 @@ class UtcTime(TypeDecorator[datetime]):
 
 
 class _After(FunctionElement[datetime]):
-    """The database's present time plus its one argument in seconds."""
+    """The database's current time plus its one argument in seconds."""
 
     type = UtcTime()
     inherit_cache = True
@@ -85,7 +85,7 @@ class _SecondsBetween(FunctionElement[float]):
 
 
 def seconds_between(start: Any, end: Any) -> ColumnElement[float]:
-    """Seconds from ``start`` to ``end``; NULL when either is. To the millisecond on SQLite."""
+    """Seconds from ``start`` to ``end``; NULL when either is NULL. SQLite has millisecond resolution."""
     return _SecondsBetween(start, end)
 
 
@@ -102,16 +102,17 @@ def _seconds_between_postgresql(element: _SecondsBetween, compiler: Any, **kw: A
 
 
 def storable(message: str) -> str:
-    """A text that both databases take: PostgreSQL refuses NUL, and neither takes half a surrogate pair."""
+    """A text that both databases accept: PostgreSQL refuses NUL, and both refuse half a surrogate pair."""
     return message.encode("utf-8", "replace").decode("utf-8").replace("\0", "?")
 
 
 def prepare(engine: Engine) -> None:
-    """Install what a fresh connection and a beginning transaction need on this engine's dialect."""
+    """Install the event handlers that this dialect needs for new connections and new transactions."""
     if engine.dialect.name == "sqlite":
         event.listen(engine, "connect", _on_sqlite_connect)
         event.listen(engine, "begin", _on_sqlite_begin)
     else:
+        event.listen(engine, "do_connect", _do_postgresql_connect)
         event.listen(engine, "connect", _on_postgresql_connect)
         event.listen(engine, "checkout", _on_postgresql_checkout)
 
@@ -121,36 +122,45 @@ def _on_sqlite_connect(connection: sqlite3.Connection, _record: Any) -> None:
     cursor = connection.cursor()
     cursor.execute(f"PRAGMA busy_timeout = {int(BUSY_TIMEOUT_S * 1000)}")
     cursor.execute("PRAGMA foreign_keys = ON")
-    # FULL: an answered submission survives a power cut.
+    # FULL: a submission survives a power cut once it is answered.
     cursor.execute("PRAGMA synchronous = FULL")
-    # The -wal file of a large transaction shrinks again.
+    # Lets the -wal file shrink after a large transaction.
     cursor.execute(f"PRAGMA journal_size_limit = {_WAL_BYTES}")
     deadline = time.monotonic() + BUSY_TIMEOUT_S
     while cursor.execute("PRAGMA journal_mode").fetchone()[0] != "wal":
         try:
             cursor.execute("PRAGMA journal_mode = WAL").fetchone()
         except sqlite3.OperationalError as error:
-            # The switch does not wait by itself for another process that makes it at the same moment.
+            # SQLite does not wait when another process switches at the same moment.
             if "locked" not in str(error) or time.monotonic() > deadline:
                 raise
             time.sleep(0.02)
     cursor.close()
 
 
+def _do_postgresql_connect(_dialect: Any, _record: Any, arguments: Any, options: Any) -> Any:
+    from safestart.store.patient import PatientConnection  # SQLite does without psycopg
+
+    return PatientConnection.connect(*arguments, **options)
+
+
 def _on_postgresql_connect(connection: Any, _record: Any) -> None:
+    from safestart.store.patient import STATEMENT_S
+
     with connection.cursor() as cursor:
-        # A process that is stopped in the middle of a transaction would keep its rows locked, and others from taking
-        # over.
+        cursor.execute(f"SET statement_timeout = {int(STATEMENT_S * 1000)}")
+        # A process stopped in the middle of a transaction would keep its rows locked, and nobody could take over.
         cursor.execute(f"SET idle_in_transaction_session_timeout = {int(STOPPED_S * 1000)}")
-        # As long as SQLite waits: what somebody else locks must not hang every request.
+        # The same limit as for SQLite: a foreign lock must not hang every request.
         cursor.execute(f"SET lock_timeout = {int(BUSY_TIMEOUT_S * 1000)}")
     connection.commit()
 
 
 def _on_postgresql_checkout(connection: Any, _record: Any, _proxy: Any) -> None:
-    # An idle connection has nothing to say, except that its server is gone: seen without asking it, which would cost
-    # every transaction a round trip. The pool then drops its connections and makes a new one.
+    # An idle connection becomes readable only when its server has closed it. This check costs no round trip, unlike
+    # a query before every transaction. The pool then drops its connections and makes a new one.
     if not connection.closed:
+        connection.patience_s = type(connection).patience_s
         heard = select.poll()
         heard.register(connection, select.POLLIN)
         if not heard.poll(0):
@@ -159,24 +169,28 @@ def _on_postgresql_checkout(connection: Any, _record: Any, _proxy: Any) -> None:
 
 
 def _on_sqlite_begin(connection: Connection) -> None:
-    # Two transactions that read first and write later can deadlock; IMMEDIATE makes them queue instead.
+    # Two transactions that read first and write later can deadlock; IMMEDIATE makes them queue.
     write = connection.get_execution_options().get("safestart_write", False)
     connection.exec_driver_sql("BEGIN IMMEDIATE" if write else "BEGIN DEFERRED")
 
 
 def lock_schema(connection: Connection) -> None:
-    """Wait until no other process migrates, for this transaction; however long it takes, as that ends by itself."""
+    """Take the schema lock for this transaction, waiting without limit: every migration ends by itself."""
     if connection.dialect.name == "postgresql":
+        from safestart.store.patient import MIGRATION_S
+
         connection.execute(text("SET LOCAL lock_timeout = 0"))
+        connection.execute(text("SET LOCAL statement_timeout = 0"))
+        cast(Any, connection.connection.driver_connection).patience_s = MIGRATION_S
     _wait_for(connection, _SCHEMA_LOCK)
 
 
 def lock_queue(connection: Connection) -> None:
-    """Wait until nobody else submits, for this transaction: what is counted before a job is added stays true."""
+    """Take the submission lock for this transaction, so that counts stay true until the job is added."""
     _wait_for(connection, _QUEUE_LOCK)
 
 
 def _wait_for(connection: Connection, key: int) -> None:
-    # On SQLite BEGIN IMMEDIATE did that.
+    # On SQLite BEGIN IMMEDIATE has done that.
     if connection.dialect.name == "postgresql":
         connection.execute(text("SELECT pg_advisory_xact_lock(:key)"), {"key": key})

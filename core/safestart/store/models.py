@@ -1,4 +1,4 @@
-"""The tables. Rows stay inside the store; what leaves it are the frozen records."""
+"""The tables. Rows stay inside the store, which hands out frozen records."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 from safestart.store.dialect import UtcTime
 from safestart.store.records import Event, Job, JobStatus, Shard
 
-# SQLite counts by itself in a column of this very type only, and its integers have 64 bits anyway.
+# SQLite counts only in a column of exactly this type; its integers have 64 bits anyway.
 Counter = BigInteger().with_variant(Integer(), "sqlite")
 
 
 class Base(DeclarativeBase):
-    """Root of the tables; constraints get names, so that migrations can speak of them."""
+    """Base of the tables; constraints get names, so that migrations can refer to them."""
 
     metadata = MetaData(
         naming_convention={
@@ -46,7 +46,7 @@ class Base(DeclarativeBase):
 
 
 def table(row: type[Base]) -> Table:
-    """The table of a kind of row: statements on it do without the object mapper, which costs more than they do."""
+    """The table of a row class: statements on it skip the object mapper, which costs more than the statements."""
     found = row.__table__
     assert isinstance(found, Table)
     return found
@@ -55,8 +55,9 @@ def table(row: type[Base]) -> Table:
 class JobRow(Base):
     """One job.
 
-    ``seq`` is the order of submission; ``token`` grows with every change of hands (fencing); ``submitter`` is who
-    submitted it ("" where nobody is asked for a name) and ``turn`` its round among the submitters (see ``fairness``).
+    ``seq`` is the order of submission; ``token`` grows with every change of hands (fencing); ``submitter`` names
+    the submitter ("" when the service requires no keys) and ``turn`` is its round among the submitters (see
+    ``fairness``).
     """
 
     __tablename__ = "jobs"
@@ -90,11 +91,11 @@ class JobRow(Base):
     versions: Mapped[dict[str, Any] | None]
 
     __table_args__ = (
-        # The queue in the order it is served, and the few running rows.
+        # The queue in serving order, and the few running rows.
         Index("ix_jobs_queue", "status", "priority", "turn", "seq", "process_id"),
         Index("ix_jobs_submitter", "submitter", "status", "priority", "turn"),
         Index("ix_jobs_ended", "status", "finished_at"),
-        # The list by status, and how many there are.
+        # The list by status, and the counts.
         Index("ix_jobs_status_seq", "status", "seq"),
         {"sqlite_autoincrement": True},
     )
@@ -118,7 +119,7 @@ class ResultRow(Base):
 
 
 class ArtifactRow(Base):
-    """A file of a result, bytes included: one database is the whole record."""
+    """A file of a result with its bytes: one database is the whole record."""
 
     __tablename__ = "artifacts"
 
@@ -131,7 +132,7 @@ class ArtifactRow(Base):
 
 
 class ShardRow(Base):
-    """A finished shard of a job that still runs: a worker that takes the job over does not do it again."""
+    """A finished shard of a running job: a worker that takes the job over does not compute it again."""
 
     __tablename__ = "shards"
 
@@ -150,8 +151,8 @@ class ShardRow(Base):
 class EventRow(Base):
     """One thing that happened to a job.
 
-    Events of a job are added in the transaction that updates its row, and that row's lock orders them: a
-    reader who asks for ids after the last one seen misses none.
+    The transaction that updates a job's row also adds its events, and that row's lock orders them: a reader who
+    asks for ids after the last one seen misses none.
     """
 
     __tablename__ = "events"
@@ -170,7 +171,7 @@ class EventRow(Base):
 
 
 class WorkerRow(Base):
-    """A worker and its last sign of life: lets the service say why a job waits."""
+    """A worker and its last heartbeat; lets the service say why a job waits."""
 
     __tablename__ = "workers"
 
@@ -181,7 +182,7 @@ class WorkerRow(Base):
 
 
 class CacheRow(Base):
-    """What was computed before, by content key: may be emptied at any time, nothing refers to it."""
+    """Cached data by content key; nothing refers to this table, so it may be emptied at any time."""
 
     __tablename__ = "cache"
 

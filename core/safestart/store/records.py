@@ -1,4 +1,4 @@
-"""What the store hands out: frozen records, free of SQLAlchemy. Times are timezone-aware UTC."""
+"""The frozen records that the store hands out, free of SQLAlchemy. Times are timezone-aware UTC."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ class JobStatus(StrEnum):
 
     @property
     def ended(self) -> bool:
-        """True when nothing will change any more."""
+        """True when the job has ended."""
         return self not in (JobStatus.ACCEPTED, JobStatus.RUNNING)
 
 
 @dataclass(frozen=True, slots=True)
 class JobEntry:
-    """One submitted job as a list has it: all but its documents.
+    """One submitted job as in a list, without its documents.
 
     ``progress`` is 0..100; ``eta_s`` the estimated seconds left while it runs; ``problem`` a problem document
-    (RFC 9457 members) when it failed; ``submitter`` who submitted it, "" where nobody is asked for a name;
-    ``attempts`` how often it was started and neither ended nor given back.
+    (RFC 9457 members) when it failed; ``submitter`` names the submitter, "" when the service requires no keys;
+    ``attempts`` counts the starts that neither ended nor were given back.
     """
 
     id: str
@@ -56,7 +56,7 @@ class JobEntry:
 
 @dataclass(frozen=True, slots=True)
 class Job(JobEntry):
-    """One submitted job as the database has it.
+    """One submitted job with its documents.
 
     ``instant`` is the answer given at submission; ``versions`` the package versions, git revision and machine that
     produced the result.
@@ -69,7 +69,7 @@ class Job(JobEntry):
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """A worker's hold on a running job; ``token`` grows with every claim, so a late writer is refused."""
+    """A worker's lease on a running job; ``token`` grows with every claim, so the store can refuse a late writer."""
 
     job_id: str
     owner: str
@@ -82,7 +82,7 @@ class Claim:
 
 @dataclass(frozen=True, slots=True)
 class Shard:
-    """What a finished shard gave; ``content`` identifies what it depends on."""
+    """The result of a finished shard; ``content`` identifies what it depends on."""
 
     number: int
     content: str
@@ -94,7 +94,8 @@ class Shard:
 class Wait:
     """A waiting job: its place (1 = next), and the estimated seconds until it starts and until it ends.
 
-    Of those ahead, ``higher`` have a higher priority, and ``turns`` came later but go first as submitters take turns.
+    Of the jobs ahead, ``higher`` have a higher priority, and ``turns`` came later but go first because submitters
+    take turns.
     """
 
     position: int
@@ -106,7 +107,7 @@ class Wait:
 
 @dataclass(frozen=True, slots=True)
 class Crew:
-    """The workers that live: how many, for how many jobs they have places, and how many of those are taken."""
+    """The living workers: their number, their places for jobs, and how many of the places are taken."""
 
     workers: int
     places: int
@@ -115,7 +116,7 @@ class Crew:
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """How long a successful job waited for its first start, and took from there to its end."""
+    """Waiting time of a successful job until its first start, and time from there to its end."""
 
     process_id: str
     wait_s: float
@@ -139,6 +140,7 @@ class JobPage:
 
     jobs: tuple[JobEntry, ...]
     next_cursor: str | None
+    prev_cursor: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,7 +191,8 @@ class ApiKey:
 
 @dataclass(frozen=True, slots=True)
 class AuditEntry:
-    """Who did what: ``action`` to ``subject`` (the id of a job or a key); ``key_id`` None without a key."""
+    """An audit entry: a caller did ``action`` to ``subject`` (the id of a job or key); ``key_id`` None without a
+    key."""
 
     id: int
     at: datetime

@@ -1,4 +1,4 @@
-"""Bring the tables to this version's schema, in-process, with Alembic."""
+"""Migrate the tables to this version's schema, in-process, with Alembic."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _MIGRATIONS = Path(__file__).parent / "migrations"
 def migrate(writer: Engine) -> None:
     """Upgrade to :data:`HEAD` inside one transaction that holds the schema lock.
 
-    The usual case, a schema that is up to date, costs one read and does not import Alembic.
+    An up-to-date schema, the usual case, costs one read and no import of Alembic.
     """
     with writer.begin() as connection:
         lock_schema(connection)
@@ -25,7 +25,7 @@ def migrate(writer: Engine) -> None:
 
 
 def version(connection: Connection) -> str | None:
-    """The revision the database is at; None for an empty one."""
+    """The database's revision; None for an empty database."""
     if not inspect(connection).has_table("alembic_version"):
         return None
     found: str | None = connection.execute(

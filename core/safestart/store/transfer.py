@@ -1,10 +1,8 @@
-"""Whole jobs in and out of the store, as bundles hold them."""
+"""Move whole jobs in and out of the store, in the form of bundles."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from datetime import datetime
-from hashlib import sha256
 from typing import Any
 
 from sqlalchemy import insert, select
@@ -16,6 +14,7 @@ from safestart.records.bundle import Bundle
 from safestart.records.bundle_parts import event_facts, job_facts
 from safestart.records.comparable import digest
 from safestart.store.database import Database
+from safestart.store.jobs.results import require_unaltered
 from safestart.store.jobs.submissions import find, request_hash
 from safestart.store.jobs.writing import add_result
 from safestart.store.models import ArtifactRow, EventRow, JobRow, ResultRow
@@ -29,16 +28,16 @@ _FACTS = (
 
 
 class Transfer:
-    """Read an ended job with everything that belongs to it; add one that came from elsewhere."""
+    """Reads an ended job with everything that belongs to it; adds a job from elsewhere."""
 
     def __init__(self, database: Database) -> None:
         self._database = database
 
     def read(self, job_id: str) -> Bundle:
-        """Everything of an ended job; raises ``NotFound``, and ``Conflict`` while it has not ended.
+        """All of an ended job; raises ``NotFound``, and ``Conflict`` before its end.
 
-        ``Conflict``, too, when its result is not what was stored: nothing is passed on that was altered since.
-        Who submitted it and which worker ran it stay here.
+        It raises ``Altered`` when the stored result was altered, so that no altered result leaves the store.
+        The names of the submitter and the worker are not exported.
         """
         with self._database.session() as session:
             row = find(session, job_id)
@@ -56,7 +55,7 @@ class Transfer:
             files = session.scalars(
                 select(ArtifactRow).where(ArtifactRow.job_id == job_id).order_by(ArtifactRow.name)
             ).all()
-            _require_unaltered(job_id, stored, files)
+            require_unaltered(job_id, stored, files)
             return Bundle(
                 job,
                 None if stored is None else stored.document,
@@ -65,9 +64,9 @@ class Transfer:
             )
 
     def add(self, bundle: Bundle) -> bool:
-        """Add the job under its own id; False when it is here already with the same content.
+        """Add the job under its own id; False when the store already has it with the same content.
 
-        Raises ``Conflict`` when another job or another result has its id, ``InvalidInput`` for facts that are none.
+        Raises ``Conflict`` when another job or result has its id, and ``InvalidInput`` for malformed facts.
         """
         values, events = _values(bundle.job), event_facts(bundle.events)
         status = JobStatus(values["status"])
@@ -93,20 +92,6 @@ def _values(job: dict[str, Any]) -> dict[str, Any]:
         "cancel_requested": values["status"] == JobStatus.DISMISSED.value,
         "request_sha256": request_hash(values["process_id"], values["inputs"]),
     }
-
-
-def _require_unaltered(job_id: str, stored: ResultRow | None, files: Sequence[ArtifactRow]) -> None:
-    altered = [] if stored is None or digest(stored.document) == stored.sha256 else ["the result"]
-    altered += [
-        f"artifact {file.name}" for file in files if sha256(bytes(file.data)).hexdigest() != file.sha256
-    ]
-    if altered:
-        raise Conflict(
-            f"job {job_id} is not as it was stored: {', '.join(altered)} does not have the SHA-256 on record",
-            field="jobID",
-            required="a result and artifacts with the SHA-256 on record",
-            received=", ".join(altered),
-        )
 
 
 def _require_same(session: Session, bundle: Bundle) -> None:

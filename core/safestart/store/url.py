@@ -1,4 +1,4 @@
-"""The URL of the database: what is taken for one, and how it is shown without its secrets."""
+"""The URL of the database: which URLs are accepted, and how to show one without its secrets."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ _DRIVERS = {
     "postgresql": "postgresql+psycopg",
     "postgresql+psycopg": "postgresql+psycopg",
 }
-# What libpq takes as options and nobody should read.
+# Secret options of libpq.
 _SECRETS = ("password", "sslpassword")
 _HIDDEN = "***"
 
 
 def parse(url: str) -> URL:
-    """The URL with the driver that is used; raises ``InvalidInput``, which repeats no password."""
+    """The URL with our driver; raises ``InvalidInput``, which repeats no password."""
     try:
         parsed = make_url(url)
     except (ArgumentError, ValueError):
-        # What cannot be parsed may hold a password, so it is not repeated.
+        # An unparsable URL may contain a password, so the message does not repeat it.
         raise refused("something that is no URL") from None
     if "@" in (parsed.host or ""):
         raise refused("one with two @ (in a user's name or a password it is written %40)")
@@ -41,14 +41,14 @@ def parse(url: str) -> URL:
 
 
 def shown(url: URL) -> str:
-    """The URL as it may be read by anybody."""
+    """The URL without its secrets."""
     hidden = {name: _HIDDEN for name in _SECRETS if name in url.query}
     text = url.update_query_dict(hidden).render_as_string(hide_password=True)
     return text.replace("=%2A%2A%2A", f"={_HIDDEN}")
 
 
 def without_secrets(text: str, url: URL) -> str:
-    """What somebody else says of the database, without the secrets of its URL."""
+    """Another library's message about the database, without the secrets of its URL."""
     for secret in (url.password, *(url.query.get(name) for name in _SECRETS)):
         if secret:
             text = text.replace(str(secret), _HIDDEN)
@@ -56,7 +56,7 @@ def without_secrets(text: str, url: URL) -> str:
 
 
 def refused(received: str) -> InvalidInput:
-    """The error for a URL that cannot be."""
+    """The error for an invalid URL."""
     return InvalidInput(
         f"database_url: required {REQUIRED}, received {received}",
         field="database_url",

@@ -14,11 +14,13 @@ from safestart.control.gains import PAPER
 from safestart.control.sequence_mpc import SequenceMpc, SequencePlanner, start_verdict
 from safestart.control.three_regimes import ThreeRegimes
 from safestart.dynamics.cwh import input_matrix, transition_matrix
-from safestart.dynamics.two_body import J2, MU, RADIUS, Orbit, TwoBody, axes, gravity
+from safestart.dynamics.two_body import J2, Orbit, TwoBody, axes, gravity
 from safestart.errors import InvalidInput
 from safestart.exact.answer import Verdict
 from safestart.exact.question import Question
 from safestart.exact.watch import watch_of
+from safestart.model.orbit import EARTH_RADIUS as RADIUS
+from safestart.model.orbit import MU
 from safestart.model.scenario import Floats, Rest, Scenario
 from safestart.simulation.compiled_loop import fly
 from safestart.simulation.loop import fly as fly_slowly

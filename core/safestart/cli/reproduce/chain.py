@@ -53,7 +53,7 @@ def chain_document(rates: list[float], *, level_sets: bool = True) -> dict[str, 
 
 
 def show(document: dict[str, Any]) -> None:
-    """Print the chain's links, then every pair of sets, then what is said of each point."""
+    """Print the chain's links, then every pair of sets, then the notes on each point."""
     table, said = table_of("Eq. (12): is each set inside the next?", _COLUMNS), []
     for point in document["points"]:
         cells = {row["name"]: row["cells"] for row in point["sets"]}

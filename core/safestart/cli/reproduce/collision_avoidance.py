@@ -33,7 +33,7 @@ def register(group: typer.Typer) -> None:
 
 
 def collision_avoidance_document(inputs: dict[str, Any] | None = None) -> dict[str, Any]:
-    """Inputs and outputs of the process at the paper's values (its defaults) but for ``inputs``."""
+    """Inputs and outputs of the process at the paper's values (its defaults), except for ``inputs``."""
     with reporting("collision avoidance") as context:
         document = execute("collision-avoidance", inputs or {}, context).document
     return {"paper": PAPER, "inputs": document["inputs"], **document["outputs"]}

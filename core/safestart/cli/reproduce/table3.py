@@ -1,4 +1,5 @@
-"""``safestart reproduce table3``: which certified starts fly, ours beside the paper's, and single causes switched."""
+"""``safestart reproduce table3``: which certified starts fly, ours beside the paper's, and the effect of single
+causes."""
 
 from __future__ import annotations
 
@@ -30,7 +31,7 @@ CAUSES: tuple[tuple[str, dict[str, Any]], ...] = (
     ("no disk projection", {"filter": {"disk_projection": False}}),
     ("move weight 0.2", {"filter": {"move_weight": 0.2}}),
 )
-# Starts per cell of the causes: enough to tell a few points of precision apart.
+# Starts per cell of the causes: enough to resolve a few points of precision.
 CAUSE_CASES = 90
 
 

@@ -1,4 +1,4 @@
-"""Who did what: written with the deed, read newest first."""
+"""The audit log: each entry is written in the transaction of its action; readers get the newest first."""
 
 from __future__ import annotations
 

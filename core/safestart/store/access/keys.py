@@ -1,4 +1,4 @@
-"""API keys: made, listed, revoked; only digests are kept."""
+"""Make, list and revoke API keys; the store keeps only their digests."""
 
 from __future__ import annotations
 
@@ -20,16 +20,17 @@ _DAY_S = 86_400.0
 
 
 class KeyRepository:
-    """Everything there is to do with keys; safe to share between threads."""
+    """All operations on keys; safe to share between threads."""
 
     def __init__(self, database: Database) -> None:
         self._database = database
 
     def create(self, name: str, role: Role, days: float | None, by: Caller) -> tuple[ApiKey, str]:
-        """Make a key that expires after ``days`` (None: never); returns its record and the key itself, once.
+        """Make a key that expires after ``days`` (None: never); returns its record and the key itself, which cannot
+        be read again.
 
-        Raises ``InvalidInput`` for a name that is empty or longer than 100 characters and for days not in
-        (0, 3660].
+        Raises ``InvalidInput`` for a name that is empty or longer than 100 characters and for days not in (0,
+        3660].
         """
         if not 1 <= len(name) <= MAX_NAME or not name.isprintable():
             raise invalid("name", f"1 to {MAX_NAME} printable characters", name)
@@ -56,7 +57,7 @@ class KeyRepository:
         return tuple(key for key, _ in self.digests())
 
     def digests(self) -> tuple[tuple[ApiKey, bytes], ...]:
-        """All keys with what is kept of them, for whoever checks keys."""
+        """All keys with their digests, for the check of presented keys."""
         query = select(KeyRow, _usable()).order_by(KeyRow.created_at, KeyRow.id)
         with self._database.session() as session:
             return tuple(

@@ -14,7 +14,7 @@ from safestart.store.records import ApiKey, AuditEntry
 
 
 class KeyRow(Base):
-    """An API key. Rows are never deleted: an ended key still says that keys are required, and who it was."""
+    """An API key. Rows are never deleted: an ended key still shows that keys are required, and whose it was."""
 
     __tablename__ = "api_keys"
 
@@ -28,7 +28,7 @@ class KeyRow(Base):
     last_used_at: Mapped[datetime | None]
 
     def record(self, usable: bool) -> ApiKey:
-        """The frozen record of this row; ``usable`` is the database's word on revocation and expiry."""
+        """The frozen record of this row; the database decides ``usable`` from revocation and expiry."""
         return ApiKey(
             id=self.id,
             name=self.name,
@@ -42,7 +42,7 @@ class KeyRow(Base):
 
 
 class AuditRow(Base):
-    """One thing somebody did; written in the transaction that does it."""
+    """One action of a caller; written in the transaction of that action."""
 
     __tablename__ = "audit"
 

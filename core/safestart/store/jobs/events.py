@@ -1,4 +1,4 @@
-"""Events of jobs: added with each change, read by whoever follows a job."""
+"""Events of jobs: written with each change, read by those who follow a job."""
 
 from __future__ import annotations
 

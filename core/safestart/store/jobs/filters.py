@@ -1,4 +1,4 @@
-"""Which jobs a list holds; free of SQLAlchemy, as the service asks with it."""
+"""The filter of a job list; free of SQLAlchemy, because the service builds it."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from safestart.store.records import JobStatus
 
 @dataclass(frozen=True, slots=True)
 class JobFilter:
-    """Conditions that a job meets all of; what is empty or None asks nothing.
+    """Conditions that a job must all meet; an empty or None field sets no condition.
 
-    ``created_from`` and ``created_to`` are inclusive. A job's duration, s, runs from its start to its end, or to the
-    present while it runs; one that never started has none and meets no condition on it.
+    ``created_from`` and ``created_to`` are inclusive. A job's duration, s, runs from its start to its end, or to
+    now while it runs; a job that never started meets no condition on it.
     """
 
     statuses: Sequence[JobStatus] = ()

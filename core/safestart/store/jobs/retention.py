@@ -1,4 +1,4 @@
-"""Deleting what ended long ago, with everything that belongs to it."""
+"""Delete jobs that ended long ago, with everything that belongs to them."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from safestart.store.dialect import after
 from safestart.store.models import Base, JobRow
 from safestart.store.records import JobStatus
 
-# Others write in between: a transaction is to be about so short, s, and is followed by a pause at least as long. What
-# that allows depends on the sizes of artifacts, so the number of jobs in one follows.
+# Target length of a transaction, s; a pause at least as long follows, in which others can write. The number of jobs
+# in a transaction adapts, as it depends on the sizes of their artifacts.
 _BRIEF_S = 0.2
 _PAUSE_S = 0.05
 _FEW, _MANY = 10, 200
@@ -20,18 +20,18 @@ _ENDED = tuple(status.value for status in JobStatus if status.ended)
 
 
 class Retention:
-    """How long ended jobs are kept."""
+    """Counts and deletes old jobs."""
 
     def __init__(self, database: Database) -> None:
         self._database = database
 
     def older(self, than_s: float) -> int:
-        """How many jobs ended more than ``than_s`` seconds ago, on the database's clock."""
+        """Number of jobs that ended more than ``than_s`` seconds ago, by the database's clock."""
         with self._database.session() as session:
             return session.scalar(select(func.count()).where(*_old(than_s))) or 0
 
     def purge(self, than_s: float) -> int:
-        """Delete them with results, artifacts and events; returns how many they were. Beside others, at half speed."""
+        """Delete them with results, artifacts and events; returns their number. Pauses half the time for others."""
         done, batch = 0, _FEW
         while True:
             start = monotonic()
@@ -44,7 +44,7 @@ class Retention:
             sleep(max(took, _PAUSE_S))
 
     def _delete(self, than_s: float, most: int) -> int:
-        # On PostgreSQL two that purge at once delete different jobs.
+        # On PostgreSQL two purges at the same time delete different jobs.
         query = select(JobRow.id).where(*_old(than_s)).limit(most).with_for_update(skip_locked=True)
         jobs = Base.metadata.tables["jobs"].c.id
         with self._database.session(write=True) as session:
@@ -58,5 +58,5 @@ class Retention:
 
 
 def _old(than_s: float) -> tuple[ColumnElement[bool], ColumnElement[bool]]:
-    # A subquery is asked once, so that PostgreSQL can look the time up in the index: its clock changes as one looks.
+    # PostgreSQL evaluates a subquery once and can then use the index; its clock function would be evaluated per row.
     return JobRow.status.in_(_ENDED), JobRow.finished_at < select(after(-than_s)).scalar_subquery()

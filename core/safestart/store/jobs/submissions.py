@@ -52,10 +52,10 @@ class Submissions:
     ) -> Job:
         """Put a job in the queue: higher ``priority`` first, among equals in fair turns by ``submitter``.
 
-        Who did it (``by``) goes into the audit log. A new job gets ``job_id``, or an id of its own.
-        The same ``idempotency_key`` of the same submitter with the same process and inputs returns the first job;
-        with others it raises ``IdempotencyMismatch``. Raises ``QueueFull`` when ``max_queued`` jobs wait already, and
-        ``InvalidInput`` when the inputs are not JSON.
+        The audit log records the caller ``by``. A new job gets ``job_id``, or a fresh id. The same
+        ``idempotency_key`` of the same submitter with the same process and inputs returns the first job; with
+        another process or inputs it raises ``IdempotencyMismatch``. Raises ``QueueFull`` when ``max_queued`` jobs
+        wait already, and ``InvalidInput`` when the inputs are not JSON.
         """
         request = request_hash(process_id, inputs)
         if idempotency_key is not None and not 1 <= len(idempotency_key) <= 255:
@@ -66,7 +66,7 @@ class Submissions:
             )
         idempotency_key = _own_key(submitter, idempotency_key)
         with self._database.session(write=True) as session:
-            # Else two at once would both find room, no such key, the same turn.
+            # Otherwise two submissions at once would both find room, an unused key and the same turn.
             lock_queue(session.connection())
             first = _by_key(session, idempotency_key)
             if first is not None:
@@ -96,10 +96,10 @@ class Submissions:
             return find(session, row.id).record()
 
     def dismiss(self, job_id: str, by: Caller | None = None) -> Job:
-        """Dismiss a job: at once while it waits; a running one is asked to stop and its worker ends it.
+        """Dismiss a job: a waiting job ends at once; a running job is asked to stop and its worker ends it.
 
-        Who did it (``by``) goes into the audit log. A running job whose lease ran out has no worker, so it ends
-        at once too. Dismissing twice returns the job; one that ended otherwise raises ``Conflict``.
+        The audit log records the caller ``by``. A running job whose lease ran out has no worker, so it ends at once
+        too. Dismissing a job twice returns it; a job that ended otherwise raises ``Conflict``.
         """
         nobody_has_it = or_(
             JobRow.status == JobStatus.ACCEPTED.value,
@@ -110,7 +110,7 @@ class Submissions:
             .where(JobRow.id == job_id, nobody_has_it)
             .values(
                 status=JobStatus.DISMISSED.value,
-                token=JobRow.token + 1,  # a worker that was only slow is refused from here on
+                token=JobRow.token + 1,  # from here on the store refuses a worker that was only slow
                 cancel_requested=True,
                 message="dismissed",
                 eta_s=None,
@@ -150,7 +150,7 @@ class Submissions:
 
 
 def request_hash(process_id: str, inputs: dict[str, Any]) -> str:
-    """What a repeated request is known by; raises ``InvalidInput`` when the inputs are not JSON."""
+    """The digest that identifies a repeated request; raises ``InvalidInput`` when the inputs are not JSON."""
     try:
         text = canonical([process_id, inputs])
     except (TypeError, ValueError) as error:
@@ -159,7 +159,7 @@ def request_hash(process_id: str, inputs: dict[str, Any]) -> str:
 
 
 def _own_key(submitter: str, key: str | None) -> str | None:
-    """The key as it is stored: what two submitters chose alike stays apart."""
+    """The stored form of the key: equal keys of two submitters stay different."""
     return key if key is None or not submitter else sha256(f"{submitter} {key}".encode()).hexdigest()
 
 

@@ -1,4 +1,4 @@
-"""Alembic's entry: it runs on the connection it is given, inside that connection's transaction."""
+"""Alembic's entry point: runs on the given connection, inside its transaction."""
 
 from alembic import context
 

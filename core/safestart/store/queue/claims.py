@@ -1,7 +1,7 @@
 """The worker's side of the queue: claim with a lease, renew it, report, end.
 
-Every change is one conditional update that names the claim's token: a worker that lost its lease changes
-nothing, and is told so with ``LeaseLost``.
+Every change is one conditional update on the claim's token: a worker that lost its lease changes nothing and gets
+``LeaseLost``.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _SHARDS_OF = delete(table(ShardRow)).where(table(ShardRow).c.job_id == bindparam
 
 
 class Claims:
-    """Operations of a worker on the jobs it holds."""
+    """Operations of a worker on its jobs."""
 
     def __init__(self, database: Database) -> None:
         self._database = database
@@ -40,15 +40,15 @@ class Claims:
     def claim(
         self, owner: str, lease_s: float, max_attempts: int = 3, *, likely: bool = False
     ) -> Claim | None:
-        """Take the next job, or None: highest priority first, then in turn, then oldest.
+        """Take the next job, or return None: highest priority first, then by turn, then oldest.
 
-        A running job whose lease ran out is taken over. One that has used up its attempts ends failed, and
-        one whose dismissal was asked for ends dismissed, and the next is tried. ``likely``: there probably is one, so
-        that a look beforehand would be wasted.
+        A running job whose lease ran out is taken over. If it has used up its attempts it ends failed, if its
+        dismissal was requested it ends dismissed, and the search goes on. ``likely``: a job probably waits, so skip
+        the read-only look beforehand.
         """
         if not likely and self._database.one_writer:
             with self._database.session() as session:
-                # Without the write lock: idle workers must not queue up behind each other.
+                # Look without the write lock: idle workers must not queue up behind each other.
                 if _next(session) is None:
                     return None
         with self._database.session(write=True) as session:
@@ -66,7 +66,7 @@ class Claims:
         return None
 
     def renew(self, claim: Claim, lease_s: float) -> bool:
-        """Extend the lease. True: keep going; False: dismissal was asked for. Raises ``LeaseLost``."""
+        """Extend the lease. Returns False when the job's dismissal was requested, else True. Raises ``LeaseLost``."""
         with self._database.session(write=True) as session:
             change(session, claim, _RENEWED, lease_for=lease_s, lease_s=lease_s)
             return not session.scalar(_ASKED, {"job": claim.job_id})
@@ -85,9 +85,9 @@ class Claims:
             add_event(session, claim.job_id, "log", {"message": message})
 
     def restarted(self, claim: Claim, max_attempts: int) -> bool:
-        """Count a start after the death of the job's task process; False: it has used up its attempts.
+        """Count a restart after the death of the job's task process, and reset its progress.
 
-        Its progress begins again.
+        Returns False when no attempt is left.
         """
         with self._database.session(write=True) as session:
             change(session, claim, progress=0.0, eta_s=None)
@@ -102,7 +102,7 @@ class Claims:
             return left
 
     def poisoned(self, claim: Claim, max_attempts: int) -> None:
-        """End the job as failed: its task processes died, or its workers were lost, too often."""
+        """End the job as failed because its task processes died, or its workers were lost, too often."""
         with self._database.session(write=True) as session:
             add_lost(session, claim.job_id, TASK_PROCESS, "its task process died; no attempt is left")
             problem = poison(session, claim.job_id, max_attempts)
@@ -118,7 +118,7 @@ class Claims:
     ) -> None:
         """Store result and artifacts and end the job, in one transaction.
 
-        A job whose dismissal was asked for ends dismissed, without a result: its client was told so.
+        A job whose dismissal was requested ends dismissed, without a result, as its client was told.
         """
         with self._database.session(write=True) as session:
             values = {"progress": 100.0, "message": "done", "versions": versions}
@@ -127,19 +127,19 @@ class Claims:
                 session.execute(_SHARDS_OF, {"job": claim.job_id})
 
     def fail(self, claim: Claim, problem: dict[str, Any]) -> None:
-        """End the job as failed with a problem document (dismissed, when that was asked for)."""
+        """End the job as failed with a problem document, or as dismissed when that was requested."""
         message = storable(str(problem.get("detail") or problem.get("title") or "failed"))
         with self._database.session(write=True) as session:
             _end(session, claim, JobStatus.FAILED, message=message, problem=problem)
 
     def dismissed(self, claim: Claim) -> None:
-        """End the job as dismissed: its computation has stopped."""
+        """End the job as dismissed, after its computation has stopped."""
         with self._database.session(write=True) as session:
             change(session, claim, cancel_requested=True)
             _end(session, claim, JobStatus.DISMISSED)
 
     def release(self, claim: Claim, reason: str) -> None:
-        """Give the job back to the queue, at its old place; this was no attempt."""
+        """Return the job to its old place in the queue, without counting an attempt."""
         with self._database.session(write=True) as session:
             values = {
                 "status": JobStatus.ACCEPTED.value,
@@ -169,12 +169,12 @@ def _first(condition: ColumnElement[bool]) -> Select[Any]:
         .where(condition)
         .order_by(JobRow.priority.desc(), JobRow.turn, JobRow.seq)
         .limit(1)
-        .with_for_update(skip_locked=True)  # PostgreSQL: pass over what another worker is taking
+        .with_for_update(skip_locked=True)  # PostgreSQL: skip jobs that another worker is taking
     )
 
 
 _WAITS = JobRow.status == JobStatus.ACCEPTED.value
-# The highest priority apart: what is left is then read off the index, in its order. Two queries, as a union could not
+# Find the highest priority first; the rest can then be read in index order. Two queries, because a union could not
 # use the index.
 _HIGHEST = select(func.max(JobRow.priority)).where(_WAITS).scalar_subquery()
 _CANDIDATES = (_first(_WAITS & (JobRow.priority == _HIGHEST)), _first(expired()))
@@ -199,7 +199,7 @@ def _next(session: Session) -> Row[Any] | None:
 
 
 def _take(session: Session, row: Row[Any], owner: str, lease_s: float) -> Claim | None:
-    """Make the job ours if it still is as we saw it."""
+    """Take the job if its row has not changed since we read it."""
     token, attempt = row.token + 1, row.attempts + 1
     values = {
         "status": JobStatus.RUNNING.value,
@@ -243,7 +243,7 @@ def _if_as_seen(session: Session, row: Row[Any], statement: Update, values: dict
 
 
 def _end(session: Session, claim: Claim, status: JobStatus, **values: Any) -> bool:
-    """End the claimed job as ``status``; as dismissed when that was asked for, and then return False."""
+    """End the claimed job as ``status``. If dismissal was requested, end it as dismissed and return False."""
     if try_change(session, claim, _ENDED_WANTED, status=status.value, **FREE, **values):
         more = {"message": values["message"]} if status is JobStatus.FAILED else {}
         add_status(session, claim.job_id, status, **more)

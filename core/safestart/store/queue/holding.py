@@ -1,7 +1,7 @@
-"""Changes to a job by the worker that holds it: conditional updates that name the claim's token.
+"""Changes to a job by its worker: conditional updates on the claim's token.
 
-Statements are made once, as making one takes longer than running it: the values of plain columns come with the
-execution, and the database's clock is part of the statement.
+Each statement is built once, because building takes longer than running: values of plain columns are parameters,
+and the database's clock is part of the statement.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ WANTED = HELD.where(JOBS.c.cancel_requested.is_(False))
 
 
 def try_change(session: Session, claim: Claim, statement: Update = HELD, **values: Any) -> bool:
-    """Set ``values`` on the claimed job by ``statement``, which begins with ``HELD``; False if it met no row."""
+    """Set ``values`` on the claimed job by ``statement``, which begins with ``HELD``; False if no row matched."""
     held = {"held_id": claim.job_id, "held_owner": claim.owner, "held_token": claim.token}
     return bool(session.execute(statement, held | values).rowcount)  # type: ignore[attr-defined]
 

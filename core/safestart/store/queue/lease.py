@@ -1,4 +1,4 @@
-"""When a lease has run out, on the database's clock, whichever way that clock was set meanwhile."""
+"""When a lease has run out by the database's clock, even if that clock was set meanwhile."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from safestart.store.records import JobStatus
 
 
 def expired() -> ColumnElement[bool]:
-    """A running job whose lease has run out.
+    """Condition: a running job whose lease has run out.
 
-    A lease that ends further ahead than twice its own length was written before the clock was set back: without this
-    its job would be stuck for as long as the clock has gone back. Where the clock jumps, a job whose worker lives
-    may be taken over; its old worker is then refused, as any late writer is.
+    A lease that ends more than twice its length ahead was written before the clock was set back; without this
+    condition its job would be stuck for the time set back. After a clock jump another worker may take over the job
+    of a living worker; the store then refuses the old one, as any late writer.
     """
     run_out = JobRow.lease_expires_at < after()
     set_back = and_(JobRow.lease_s.is_not(None), JobRow.lease_expires_at > after(2 * JobRow.lease_s))

@@ -14,7 +14,7 @@ from safestart.store.models import JobRow, table
 from safestart.store.queue.presence import crew_of
 from safestart.store.records import JobStatus, Run, Wait
 
-# Run times are taken from this many jobs that ended last.
+# Number of latest jobs from which run times are taken.
 RECENT = 200
 _JOBS = table(JobRow)
 _WAITS = _JOBS.c.status == JobStatus.ACCEPTED.value
@@ -31,11 +31,11 @@ class Queue:
         return self.positions([self._known(job_id)]).get(job_id)
 
     def positions(self, job_ids: Iterable[str]) -> dict[str, int]:
-        """Places of those of the given jobs that wait."""
+        """Places of the waiting jobs among the given ones."""
         wanted = list(job_ids)
         if not wanted:
             return {}
-        # By their ids alone: their status is looked at afterwards, or SQLite would read all that wait instead.
+        # Select by id alone and check the status afterwards; with the status SQLite would read all waiting jobs.
         ends = select(_JOBS.c.priority, _JOBS.c.turn, _JOBS.c.status).where(_JOBS.c.id.in_(wanted))
         with self._database.session() as session:
             rows = session.execute(ends).all()
@@ -50,11 +50,11 @@ class Queue:
             if first == last:
                 same = _JOBS.c.priority == -first
                 between = same & _JOBS.c.turn.between(first_turn, last_turn)
-                # Two counts, as each is read off the queue's index.
+                # Two counts, as each can use the queue's index.
                 before = select(func.count()).where(_WAITS, same, _JOBS.c.turn < first_turn)
                 ahead = select(ahead.scalar_subquery() + before.scalar_subquery())
-            # Numbered are only those between the first and the last that are asked for, which on a page of the list are
-            # few; read off the index alone, too, and the ids are looked up for the few.
+            # Number only the jobs between the first and the last requested, few on a page of the list. This reads
+            # the index alone, and the ids are looked up for those few.
             order = (_JOBS.c.priority.desc(), _JOBS.c.turn, _JOBS.c.seq)
             place = func.row_number().over(order_by=order).label("place")
             queue = select(_JOBS.c.seq, place).where(_WAITS, between).subquery()
@@ -66,8 +66,8 @@ class Queue:
     def wait(self, job_id: str) -> Wait | None:
         """Place of a waiting job and the estimates for it; None unless it waits. Raises ``NotFound``.
 
-        The estimate shares the seconds of work ahead among the places of the living workers, at the mean run time of
-        each process's latest jobs. There is none before a first job has ended, and none without a worker.
+        The estimate divides the seconds of work ahead, from the mean run time of each process's latest jobs, by the
+        places of the living workers. It needs one ended job and one worker.
         """
         with self._database.session() as session:
             row = find(session, job_id)
@@ -95,14 +95,14 @@ class Queue:
 
 
 def _before(row: JobRow) -> ColumnElement[bool]:
-    """What is served before ``row``."""
+    """Conditions for jobs served before ``row``."""
     same_turn = (JobRow.turn == row.turn) & (JobRow.seq < row.seq)
     same_priority = (JobRow.priority == row.priority) & or_(JobRow.turn < row.turn, same_turn)
     return or_(JobRow.priority > row.priority, same_priority)
 
 
 def _ahead(session: Session, row: JobRow) -> tuple[dict[str, int], int, int]:
-    """Jobs ahead of ``row`` by process; how many by their priority, and how many by turns although they came later."""
+    """Jobs ahead of ``row`` by process; how many are ahead by priority, and how many later ones by their turn."""
     higher = JobRow.priority > row.priority
     later = (JobRow.priority == row.priority) & (JobRow.seq > row.seq)
     columns = (

@@ -1,4 +1,4 @@
-"""Attempts that never came to an end: noted as they happen, and told when they were too many."""
+"""Unfinished attempts: noted as they happen, and reported when they are too many."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def poison(session: Session, job_id: str, most: int) -> dict[str, Any]:
     query = select(EventRow.data).where(EventRow.job_id == job_id, EventRow.kind == "log")
     lost = Counter(data["lost"] for data in session.scalars(query) if "lost" in data)
     ends = []
-    # The lease that has just run out was not taken over, so no event tells of it.
+    # No worker took over the lease that has just run out, so no event mentions it.
     workers, deaths = most - lost[TASK_PROCESS], lost[TASK_PROCESS]
     if workers > 0:
         ends.append(f"{workers} times its worker was lost")

@@ -1,4 +1,4 @@
-"""Who is there to work: heartbeats of the workers, on the database's clock."""
+"""Which workers live: heartbeats by the database's clock."""
 
 from __future__ import annotations
 
@@ -36,22 +36,22 @@ class Presence:
                 session.execute(again)
 
     def farewell(self, owner: str) -> None:
-        """Forget a worker that stopped in good order."""
+        """Forget a worker that stopped normally."""
         with self._database.session(write=True) as session:
             session.execute(delete(WorkerRow).where(WorkerRow.owner == owner))
 
     def workers_alive(self, within_s: float = ALIVE_S) -> int:
-        """Number of workers heard of within the last ``within_s`` seconds."""
+        """Number of workers with a heartbeat in the last ``within_s`` seconds."""
         return self.crew(within_s).workers
 
     def owners_alive(self, within_s: float = ALIVE_S) -> tuple[str, ...]:
-        """Names of the workers heard of within the last ``within_s`` seconds."""
+        """Names of the workers with a heartbeat in the last ``within_s`` seconds."""
         query = select(WorkerRow.owner).where(WorkerRow.heartbeat_at >= after(-within_s))
         with self._database.session() as session:
             return tuple(session.scalars(query))
 
     def crew(self, within_s: float = ALIVE_S) -> Crew:
-        """The workers heard of within the last ``within_s`` seconds and the places they have."""
+        """The workers with a heartbeat in the last ``within_s`` seconds and their places."""
         with self._database.session() as session:
             return crew_of(session, within_s)
 

@@ -1,4 +1,4 @@
-"""Finished shards of a job: written under its lease, read when the job is resumed and by who wants to see it grow."""
+"""Finished shards of a job: written under its lease, read to resume the job and to show its partial result."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from safestart.store.records import Claim, Shard
 
 
 class Shards:
-    """Operations on the shards of jobs; they are deleted with the success of their job, whose result replaces them."""
+    """Operations on the shards of jobs. A job's success deletes its shards, as its result replaces them."""
 
     def __init__(self, database: Database) -> None:
         self._database = database
@@ -22,9 +22,9 @@ class Shards:
     def save_shard(
         self, claim: Claim, number: int, content: str, document: dict[str, Any], data: bytes
     ) -> None:
-        """Keep what shard ``number`` gave; ``content`` identifies what it depends on.
+        """Store the result of shard ``number``; ``content`` identifies what it depends on.
 
-        A finished shard is progress that a lost worker cannot take away, so attempts are counted from here again.
+        A finished shard is progress that survives a lost worker, so the count of attempts starts again.
         Raises ``LeaseLost``.
         """
         with self._database.session(write=True) as session:

@@ -1,4 +1,4 @@
-"""Counters of rare events, kept beside the jobs: they outlive the jobs that they counted."""
+"""Counters of rare events; they outlive the jobs that they counted."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from safestart.store.models import TallyRow
 
 
 class Tally(StrEnum):
-    """What is counted; the migrations put a row of each in the table."""
+    """The counters; the migrations add a row for each."""
 
     LEASE_LOSSES = "lease_losses"
     TASK_DEATHS = "task_deaths"
@@ -19,7 +19,7 @@ class Tally(StrEnum):
 
 
 def count(session: Session, what: Tally) -> None:
-    """Count one; the last statement of its transaction, since the row stays locked until its end."""
+    """Add one. Call it last in a transaction, as the row stays locked until the end."""
     session.execute(update(TallyRow).where(TallyRow.name == what.value).values(number=TallyRow.number + 1))
 
 

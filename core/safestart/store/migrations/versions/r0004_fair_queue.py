@@ -15,7 +15,7 @@ def upgrade() -> None:
     op.add_column("jobs", sa.Column("submitter", sa.String(64), nullable=False, server_default=""))
     op.add_column("jobs", sa.Column("turn", sa.Integer, nullable=False, server_default="0"))
     op.add_column("jobs", sa.Column("lease_s", sa.Double))
-    op.execute("UPDATE jobs SET turn = seq")  # the order of before: nobody is named in an older database
+    op.execute("UPDATE jobs SET turn = seq")  # the earlier order: an older database names no submitters
     op.drop_index("ix_jobs_queue", "jobs")
     op.create_index("ix_jobs_queue", "jobs", ["status", "priority", "turn", "seq", "process_id"])
     op.create_index("ix_jobs_submitter", "jobs", ["submitter", "status", "priority", "turn"])

@@ -1,4 +1,4 @@
-"""Lists by status read off an index; numbers that count by themselves outlast 2**31 rows on PostgreSQL."""
+"""Read lists by status from an index; give counting columns 64 bits, for more than 2**31 rows on PostgreSQL."""
 
 import sqlalchemy as sa
 from alembic import op

@@ -1,0 +1,71 @@
+"""An attitude from inertial axes as one from LVLH, which itself turns: C(t) = C_inertial(t) R(t)^T, on any orbit.
+
+Inertial axes are those that LVLH has at t = 0 (:mod:`safestart.model.orbit`), so both attitudes agree at t = 0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from safestart.attitude.attitude import Attitude
+from safestart.attitude.quaternion import matrix_of, unit_quaternion
+from safestart.attitude.torque_free import Inertia, TorqueFree
+from safestart.model.orbit import KeplerOrbit
+from safestart.model.scenario import Floats
+
+Reference = Literal["inertial", "lvlh"]
+
+
+@dataclass(frozen=True)
+class InLvlh:
+    """``inertial``, an attitude from inertial axes, seen from LVLH on ``orbit``."""
+
+    inertial: Attitude
+    orbit: KeplerOrbit
+
+    def rotation(self, times: Floats) -> Floats:
+        """(..., 3, 3): LVLH coordinates to body coordinates."""
+        # Times last, as they lie in memory.
+        seen, angle = np.moveaxis(self.inertial.rotation(times), (-2, -1), (0, 1)), self.orbit.turned(times)
+        cosine, sine = np.cos(angle), np.sin(angle)
+        out = np.empty(seen.shape)
+        # The columns of C R^T: R turns about z.
+        out[:, 0] = seen[:, 0] * cosine + seen[:, 1] * sine
+        out[:, 1] = seen[:, 1] * cosine - seen[:, 0] * sine
+        out[:, 2] = seen[:, 2]
+        return np.moveaxis(out, (0, 1), (-2, -1))
+
+    def angular_velocity(self, times: Floats) -> Floats:
+        """(..., 3), rad/s, of the body against LVLH, in body axes."""
+        normal, rate = self.inertial.rotation(times)[..., 2], self.orbit.rate(times)
+        out: Floats = self.inertial.angular_velocity(times) - rate[..., None] * normal
+        return out
+
+    def rate_bounds(self) -> tuple[float, float]:
+        """Bounds on |omega| (rad/s) and |omega dot| (rad/s^2): those of the body and of LVLH together."""
+        fast, changing = self.inertial.rate_bounds()
+        turning, bending = self.orbit.rate_bounds()
+        return fast + turning, changing + bending + fast * turning
+
+
+def torque_free(
+    inertia: Inertia,
+    attitude: tuple[float, float, float, float],
+    body_rate: tuple[float, float, float],
+    reference: Reference,
+    orbit: KeplerOrbit,
+) -> InLvlh:
+    """A torque-free body as LVLH sees it.
+
+    ``attitude`` (scalar first) leads from LVLH to the body at t = 0, where the inertial axes agree with LVLH.
+    ``body_rate`` (rad/s, body axes) is against ``reference``: inertial axes or LVLH at t = 0; the motion is torque-free
+    in inertial space either way. Raises ``InvalidInput`` as :class:`TorqueFree` does.
+    """
+    if reference == "lvlh":
+        normal = matrix_of(np.array(unit_quaternion("attitude", attitude)))[:, 2]
+        w = np.asarray(body_rate, dtype=np.float64) + float(orbit.rate(np.zeros(()))) * normal
+        body_rate = (float(w[0]), float(w[1]), float(w[2]))
+    return InLvlh(TorqueFree(inertia, attitude, body_rate), orbit)
