@@ -26,7 +26,7 @@ def register(app: typer.Typer) -> None:
         """Check a GO or NO_GO proof. Exit code 0: valid, 1: rejected, 2: unreadable."""
         # Imported here, so that other commands do not load ball arithmetic.
         from safestart.proofs.checker import check
-        from safestart.proofs.statement import ProofRejected
+        from safestart.proofs.strict import ProofRejected
         from safestart.proofs.wording import asked
 
         document = _load(proof)

@@ -1,4 +1,4 @@
-"""What a search asks of the thing it watches flights by: one question (``watch.py``) or a family of them."""
+"""The interface that a search uses to watch flights, for one question (``watch.py``) or a family of them."""
 
 from __future__ import annotations
 
@@ -35,4 +35,4 @@ class Watched(Protocol):
         """Local minima and the all-times bound of a flight."""
 
     def __hash__(self) -> int:
-        """By identity: what is kept for a watch is kept for this one."""
+        """By identity: caches hold entries per watch."""

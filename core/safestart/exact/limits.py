@@ -7,7 +7,7 @@ the body frame,
     rest:  M = s [R(-w T)] [-W, I] with W r = w x r, limit the same radius, s = radius / (largest speed at the end);
     speed: M = S [0, I], limit S v_max, S = ``SPEED_SCALE`` seconds.
 
-For every vector p with |p| <= weight, weight (limit - |y|) <= weight limit - p . y: so they enter a proof.
+For every vector p with |p| <= weight, weight (limit - |y|) <= weight limit - p . y; proofs use this bound.
 """
 
 from __future__ import annotations
@@ -58,6 +58,6 @@ def limit_at(question: Question, name: str, time: float) -> Limit:
         matrix[:, :d] = turn
         return Limit(matrix, np.array(question.hold, dtype=np.float64), goal.radius)
     matrix[:, d:] = goal.scale * turn
-    # w x r = w (-y, x): what the body frame itself moves at r.
+    # w x r = w (-y, x): the velocity of the body frame at r.
     matrix[:, 0], matrix[:, 1] = -goal.scale * rate * turn[:, 1], goal.scale * rate * turn[:, 0]
     return Limit(matrix, centre, goal.radius)

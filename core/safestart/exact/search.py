@@ -17,16 +17,23 @@ from safestart.optim.largest_margin import solve
 _FIRST_TIMES = 9
 _FINEST = 2e-7
 _ROUNDS = 40
+<<<<<<< HEAD
 # Rows without weight are dropped when farther from binding than this many brackets, in the first rounds only:
 # dropping for ever could cycle.
+=======
+# Rounding error of a distance relative to the longest possible flight path: some hundred roundings.
+_ROUNDING = 1e-13
+# Rows without weight are dropped when farther from binding than this many brackets, but only in the first rounds,
+# because later drops could cycle.
+>>>>>>> main
 _NO_WEIGHT, _FAR, _DROPPING_ROUNDS = 1e-7, 100.0, 12
-# Rows with some weight share one touch with a minimum this close (in steps). The first guess of a touch lies this part
-# of the way from the weight to the minimum; times closer than a millisecond are the same.
+# A weighted row and a minimum this close (in steps) belong to one touch. The first guess of a touch lies this share of
+# the way from the weight to the minimum; times closer than a millisecond count as equal.
 _SOME_WEIGHT, _TOUCH_STEPS, _FIRST_GUESS, _SAME_S = 1e-4, 10.0, 0.6, 1e-3
 
 
 class Search:
-    """``lower`` and ``upper`` bracket the margin (m); ``thrust`` keeps ``lower``, ``evidence`` shows ``upper``.
+    """``lower`` and ``upper`` bracket the margin (m); ``thrust`` keeps ``lower``, ``evidence`` proves ``upper``.
 
     ``distance_now`` is the smallest margin of the start itself, proved by the multiplier ``now``.
     """
@@ -45,7 +52,7 @@ class Search:
         distances = watch.offsets - watch.normals @ state[: watch.question.dimensions]
         nearest = int(np.argmin(distances))
         self.distance_now, self.now = float(distances[nearest]), Multiplier(0.0, watch.names[nearest], 1.0)
-        # Of the rows at t = 0 the nearest face alone says all; what cannot come below the best it can be, cannot bind.
+        # At t = 0 only the nearest face matters; a row that cannot fall below the best possible margin cannot bind.
         first, pushed = _first(watch)
         distances = first.offset + first.start @ state
         kept = distances - pushed < distances[nearest] + pushed[nearest]
@@ -83,9 +90,9 @@ class Search:
         return np.concatenate([self.constant, constant.ravel()]), np.concatenate([self.rows, rows])
 
     def narrow(self, tolerance: float, *, verdict_only: bool = False, share: float = 0.0) -> str:
-        """Rounds until the bracket is as narrow as asked for; why it is not, in case the verdict stays open.
+        """Run rounds until the bracket is narrow enough; returns the reason if the verdict stays open.
 
-        ``share``: for a NO_GO a bracket narrower than this share of its margin will do.
+        ``share``: for a NO_GO a bracket narrower than this share of its margin is enough.
         """
         fine = tolerance < TOLERANCE
         for _ in range(_ROUNDS):
@@ -118,7 +125,7 @@ class Search:
         return ""
 
     def cut(self, goal: float) -> bool:
-        """Add the local minima that lie below what the program promised; False when there is none."""
+        """Add the local minima below the program's margin; False when there is none."""
         low = self.found.values < self.upper - 0.25 * goal
         times, faces = self.found.times[low], self.found.faces[low]
         if not len(times):
@@ -138,7 +145,7 @@ class Search:
         return True
 
     def _drop(self) -> None:
-        """Let go of rows that carry no weight and are far from binding: the bound does not need them."""
+        """Drop rows without weight that are far from binding: the bound does not need them."""
         distance = self.constant + self.rows @ self.flown.ravel()
         near = distance < self.upper + _FAR * (self.upper - self.found.lowest)
         kept = near | (self.load > _NO_WEIGHT)
@@ -146,10 +153,10 @@ class Search:
         self.constant, self.rows = self.constant[kept], self.rows[kept]
 
     def _touches(self, times: Floats, faces: Ints) -> tuple[Floats, Ints]:
-        """Where the best flight probably touches: a secant on (time of the weight, time of the flight's minimum).
+        """Estimate where the best flight touches: a secant on (time of the weight, time of the flight's minimum).
 
-        Weight on one time makes the flight dip on the other side of the touch, at a distance smaller by a factor that
-        hardly changes: the dips would close in on the touch by about a half each round, the secant does so at once.
+        Weight on one side of the touch makes the flight dip on the other side, closer by a nearly constant factor. The
+        dips alone would halve their distance to the touch each round; the secant jumps to it.
         """
         out_times, out_faces = [], []
         reach, loaded = _TOUCH_STEPS * self.watch.question.dt, self.load > _SOME_WEIGHT
@@ -173,7 +180,7 @@ class Search:
 
 @lru_cache(maxsize=4)
 def _first(watch: Watched) -> tuple[Cuts, Floats]:
-    """Rows of all faces at some times, to begin with, and how far (m) thrust can move each of them."""
+    """The initial rows, all faces at some times, and how far (m) thrust can move each row."""
     question = watch.question
     times, faces = np.linspace(0.0, question.horizon, _FIRST_TIMES), np.arange(len(watch.names))
     cuts = watch.cuts(np.repeat(times, len(faces)), np.tile(faces, len(times)))

@@ -1,10 +1,10 @@
-"""One flight watched at all times: the smallest margin in continuous time, and the rows that cut it off.
+"""One flight watched at all times: the smallest margin in continuous time, and the rows that cut the flight off.
 
 Between two samples h seconds apart a face distance f is enclosed by the cubic through f and f' at both: the distance
 between them is at most h^4 / 384 times the largest |f''''|. The cubic's minimum is closed-form, so a handful of samples
 per interval give a bound that holds at all times (in exact arithmetic; floats add about 1e-12 m).
 
-Everything but the turn of the faces depends on (n, dt, steps, d) alone and is kept; a question adds cosines and sines.
+Everything but the turn of the faces depends only on (n, dt, steps, d) and is cached; a question adds cosines and sines.
 """
 
 from __future__ import annotations
@@ -37,9 +37,9 @@ _MOST_SAMPLES = 200_000
 
 @dataclass(frozen=True, slots=True)
 class Minima:
-    """What a flight's margins come down to: a bound for all times and the local minima (times in s, m).
+    """A flight's margins: a bound for all times and the local minima (times in s, m).
 
-    Where the speed is limited, the index after the last face is its margin.
+    With a speed limit, the index after the last face stands for its margin.
     """
 
     lowest: float

@@ -30,7 +30,7 @@ class Solved:
 
     The weights on the rows that hold m (all but the y of blocks) sum to 1.
 
-    ``thrust`` is None where the solver gave nothing usable; ``status`` is its own word for why.
+    ``thrust`` is None when the solver gave nothing usable; ``status`` is the solver's reason.
     """
 
     status: str
@@ -51,9 +51,9 @@ def solve(
 ) -> Solved:
     """Solve for J rows: ``constant`` (J,) = offset + start . x0 in m, ``thrust`` (J, N d) in m per m/s^2.
 
-    The last ``blocks`` (d + 1) rows are norm limits. What is found proves what it proves at any accuracy; without
-    ``fine`` the solver stops some iterations earlier, some 1e-5 m from the optimum. With another set ``within`` thrusts
-    are a_max times its points, ``dimensions`` its channels.
+    The last ``blocks`` (d + 1) rows are norm limits. The weights prove their bound at any accuracy; without ``fine``
+    the solver stops some iterations earlier, some 1e-5 m from the optimum. With another set ``within`` thrusts are
+    a_max times its points, ``dimensions`` its channels.
     """
     rows, columns = thrust.shape
     count, cone = columns // dimensions, dimensions + 1
@@ -74,7 +74,7 @@ def solve(
     if blocks:
         weights = np.concatenate([weights, found.weights("limits")])
         holds = np.concatenate([np.arange(plain), np.arange(plain, rows, cone)])
-    # What the interior point leaves on rows that do not matter is not carried into the proof, nor into its bound.
+    # Drop the interior point's small weights on irrelevant rows from the proof and its bound.
     least = _LEAST_WEIGHT * max(1.0, float(np.maximum.reduce(weights[holds])))
     weights[:plain][weights[:plain] < least] = 0.0
     if blocks:

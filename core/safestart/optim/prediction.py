@@ -1,8 +1,8 @@
 """Predictions: the states of a linear motion, at nodes and between them, from the start and the thrusts.
 
 The state is (position, velocity), (2 d,), d = 2 (in the plane) or 3; thrusts are held over equal intervals and act in
-the motion's axes. Three forms, by what is unknown: every thrust (:class:`Prediction`), one thrust held throughout
-(:func:`held_through`), or a box of thrusts of a steady motion, where what each adds is all that counts
+the motion's axes. Three forms, by the unknowns: every thrust (:class:`Prediction`), one thrust held throughout
+(:func:`held_through`), or a box of thrusts of a steady motion, which needs only each thrust's effect
 (:func:`responses`).
 """
 
@@ -29,7 +29,7 @@ class Prediction:
 
     ``free`` (N, 2 d, 2 d) and ``driven`` (N, 2 d, N d): x(t_k) = free_k x0 + driven_k u. ``along`` (2 d, (S+1) 2 d) and
     ``held`` (d, (S+1) 2 d): states at S+1 equally spaced times of an interval from its first state and its thrust.
-    They serve for every interval of a ``steady`` motion; otherwise each interval has its own, (N, ...).
+    A ``steady`` motion uses them for every interval; otherwise each interval has its own, (N, ...).
     """
 
     motion: RelativeMotion
@@ -120,9 +120,9 @@ def prediction_of(
     ``dimensions`` 2 leaves out z; raises ``InvalidInput`` where the motion in the plane depends on it.
     """
     steady = motion if isinstance(motion, SteadyMotion) else None
-    # A steady motion is the same from 0 on: one entry serves all, and differences of times lose nothing.
+    # A steady motion does not depend on the start time: one entry serves all, and time differences lose nothing.
     begin = begin if steady is None else 0.0
-    # Kept apart, because the large tables do not depend on the samples.
+    # Cached separately, because the large tables do not depend on the samples.
     key = cast(Hashable, motion)
     free, driven = _nodes(key, begin, dt, steps, dimensions)
     along, held = _within(key, begin, dt, steps if steady is None else 1, dimensions, samples)
@@ -176,7 +176,7 @@ def moved_many(motion: RelativeMotion, begin: Floats, end: Floats, d: int) -> tu
 
 
 def _interval(motion: RelativeMotion, t0: float, t1: float, d: int) -> tuple[Floats, Floats]:
-    """:func:`moved`, unless the plane does not keep to itself."""
+    """:func:`moved`, after checking that the plane is decoupled."""
     plane = _KEPT[2]
     if d == 2 and (motion.transition(t0, t1)[plane][:, [2, 5]].any() or motion.held(t0, t1)[plane, 2].any()):
         raise invalid("dimensions", "3, for a motion that couples the plane with z", d)

@@ -48,7 +48,7 @@ def _distinct(values: list[T]) -> list[T]:
 
 
 DISTINCT = AfterValidator(_distinct)
-"""For a list that names nothing twice."""
+"""For a list without repeated names."""
 Seed = Annotated[int, Field(ge=0, le=2**63 - 1, description="Seed of every random draw.")]
 
 
@@ -95,7 +95,7 @@ class ScenarioInput(WireModel):
 
 
 class Confusion(WireModel):
-    """A certificate (positive: certified) against what is so (actual); shares without a case are null."""
+    """A certificate (positive: certified) against the truth (actual); shares without a case are null."""
 
     tp: int
     fp: int

@@ -1,4 +1,5 @@
-"""Any proof document checked: single starts (``proof.py``), families (``families/``), disturbances (``disturbed/``)."""
+"""Check any proof document: single starts (``single.py``), families (``family.py``), disturbances
+(``disturbed.py``)."""
 
 from __future__ import annotations
 

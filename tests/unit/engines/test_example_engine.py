@@ -9,6 +9,8 @@ import sys
 
 import pytest
 
+pytestmark = pytest.mark.slow
+
 # A process of its own: what a benchmark may ask for is settled when its spec is loaded.
 ASK = """
 import io, json

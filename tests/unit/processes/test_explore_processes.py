@@ -8,7 +8,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from safestart.errors import InvalidInput
-from safestart.exact.decide import Verdict, decide
+from safestart.exact.answer import Verdict
+from safestart.exact.decide import decide
 from safestart.exact.question import Question
 from safestart.model.scenario import Scenario
 from safestart.processes.execute import execute

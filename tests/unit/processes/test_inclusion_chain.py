@@ -8,7 +8,8 @@ import pytest
 from PIL import Image
 
 from safestart.errors import Cancelled, InvalidInput
-from safestart.exact.decide import Verdict, decide
+from safestart.exact.answer import Verdict
+from safestart.exact.decide import decide
 from safestart.exact.question import Goal, Question
 from safestart.model.scenario import Scenario
 from safestart.processes.execute import Execution, execute

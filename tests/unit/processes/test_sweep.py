@@ -149,6 +149,7 @@ def test_the_filter_presets_reach_their_precision() -> None:
     assert mended["precision"] >= 0.99
 
 
+@pytest.mark.slow
 def test_order_and_place_of_the_shards_do_not_matter() -> None:
     asked = {**FILTER, "cases_per_cell": 500, "certificates": ["closed_form"]}
     parsed = process("sweep").parse(asked)

@@ -1,4 +1,4 @@
-"""Picture of an atlas: closed form inside the proved polygon, what is proved out of reach, the strip between."""
+"""Picture of an atlas: the closed form inside the proved GO polygon, the proved NO_GO region, the strip between."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a reader of a benchmark must know to read its numbers rightly."""
+"""Notes that a reader needs to interpret a benchmark's numbers."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from safestart.processes.benchmark.spec import BenchmarkQuestion
 
 
 def notes(inputs: BenchmarkQuestion, rows: Sequence[dict[str, Any]], contained: float | None) -> list[str]:
-    """Sentences about the sets compared, drawn from the result itself."""
+    """Sentences about the compared sets, derived from the result."""
     by_engine = {row["engine"]: row for row in rows}
     out: list[str] = []
     if inputs.set is SetKind.TUBE:

@@ -32,7 +32,7 @@ def problem_of(inputs: BenchmarkQuestion) -> Problem:
 
 
 def run(inputs: BenchmarkQuestion, context: Context) -> ProcessOutput:
-    """Solve, compare, draw. An engine that fails keeps its row, with its code and reason and no measures."""
+    """Solve, compare, draw. A failed engine keeps its row, with its code and reason and without measures."""
     problem = problem_of(inputs)
     results = _solve(problem, inputs, context)
     inside = problem.inside()
@@ -101,7 +101,7 @@ def _row(
 
 
 def _against(short: str, mask: Bools | None, other: Bools | None) -> dict[str, float | None]:
-    """Area ratio, IoU and violation fraction against one reference; None where either has no mask."""
+    """Area ratio, IoU and violation fraction against one reference; None when either has no mask."""
     keys = (f"area_ratio_vs_{short}", f"iou_vs_{short}", f"violation_vs_{short}")
     if mask is None or other is None:
         return dict.fromkeys(keys)

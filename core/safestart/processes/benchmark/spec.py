@@ -41,7 +41,7 @@ class BenchmarkQuestion(ScenarioInput):
         return self
 
     def options(self, engine: str) -> WireModel | None:
-        """The options of an engine, None where it has none."""
+        """The options of an engine; None when it has none."""
         found: WireModel | None = getattr(self, engine, None)
         return found
 
@@ -59,7 +59,7 @@ BenchmarkInputs = create_model(
     **_OPTIONS,
     seed=(Seed, 0),
 )
-"""The question with the options of every engine that has some, under the engine's name."""
+"""The question, with each engine's options, if it has any, under the engine's name."""
 
 
 class PublishedRow(WireModel):

@@ -1,4 +1,4 @@
-"""From which horizon on every certified start is in another set; and the certified starts that cannot stay at all."""
+"""The horizon from which every certified start is in another set, and the certified starts that cannot stay."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ import numpy as np
 from safestart.atlas.survey import build
 from safestart.closed_form.paper import certify_grid
 from safestart.engines.exact import containment_horizon
-from safestart.exact.decide import Verdict, decide
+from safestart.exact.answer import Verdict
+from safestart.exact.decide import decide
 from safestart.model.scenario import Floats, Grid
 from safestart.processes.inclusion_chain.evidence import proof_at
 from safestart.processes.inclusion_chain.regions import question_of, state_at
@@ -21,10 +22,10 @@ _FINE = 401
 
 
 def in_synchronize(inputs: ChainInputs, starts: Floats, context: Context) -> dict[str, Any]:
-    """Smallest horizon at which `synchronize` is GO for every start (P, 2); it may end at any time, so the set grows.
+    """Smallest horizon at which `synchronize` is GO for every start (P, 2); its end is free, so the set grows.
 
-    Each start is asked at the horizon that the ones before it needed, and only one that fails there is bisected; the
-    farthest go first, since they need the longest.
+    Each start is tried at the horizon that the earlier ones needed and bisected only if it fails there; the farthest
+    starts come first, as they need the longest.
     """
     last = round(inputs.containment_up_to_s / DT_S)
     ordered = starts[np.argsort(-np.hypot(starts[:, 0], starts[:, 1]), kind="stable")]

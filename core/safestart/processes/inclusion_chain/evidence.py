@@ -1,4 +1,4 @@
-"""Where one set is not inside another: shares, the worst cell of each pair, and what proves it."""
+"""Where one set is not inside another: shares, the worst cell of each pair, and the proof."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from safestart.engines.base import ResultCode
-from safestart.exact.decide import Verdict, decide
+from safestart.exact.answer import Verdict
+from safestart.exact.decide import decide
 from safestart.exact.prove import proof_of
 from safestart.exact.question import Question
 from safestart.model.metrics import ratio
@@ -39,20 +40,19 @@ _OUT = {
 
 
 def pairs(regions: Mapping[str, Region]) -> dict[str, dict[str, float | None]]:
-    """[inner][outer]: share of the inner cells that are out of the outer set; None for empty or failed sets."""
+    """[inner][outer]: share of the inner cells outside the outer set; None for empty or failed sets."""
     return {a: {b: fraction(one, other) for b, other in regions.items()} for a, one in regions.items()}
 
 
 def fraction(inner: Region, outer: Region) -> float | None:
-    """Cells known in the inner and known out of the outer set, as a share of the inner; undecided cells count as no
-    violation."""
+    """Share of the inner set's cells that are known to be outside the outer set; undecided cells do not count."""
     if inner.code is not ResultCode.OK or outer.code is not ResultCode.OK:
         return None
     return ratio(int((inner.inside & outer.outside).sum()), int(inner.inside.sum()))
 
 
 def counter_example(inner: Region, outer: Region, points: Floats) -> dict[str, Any] | None:
-    """The cell of the inner set farthest out of the outer one, both margins, a proof; None where there is none."""
+    """The cell of the inner set farthest outside the outer one, both margins, a proof; None without such a cell."""
     cells = inner.inside & outer.outside
     if not cells.any():
         return None

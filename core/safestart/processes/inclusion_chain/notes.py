@@ -1,4 +1,4 @@
-"""What a reader of a chain must know to read its table rightly."""
+"""Notes that a reader needs to interpret a chain's table."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from safestart.processes.inclusion_chain.spec import ChainInputs
 
 
 def notes(inputs: ChainInputs, regions: Mapping[str, Region], document: Mapping[str, Any]) -> list[str]:
-    """Sentences about the sets, drawn from the result itself."""
+    """Sentences about the sets, derived from the result."""
     out = []
     for link in document["chain"]:
         share = link["violation_fraction"]

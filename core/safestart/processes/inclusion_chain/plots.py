@@ -30,7 +30,7 @@ _LABELS = {
     "hj_position": "S_HJpos (tube)",
     "exact_position": "position, exact at T",
 }
-# Okabe and Ito: told apart without colour vision, and by the line.
+# Colours of Okabe and Ito, distinct for colour-blind readers; line styles differ too.
 _STYLES: dict[str, tuple[str, LineStyle]] = {
     "hj_position": ("#999999", "-"),
     "exact_position": (engine_spec("exact").colour, ":"),

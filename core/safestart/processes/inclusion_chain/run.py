@@ -1,4 +1,4 @@
-"""Run inclusion-chain: compute the sets, compare every pair, show what contradicts the chain."""
+"""Run inclusion-chain: compute the sets, compare every pair, show where they contradict the chain."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ from safestart.processes.inclusion_chain.spec import CHAIN, ChainInputs
 from safestart.processes.plotting import npz
 from safestart.runtime.progress import Context
 
-# Shares of the progress bar, roughly the share of the time.
+# Shares of the progress bar, roughly those of the time.
 _WEIGHTS = {"hj_match": 20.0, "hj_position": 20.0, "synchronize": 40.0}
 _CONTAINMENT, _FINISH = 20.0, 4.0
 
 
 def run(inputs: ChainInputs, context: Context) -> ProcessOutput:
-    """Sets, table, counter-examples, containment, pictures. A set that fails keeps its row and has no measures."""
+    """Sets, table, counter-examples, containment, pictures. A failed set keeps its row, without measures."""
     scenario, grid = inputs.scenario(), inputs.grid.grid()
     points = grid.points(scenario.corridor)
     corridor = corridor_of(scenario.corridor).contains(points)

@@ -13,7 +13,7 @@ from safestart.model.scenario import Floats
 from safestart.processes.sweep.cases import Cases
 from safestart.processes.wire import DT_S
 
-# From here on an atlas, which costs as much as some hundred answers, is the cheaper way to the same verdicts.
+# For at least this many starts an atlas, which costs some hundred answers, gives the same verdicts for less.
 WORTH_AN_ATLAS = 400
 
 GO, NO_GO, UNDECIDED, UNASKED = 1, 0, -1, -2
@@ -26,7 +26,8 @@ def closed_form(cases: Cases) -> Verdicts:
 
 
 def exact(cases: Cases, steps: int, most: int) -> Verdicts:
-    """Verdict for the first ``most`` starts; the others are UNASKED. What an atlas leaves open is solved singly."""
+    """Verdict for the first ``most`` starts; the others are UNASKED. Starts that an atlas leaves open are solved
+    singly."""
     question = Question(cases.scenario, DT_S, steps)
     out: Verdicts = np.full(len(cases.points), UNASKED, dtype=np.int8)
     out[:most] = UNDECIDED

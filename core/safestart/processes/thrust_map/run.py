@@ -9,7 +9,8 @@ import numpy as np
 
 from safestart.attitude.body_frame import body_to_lvlh
 from safestart.closed_form.paper import certify, certify_grid
-from safestart.exact.decide import Verdict, decide
+from safestart.exact.answer import Verdict
+from safestart.exact.decide import decide
 from safestart.exact.question import Question
 from safestart.model.scenario import MAX_ACCELERATION, MIN_ACCELERATION, Chaser, Grid, Rest, Scenario, Target
 from safestart.processes.base import ProcessOutput
@@ -49,7 +50,7 @@ def _scenario(inputs: ThrustMapInputs, rate: float, thrust: float) -> Scenario:
 
 
 def _required(inputs: ThrustMapInputs, rate: float) -> float | None:
-    """Bisection on the logarithm: more thrust takes away neither the certificate nor the proof of a flight."""
+    """Bisection on the logarithm: more thrust never removes a certificate or the proof of a flight."""
     start = np.array([[0.0, inputs.stand_off_m]])
 
     def certified(thrust: float) -> bool:
@@ -62,8 +63,8 @@ def _required(inputs: ThrustMapInputs, rate: float) -> float | None:
         return decide(question, np.concatenate([at, velocity]), verdict_only=True).verdict is Verdict.GO
 
     found = _least(certified, MIN_ACCELERATION, 1e-6)
-    # The paper's conditions know neither the mean motion nor a narrow corridor's geometry: what they call enough may
-    # be proved too little. From there on the proof decides.
+    # The paper's conditions ignore the mean motion and a narrow corridor's geometry, so a thrust that they accept may
+    # be proved too small. Above it the proof decides.
     return found if found is None or stays(found) else _least(stays, found, 1e-4)
 
 
@@ -73,7 +74,8 @@ def _turning(inputs: ThrustMapInputs, rate: float) -> float:
 
 
 def _least(enough: Callable[[float], bool], low: float, tolerance: float) -> float | None:
-    """Smallest thrust from ``low`` on that is enough, from above to a relative ``tolerance``; None: none is."""
+    """Smallest sufficient thrust from ``low`` on, rounded up within a relative ``tolerance``; None: no thrust
+    suffices."""
     if enough(low):
         return low
     high = MAX_ACCELERATION

@@ -11,7 +11,7 @@ from safestart.processes.views import Column, Rows
 from safestart.processes.wire import CorridorInput
 
 PROVED_FOR_S = 60.0
-"""How long a start that the required thrust is named for is proved to stay, s."""
+"""The required thrust is proved to keep its start in the corridor for this long, s."""
 
 
 class ThrustMapInputs(WireModel):

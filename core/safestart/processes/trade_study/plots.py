@@ -21,7 +21,7 @@ _MOST_WRITTEN = 12
 
 
 def heat_maps(inputs: TradeStudyInputs, points: Sequence[Mapping[str, Any]]) -> Artifact:
-    """Four maps over tumble rate (across) and thrust (up); grey where there is no value."""
+    """Four maps over tumble rate (across) and thrust (up); grey without a value."""
     rates, thrusts = inputs.omega_t_deg_s, inputs.a_max_m_s2
     drawing = figure(2.0 * (1.9 + 0.52 * min(len(rates), 14)), 2.0 * (1.2 + 0.36 * min(len(thrusts), 14)))
     written = max(len(rates), len(thrusts)) <= _MOST_WRITTEN
