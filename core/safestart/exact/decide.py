@@ -43,13 +43,8 @@ def decide(
     return answer_of(search, search.narrow(tolerance, verdict_only=verdict_only))
 
 
-<<<<<<< HEAD
 def outside(search: Search) -> Answer:
-    """NO_GO at once for a start outside the corridor: the distance at t = 0 is what it is, whatever the thrust."""
-=======
-def _outside(search: Search) -> Answer:
     """NO_GO at once for a start outside the corridor: thrust cannot change the distance at t = 0."""
->>>>>>> main
     question = search.watch.question
     still = np.zeros((question.steps, question.channels))
     worst = search.distance_now

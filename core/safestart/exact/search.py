@@ -17,15 +17,8 @@ from safestart.optim.largest_margin import solve
 _FIRST_TIMES = 9
 _FINEST = 2e-7
 _ROUNDS = 40
-<<<<<<< HEAD
-# Rows without weight are dropped when farther from binding than this many brackets, in the first rounds only:
-# dropping for ever could cycle.
-=======
-# Rounding error of a distance relative to the longest possible flight path: some hundred roundings.
-_ROUNDING = 1e-13
 # Rows without weight are dropped when farther from binding than this many brackets, but only in the first rounds,
 # because later drops could cycle.
->>>>>>> main
 _NO_WEIGHT, _FAR, _DROPPING_ROUNDS = 1e-7, 100.0, 12
 # A weighted row and a minimum this close (in steps) belong to one touch. The first guess of a touch lies this share of
 # the way from the weight to the minimum; times closer than a millisecond count as equal.
