@@ -10,9 +10,9 @@ from typing import Literal
 
 import numpy as np
 
-from safestart.attitude.attitude import Attitude
 from safestart.attitude.quaternion import matrix_of, unit_quaternion
 from safestart.attitude.torque_free import Inertia, TorqueFree
+from safestart.attitude.turning import Bounds, SmoothAttitude, of_rates, product
 from safestart.model.orbit import KeplerOrbit
 from safestart.model.scenario import Floats
 
@@ -23,7 +23,7 @@ Reference = Literal["inertial", "lvlh"]
 class InLvlh:
     """``inertial``, an attitude relative to inertial axes, expressed relative to LVLH on ``orbit``."""
 
-    inertial: Attitude
+    inertial: SmoothAttitude
     orbit: KeplerOrbit
 
     def rotation(self, times: Floats) -> Floats:
@@ -49,6 +49,15 @@ class InLvlh:
         fast, changing = self.inertial.rate_bounds()
         turning, bending = self.orbit.rate_bounds()
         return fast + turning, changing + bending + fast * turning
+
+    @property
+    def knots(self) -> Floats:
+        """Those of the inertial attitude."""
+        return self.inertial.knots
+
+    def turn_bounds(self) -> Bounds:
+        """Those of the body and of LVLH together."""
+        return product(of_rates(*self.orbit.turn_bounds()), self.inertial.turn_bounds())
 
 
 def torque_free(

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from safestart.attitude.turning import Bounds, of_rates
 from safestart.errors import invalid
 from safestart.model.scenario import MAX_TUMBLE_RATE, Floats, Target, number
 
@@ -64,6 +65,15 @@ class Spin:
     def rate_bounds(self) -> tuple[float, float]:
         """|rate| and 0."""
         return abs(self.rate), 0.0
+
+    @property
+    def knots(self) -> Floats:
+        """None."""
+        return np.empty(0)
+
+    def turn_bounds(self) -> Bounds:
+        """Powers of the rate."""
+        return of_rates(abs(self.rate), 0.0, 0.0, 0.0)
 
 
 def spin_of(target: Target) -> Spin:

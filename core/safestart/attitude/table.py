@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from safestart.attitude.quaternion import conjugate, matrix_of, product, rotation_vector, unit_quaternion
+from safestart.attitude.turning import Bounds, of_rates
 from safestart.errors import invalid
 from safestart.model.scenario import MAX_TUMBLE_RATE, Floats
 
@@ -64,6 +65,10 @@ class Table:
     def knots(self) -> Floats:
         """Times (K,), s, at which the angular velocity jumps."""
         return self._at
+
+    def turn_bounds(self) -> Bounds:
+        """Powers of the largest rate: between two entries the body turns steadily."""
+        return of_rates(self.rate_bounds()[0], 0.0, 0.0, 0.0)
 
     def reaches(self, end: float) -> None:
         """Raise ``InvalidInput`` unless the table reaches ``end`` seconds."""

@@ -26,6 +26,7 @@ import numpy as np
 
 from safestart.attitude.elliptic import Jacobi, ThetaArgument, first_kind
 from safestart.attitude.quaternion import matrix_of, unit_quaternion
+from safestart.attitude.turning import Bounds, of_rates
 from safestart.errors import invalid
 from safestart.model.scenario import MAX_TUMBLE_RATE, Floats
 
@@ -81,6 +82,21 @@ class TorqueFree:
         """The largest angular velocity (rad/s) of all times, and a bound on its derivative (rad/s^2)."""
         most: tuple[float, float] = self._course.bounds
         return most
+
+    @property
+    def knots(self) -> Floats:
+        """None."""
+        return np.empty(0)
+
+    def turn_bounds(self) -> Bounds:
+        """From the largest angular velocity: Euler's equations are w' = Q(w, w) with |Q(a, b)| <= |a| |b| / sqrt 2.
+
+        No moment exceeds the sum of the others, so no coefficient of the bilinear Q exceeds 1.
+        """
+        most, changing = self.rate_bounds()
+        first = min(changing, most**2 / math.sqrt(2.0))
+        second = math.sqrt(2.0) * first * most
+        return of_rates(most, first, second, math.sqrt(2.0) * (second * most + first * first))
 
 
 class _Steady:

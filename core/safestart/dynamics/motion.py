@@ -66,6 +66,15 @@ class SteadyMotion(RelativeMotion, Protocol):
         ...
 
 
+@runtime_checkable
+class ManyMoves(RelativeMotion, Protocol):
+    """A linear motion that gives the matrices of many intervals at once."""
+
+    def moves(self, begin: Floats, end: Floats) -> tuple[Floats, Floats]:
+        """``transition`` (J, 6, 6) and ``held`` (J, 6, 3) from ``begin`` (J,) to ``end`` (J,), s."""
+        ...
+
+
 class Drift:
     """A chaser in a linear motion; every state comes directly from the interval's first state."""
 

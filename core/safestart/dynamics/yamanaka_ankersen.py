@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from safestart.dynamics.elliptic_series import LARGEST_TURN, series
-from safestart.dynamics.motion import RelativeMotion
+from safestart.dynamics.motion import ManyMoves
 from safestart.model.orbit import KeplerOrbit
 from safestart.model.scenario import Floats
 
@@ -31,7 +31,7 @@ _PANEL = 0.3
 
 
 @dataclass(frozen=True)
-class YamanakaAnkersen(RelativeMotion):
+class YamanakaAnkersen(ManyMoves):
     """The motion near a target on ``orbit``; on a circular one it is CWH."""
 
     orbit: KeplerOrbit

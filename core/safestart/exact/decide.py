@@ -39,20 +39,21 @@ def decide(
         return synchronize(watch_of(question), state, tolerance, verdict_only=verdict_only)
     search = Search(watch_of(question), state)
     if search.distance_now < -GUARD:
-        return _outside(search)
-    return _answer(search, search.narrow(tolerance, verdict_only=verdict_only))
+        return outside(search)
+    return answer_of(search, search.narrow(tolerance, verdict_only=verdict_only))
 
 
-def _outside(search: Search) -> Answer:
+def outside(search: Search) -> Answer:
     """NO_GO at once for a start outside the corridor: thrust cannot change the distance at t = 0."""
     question = search.watch.question
-    still = np.zeros((question.steps, question.dimensions))
+    still = np.zeros((question.steps, question.channels))
     worst = search.distance_now
     lower = min(worst, search.watch.minima(search.state, still).lowest)
     return Answer(Verdict.NO_GO, worst, lower, worst, None, (search.now,), 0)
 
 
-def _answer(search: Search, reason: str) -> Answer:
+def answer_of(search: Search, reason: str) -> Answer:
+    """Verdict, bracket and evidence of a search that has ended, for ``reason`` where it is open."""
     lower, upper, rounds = search.lower, search.upper, search.rounds
     if lower > GUARD:
         return Answer(Verdict.GO, lower, lower, upper, search.thrust, (), rounds)

@@ -39,13 +39,19 @@ class Limit:
         return self.limit - math.sqrt(float(y @ y))
 
 
+def speed_limit(most: float, d: int) -> Limit:
+    """The limit ``speed``, ``most`` m/s, in ``d`` dimensions."""
+    matrix = np.zeros((d, 2 * d))
+    matrix[:, d:] = SPEED_SCALE * np.eye(d)
+    return Limit(matrix, np.zeros(d), SPEED_SCALE * most)
+
+
 def limit_at(question: Question, name: str, time: float) -> Limit:
     """The limit ``hold``, ``rest`` or ``speed`` of a question at a time in seconds."""
     d, rate, goal = question.dimensions, question.scenario.target.tumble_rate, question.goal
     matrix, centre = np.zeros((d, 2 * d)), np.zeros(d)
     if name == SPEED or goal is None:
-        matrix[:, d:] = SPEED_SCALE * np.eye(d)
-        return Limit(matrix, centre, SPEED_SCALE * float(question.speed_limit or 0.0))
+        return speed_limit(float(question.speed_limit or 0.0), d)
     turn = np.eye(d)
     turn[:2, :2] = rotation(rate * time).T
     if name == "hold":

@@ -22,6 +22,7 @@ import numpy as np
 from safestart.constraints.corridor import corridor_of
 from safestart.errors import invalid
 from safestart.model.scenario import MAX_RANGE, Scenario, number
+from safestart.optim.thrust_shapes import BALL, UnitSet
 
 MAX_STEPS = 400
 MAX_TIME = 3600.0
@@ -100,6 +101,26 @@ class Question:
     def plain(self) -> bool:
         """Whether this is `stay` without a speed limit, so that only faces count."""
         return self.goal is None and self.speed_limit is None
+
+    @property
+    def thrust_scale(self) -> float:
+        """a_max: thrusts are this many times a point of ``thrust_set``, m/s^2."""
+        return self.scenario.chaser.max_acceleration
+
+    @property
+    def thrust_set(self) -> UnitSet:
+        """The unit ball."""
+        return BALL
+
+    @property
+    def channels(self) -> int:
+        """Numbers that make one thrust."""
+        return self.dimensions
+
+    @property
+    def largest_thrust(self) -> float:
+        """Largest size of a thrust, m/s^2."""
+        return self.scenario.chaser.max_acceleration
 
     @property
     def hold(self) -> tuple[float, ...]:

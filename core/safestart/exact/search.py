@@ -9,8 +9,7 @@ import numpy as np
 
 from safestart.exact.answer import GUARD, TOLERANCE, Evidence, Multiplier
 from safestart.exact.cut_source import Watched
-from safestart.exact.limits import AT_END, SPEED, limit_at
-from safestart.exact.norm_rows import blocks
+from safestart.exact.limits import AT_END, SPEED, speed_limit
 from safestart.exact.watch import Cuts, Ints
 from safestart.model.scenario import Floats
 from safestart.optim.largest_margin import solve
@@ -18,8 +17,6 @@ from safestart.optim.largest_margin import solve
 _FIRST_TIMES = 9
 _FINEST = 2e-7
 _ROUNDS = 40
-# Rounding error of a distance relative to the longest possible flight path: some hundred roundings.
-_ROUNDING = 1e-13
 # Rows without weight are dropped when farther from binding than this many brackets, but only in the first rounds,
 # because later drops could cycle.
 _NO_WEIGHT, _FAR, _DROPPING_ROUNDS = 1e-7, 100.0, 12
@@ -40,9 +37,9 @@ class Search:
         self.thrust: Floats | None = None
         question = watch.question
         speed = float(np.abs(state[question.dimensions :]).sum())
-        push = question.scenario.chaser.max_acceleration * question.horizon
+        push = question.largest_thrust * question.horizon
         reach = float(np.abs(state[: question.dimensions]).sum()) + (speed + push) * question.horizon
-        self.rounding = _ROUNDING * reach
+        self.rounding = watch.rounding * reach
         self.dips: dict[int, tuple[float, float]] = {}
         self.evidence: Evidence | None = None
         distances = watch.offsets - watch.normals @ state[: watch.question.dimensions]
@@ -55,27 +52,27 @@ class Search:
         kept[: len(watch.names)] = np.arange(len(watch.names)) == nearest
         self.times, self.faces, self.rows = first.times[kept], first.faces[kept], first.thrust[kept]
         self.constant = distances[kept]
-        self.blocks = blocks(question, watch.prediction, (), np.empty(0))
+        self.blocks = watch.blocks((), np.empty(0))
         if question.goal is not None:
-            self.rounding += _ROUNDING * question.goal.scale * (speed + push)
+            self.rounding += watch.rounding * question.goal.scale * (speed + push)
             self._limit(AT_END, np.full(len(AT_END), question.horizon))
         if question.speed_limit is not None:
-            self._limit_speed(first.times[:: len(watch.names)])
+            self._limit_speed(question.speed_limit, first.times[:: len(watch.names)])
 
-    def _limit_speed(self, times: Floats) -> None:
+    def _limit_speed(self, most: float, times: Floats) -> None:
         """Rows for the speed at the first times, and how far below its limit the start is."""
-        limit = limit_at(self.watch.question, SPEED, 0.0)
+        limit, rounding = speed_limit(most, self.watch.question.dimensions), self.watch.rounding
         left = limit.left(self.state)
-        self.rounding += _ROUNDING * limit.limit
+        self.rounding += rounding * limit.limit
         self._limit((SPEED,) * len(times), times)
         if left < self.distance_now:
             y = limit.matrix @ self.state
-            pull = (1.0 - _ROUNDING) * y / max(math.sqrt(float(y @ y)), _ROUNDING)
+            pull = (1.0 - rounding) * y / max(math.sqrt(float(y @ y)), rounding)
             self.distance_now = limit.limit - float(pull @ y)
             self.now = Multiplier(0.0, SPEED, 1.0, tuple(pull.tolist()))
 
     def _limit(self, names: tuple[str, ...], times: Floats) -> None:
-        self.blocks = self.blocks.and_more(blocks(self.watch.question, self.watch.prediction, names, times))
+        self.blocks = self.blocks.and_more(self.watch.blocks(names, times))
 
     def _stacked(self) -> tuple[Floats, Floats]:
         """Constant and thrust of all rows, those of the blocks last."""
@@ -107,8 +104,8 @@ class Search:
         question = self.watch.question
         self.rounds += 1
         constant, rows = self._stacked()
-        a_max, norms = question.scenario.chaser.max_acceleration, len(self.blocks.names)
-        found = solve(constant, rows, a_max, question.dimensions, norms, fine=fine)
+        scale, norms, within = question.thrust_scale, len(self.blocks.names), question.thrust_set
+        found = solve(constant, rows, scale, question.channels, norms, fine=fine, within=within)
         if found.thrust is None or found.weights is None:
             return f"the solver stopped with {found.status} in round {self.rounds}"
         self.flown, self.load = found.thrust, found.weights[: len(self.times)]
@@ -180,5 +177,5 @@ def _first(watch: Watched) -> tuple[Cuts, Floats]:
     question = watch.question
     times, faces = np.linspace(0.0, question.horizon, _FIRST_TIMES), np.arange(len(watch.names))
     cuts = watch.cuts(np.repeat(times, len(faces)), np.tile(faces, len(times)))
-    pushed = np.square(cuts.thrust.reshape(len(cuts.times), -1, question.dimensions)).sum(axis=-1)
-    return cuts, question.scenario.chaser.max_acceleration * np.sqrt(pushed).sum(axis=-1)
+    by_interval = cuts.thrust.reshape(len(cuts.times), -1, question.channels)
+    return cuts, question.thrust_scale * question.thrust_set.support(by_interval)

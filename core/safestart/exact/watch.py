@@ -10,6 +10,7 @@ Everything but the turn of the faces depends only on (n, dt, steps, d) and is ca
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -22,6 +23,7 @@ from safestart.constraints.cubic import dips
 from safestart.dynamics.cwh import Cwh
 from safestart.exact import speed
 from safestart.exact.limits import AT_END, limit_at
+from safestart.exact.norm_rows import Blocks, blocks
 from safestart.exact.question import Question
 from safestart.model.scenario import Floats
 from safestart.optim.prediction import prediction_of
@@ -62,6 +64,9 @@ class Watch:
 
     ``phase`` is the angle (rad) by which the corridor has turned at the question's t = 0.
     """
+
+    rounding = 1e-13
+    """Some hundred roundings."""
 
     def __init__(self, question: Question, phase: float = 0.0) -> None:
         target = question.scenario.target
@@ -131,6 +136,10 @@ class Watch:
         normal[:, 0], normal[:, 1] = -x, -y
         start, thrust = self.prediction.position_rows(times, normal)
         return Cuts(times, faces, self.offsets[faces], start, thrust)
+
+    def blocks(self, names: Sequence[str], times: Floats) -> Blocks:
+        """Rows of the norm limits ``names`` (B) at ``times`` (B,)."""
+        return blocks(self.question, self.prediction, names, times)
 
     def along_normals(self, flown: Floats) -> tuple[Floats, Floats]:
         """-normal . position in the body frame, (N, S+1, F) in m, and its rate times the sample's length.

@@ -8,12 +8,14 @@ flight is watched from every corner of the box at every node; ``between.py`` bou
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 
 from safestart.constraints.cubic import dips
+from safestart.exact.norm_rows import Blocks, blocks
 from safestart.exact.watch import Cuts, Ints, Minima, Watch, watch_of
 from safestart.families.between import chord_gap, half_angle, nodes, reach, turned
 from safestart.families.members import Family, signs
@@ -25,6 +27,8 @@ MOST_NODES, MOST_VALUES = 128, 4_000_000
 
 class Hostile:
     """A family as one watch: ``names`` and rows node by node; ``question`` is the one with the least thrust."""
+
+    rounding = Watch.rounding
 
     def __init__(self, family: Family, rates: tuple[float, ...], motions: tuple[float, ...]) -> None:
         self.family, self.rates, self.motions = family, rates, motions
@@ -54,6 +58,10 @@ class Hostile:
             start[rows], thrust[rows] = cut.start, cut.thrust
             offset[rows] = cut.offset - np.abs(cut.start) @ self.half
         return Cuts(times, faces, offset, start, thrust)
+
+    def blocks(self, names: Sequence[str], times: Floats) -> Blocks:
+        """Rows of the norm limits ``names`` (B) at ``times`` (B,)."""
+        return blocks(self.question, self.prediction, names, times)
 
     def minima(self, state: Floats, thrust: Floats) -> Minima:
         """Local minima at the nodes; ``lowest`` bounds the distances of every member where it is positive."""

@@ -17,7 +17,8 @@ import numpy as np
 
 from safestart.model.scenario import Floats
 from safestart.optim.cone_program import ConeProgram, Ints
-from safestart.optim.thrust_ball import INSIDE, bound, into_balls, keep_in_balls
+from safestart.optim.thrust_ball import INSIDE
+from safestart.optim.thrust_shapes import BALL, UnitSet
 
 _LEAST_WEIGHT = 1e-10
 _USABLE = ("Solved", "AlmostSolved", "InsufficientProgress", "MaxIterations")
@@ -39,12 +40,20 @@ class Solved:
 
 
 def solve(
-    constant: Floats, thrust: Floats, a_max: float, dimensions: int, blocks: int = 0, *, fine: bool = True
+    constant: Floats,
+    thrust: Floats,
+    a_max: float,
+    dimensions: int,
+    blocks: int = 0,
+    *,
+    fine: bool = True,
+    within: UnitSet = BALL,
 ) -> Solved:
     """Solve for J rows: ``constant`` (J,) = offset + start . x0 in m, ``thrust`` (J, N d) in m per m/s^2.
 
     The last ``blocks`` (d + 1) rows are norm limits. The weights prove their bound at any accuracy; without ``fine``
-    the solver stops some iterations earlier, some 1e-5 m from the optimum.
+    the solver stops some iterations earlier, some 1e-5 m from the optimum. With another set ``within`` thrusts are
+    a_max times its points, ``dimensions`` its channels.
     """
     rows, columns = thrust.shape
     count, cone = columns // dimensions, dimensions + 1
@@ -54,7 +63,7 @@ def solve(
     program.rows("faces", constant[:plain], thrust=scaled[:plain], margin=-1.0)
     if blocks:
         program.norms("limits", constant[plain:].reshape(blocks, cone), thrust=scaled[plain:], margin=-1.0)
-    keep_in_balls(program, count, dimensions)
+    within.keep(program, count, dimensions)
     program.minimise(margin=-1.0)
     found = program.solve(fine=fine)
     if found.status not in _USABLE:
@@ -74,8 +83,8 @@ def solve(
     if not (math.isfinite(np.add.reduce(w, axis=None)) and 0.0 < total < math.inf):
         return Solved(found.status)
     weights /= total
-    bounded = bound(constant, thrust, weights, a_max, dimensions)
-    return Solved(found.status, a_max * into_balls(w), weights, bounded)
+    bounded = within.bound(constant, thrust, weights, a_max, dimensions)
+    return Solved(found.status, a_max * within.repaired(w), weights, bounded)
 
 
 def _into_cone(weights: Floats, least: float) -> None:
