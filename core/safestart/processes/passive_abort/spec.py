@@ -34,8 +34,8 @@ class PassiveAbortInputs(WireModel):
     failures: FailuresInput = Field(default_factory=lambda: FailuresInput.model_validate({}))
     model: ModelName = Field(
         "linear",
-        description="Motion that the proof speaks about: linear (CWH), or nonlinear (two point masses): what CWH leaves "
-        "out is bounded by Lagrange's remainder. Drifts that go many kilometres away are out of its reach.",
+        description="Motion that the proof speaks about: linear (CWH) or nonlinear (two point masses): what CWH "
+        "leaves out is bounded by Lagrange's remainder. Drifts that go many kilometres away are out of its reach.",
     )
     error_level: bool = Field(
         True, description="Also find the greatest multiple of the errors that is proved."
