@@ -8,6 +8,14 @@ setup:
 test *ARGS:
     python3 -m uv run --all-packages pytest {{ARGS}}
 
+# unit and reference tests without the slow ones, on every core
+test-quick *ARGS:
+    python3 -m uv run --all-packages pytest tests/unit tests/reference -m "not slow" -n auto --durations=0 --durations-min=5 {{ARGS}}
+
+# every test, with the lines and branches that none of them reaches
+coverage:
+    python3 -m uv run --all-packages pytest --cov --cov-report=term:skip-covered
+
 # style, types, import contracts, drift
 lint:
     python3 -m uv run --all-packages ruff check .

@@ -24,7 +24,8 @@ from safestart.closed_form.members import Faces
 from safestart.closed_form.paper import certify as paper_certify
 from safestart.closed_form.paper import certify_grid as paper_grid
 from safestart.dynamics.cwh import input_matrix, transition_matrix
-from safestart.exact.decide import Verdict, decide
+from safestart.exact.answer import Verdict
+from safestart.exact.decide import decide
 from safestart.exact.question import MAX_STEPS, Question
 from safestart.exact.watch import watch_of
 from safestart.model.scenario import MAX_RANGE, Chaser, CorridorShape, Floats, Grid, Rest, Scenario, Target

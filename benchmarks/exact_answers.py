@@ -20,7 +20,8 @@ import numpy as np
 from benchmarks.peers.dense_lp import DenseLP
 from benchmarks.timing import once
 from safestart.closed_form.paper import certify
-from safestart.exact.decide import Answer, Verdict, decide
+from safestart.exact.answer import Answer, Verdict
+from safestart.exact.decide import decide
 from safestart.exact.prove import proof_of
 from safestart.exact.question import Question
 from safestart.model.scenario import Floats, Scenario

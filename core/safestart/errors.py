@@ -100,6 +100,13 @@ class UnfitResult(SafestartError):
     title = "The result does not fit its description"
 
 
+class Altered(SafestartError):
+    """A stored result whose SHA-256 differs from the one stored with it; the service does not return it."""
+
+    slug = "altered"
+    title = "The stored result was altered"
+
+
 class Unavailable(SafestartError):
     """Something this request needs (database, optional package, port) is missing."""
 

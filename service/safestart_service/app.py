@@ -1,4 +1,4 @@
-"""The application: routes, problem documents, limits, metrics, and the store for as long as it lives."""
+"""The application: routes, problem documents, limits, metrics, and the store during its lifetime."""
 
 from __future__ import annotations
 
@@ -37,21 +37,22 @@ if TYPE_CHECKING:
 
 TITLE = "safestart"
 DESCRIPTION = (
-    "May a chaser start its approach to a tumbling target? Instant closed-form certificates, and a queue of "
+    "May a chaser start its approach to a tumbling target? No GO without a proof, in microseconds where a "
+    "certificate in closed form decides, and a queue of "
     "reachability engines that check them. OGC API - Processes 1.0; every error is an RFC 9457 problem document."
 )
 
 log = logging.getLogger("safestart.service")
-# While the database is away there is nothing to do but ask again.
+# Time between retries while the database is unavailable.
 AWAY_S = 2.0
 
 
 def create_app(settings: Settings | None = None, database: Database | None = None) -> FastAPI:
     """Build the application.
 
-    Without ``database`` it opens the one of the settings. It is migrated at start; one that is away then is reported by
-    ``/readyz`` and migrated as soon as it is there, and the instant answers work all the same. Raises
-    ``InvalidInput`` for a URL that is none.
+    Without ``database`` it opens the one of the settings. It migrates the database at start. While the database is
+    unavailable, ``/readyz`` reports it and instant answers work; the migration follows when it is back. Raises
+    ``InvalidInput`` for an invalid URL.
     """
     found = Services(settings or process_settings(), database)
 
@@ -79,7 +80,7 @@ def create_app(settings: Settings | None = None, database: Database | None = Non
     attach(app, found)
     problems.install(app)
     openapi.install(app)
-    if deprecation.NOTICES:  # it would cost every answer something
+    if deprecation.NOTICES:  # it would slow every answer down
         app.add_middleware(deprecation.Deprecation)
     app.add_middleware(MetricsMiddleware, metrics=found.metrics)
     app.add_middleware(
@@ -87,8 +88,9 @@ def create_app(settings: Settings | None = None, database: Database | None = Non
         max_body_bytes=found.settings.max_body_bytes,
         access=found.access,
         timeout_s=found.settings.request_timeout_s,
+        refused=found.metrics.refused,
     )
-    # Routes are tried in order, and an included router costs more than a route: the instant verdict comes first.
+    # Routes are tried in order and an included router costs more than a route, so the instant verdict comes first.
     app.router.routes.extend(go_no_go.one.routes)
     groups = (
         go_no_go.proof,

@@ -60,7 +60,7 @@ def _serve(overrides: dict[str, object]) -> None:
     make_room(chosen.max_connections)
     listener = listen(family, address, chosen.host)
     try:
-        # Imported when it is sure that they are needed: a wrong argument is answered at once.
+        # Imported only now, so that a wrong argument is answered at once.
         import uvicorn
 
         from safestart.store.database import Database
@@ -69,25 +69,27 @@ def _serve(overrides: dict[str, object]) -> None:
 
         database = Database(chosen.url())
         configure(chosen.log_format)
-        with suppress(Away):  # the application waits for it, and says so
+        with suppress(Away):  # the application waits for it and reports that
             database.migrate()
+        app = create_app(chosen, database)
+        refused = app.state.services.metrics.refused
         config = uvicorn.Config(
-            create_app(chosen, database),
-            http=cast(Any, partial(Protocol, places=Places(chosen.max_connections))),
+            app,
+            http=cast(Any, partial(Protocol, places=Places(chosen.max_connections), refused=refused)),
             ws="none",
             access_log=False,
             log_config=None,
-            log_level="error",  # of what a peer does wrong, our own words are enough
+            log_level="error",  # our own messages about a peer's mistakes are enough
             server_header=False,
-            timeout_graceful_shutdown=3,  # event streams never end by themselves
+            timeout_graceful_shutdown=3,  # event streams do not end by themselves
         )
         server = uvicorn.Server(config)
-        # What is there now stays: a full collection would look at all of it again, and every answer waits meanwhile.
+        # Exclude the loaded objects from collection: a full collection would scan them all and delay every answer.
         gc.collect()
         gc.freeze()
         shown = f"[{chosen.host}]" if ":" in chosen.host else chosen.host
         base = f"http://{shown}:{listener.getsockname()[1]}"
-        # The socket listens already: what connects from here on is answered as soon as the loop runs.
+        # The socket listens already: new connections are answered as soon as the loop runs.
         typer.echo(f"safestart: {base} (dashboard {base}/dashboard, calls {base}/docs)")
         if not is_loopback(address):
             typer.echo("safestart: keys travel as they are over plain HTTP; put TLS in front of it", err=True)
@@ -110,12 +112,12 @@ def resolve(host: str, port: int) -> tuple[int, Any]:
 
 
 def is_loopback(address: Any) -> bool:
-    """True when only this machine reaches the address."""
+    """True when only this machine can reach the address."""
     return ipaddress.ip_address(address[0].partition("%")[0]).is_loopback
 
 
 def require_keys(chosen: Settings) -> None:
-    """Raise ``InvalidInput`` unless an API key is in force, ``Unavailable`` when the database does not say."""
+    """Raise ``InvalidInput`` unless an API key is in force, and ``Unavailable`` when the database does not answer."""
     from safestart.store.access.keys import KeyRepository
     from safestart.store.database import Database
 

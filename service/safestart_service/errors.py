@@ -1,4 +1,4 @@
-"""Errors that only the HTTP face can meet; the others are in :mod:`safestart.errors`."""
+"""Errors of the HTTP layer; the others are in :mod:`safestart.errors`."""
 
 from __future__ import annotations
 
@@ -6,21 +6,21 @@ from safestart.errors import NotFound, SafestartError
 
 
 class NoSuchJob(NotFound):
-    """The path names a job that the store does not hold."""
+    """The path names an unknown job."""
 
     slug = "no-such-job"
     title = "No such job"
 
 
 class NoSuchProcess(NotFound):
-    """The path names a process that is not offered."""
+    """The path names an unknown process."""
 
     slug = "no-such-process"
     title = "No such process"
 
 
 class MalformedBody(SafestartError):
-    """A body that is not JSON in UTF-8."""
+    """The body is not JSON in UTF-8."""
 
     status = 400
     slug = "malformed-body"
@@ -28,7 +28,7 @@ class MalformedBody(SafestartError):
 
 
 class MalformedRequest(SafestartError):
-    """Bytes that are no HTTP request."""
+    """The bytes are not an HTTP request."""
 
     status = 400
     slug = "malformed-request"
@@ -36,7 +36,7 @@ class MalformedRequest(SafestartError):
 
 
 class BodyTooLarge(SafestartError):
-    """A body beyond ``max_body_bytes``, declared or streamed."""
+    """The body, declared or streamed, exceeds ``max_body_bytes``."""
 
     status = 413
     slug = "body-too-large"
@@ -44,7 +44,7 @@ class BodyTooLarge(SafestartError):
 
 
 class QueryTooLong(SafestartError):
-    """A query string longer than any question needs."""
+    """The query string is longer than any question needs."""
 
     status = 414
     slug = "query-too-long"
@@ -52,7 +52,7 @@ class QueryTooLong(SafestartError):
 
 
 class Unauthorized(SafestartError):
-    """No key, or none that is in force; all reasons get the same words."""
+    """The request has no key that is in force; all reasons get the same message."""
 
     status = 401
     slug = "unauthorized"
@@ -60,7 +60,7 @@ class Unauthorized(SafestartError):
 
 
 class Forbidden(SafestartError):
-    """A key in force whose role is not enough."""
+    """The key is in force but its role is not enough."""
 
     status = 403
     slug = "forbidden"
@@ -68,7 +68,7 @@ class Forbidden(SafestartError):
 
 
 class NotAcceptable(SafestartError):
-    """None of the media types that the caller takes is offered."""
+    """The service offers none of the media types that the caller accepts."""
 
     status = 406
     slug = "not-acceptable"
@@ -76,7 +76,7 @@ class NotAcceptable(SafestartError):
 
 
 class RequestTimeout(SafestartError):
-    """A head or a body that did not come in time."""
+    """The head or the body did not arrive in time."""
 
     status = 408
     slug = "request-timeout"
@@ -84,7 +84,7 @@ class RequestTimeout(SafestartError):
 
 
 class Misdirected(SafestartError):
-    """A Host header that names another server: a wrong proxy, or a page that rebinds a name of its own to us."""
+    """The Host header names another server: a wrong proxy, or a page that rebinds its own name to us."""
 
     status = 421
     slug = "misdirected-request"
@@ -92,7 +92,7 @@ class Misdirected(SafestartError):
 
 
 class RateLimited(SafestartError):
-    """More requests than one key or one address may send."""
+    """One key or address sent too many requests."""
 
     status = 429
     slug = "rate-limited"
@@ -100,7 +100,7 @@ class RateLimited(SafestartError):
 
 
 class TooManyConnections(SafestartError):
-    """A connection for which there is no place."""
+    """No place is left for the connection."""
 
     status = 503
     slug = "too-many-connections"
@@ -108,7 +108,7 @@ class TooManyConnections(SafestartError):
 
 
 class HeadTooLarge(SafestartError):
-    """A request line and headers longer than any request needs."""
+    """The request line and headers are longer than any request needs."""
 
     status = 431
     slug = "headers-too-large"
@@ -116,7 +116,7 @@ class HeadTooLarge(SafestartError):
 
 
 class UnsupportedMediaType(SafestartError):
-    """A body whose content type is not JSON, or that is compressed."""
+    """The body's content type is not JSON, or the body is compressed."""
 
     status = 415
     slug = "unsupported-media-type"

@@ -26,7 +26,7 @@ TALLIES = {
 
 
 class _StoreCollector(Collector):
-    """Asks the store at each scrape; a store that is away shows as ``safestart_store_up 0``."""
+    """Queries the store at each scrape; an unavailable store shows as ``safestart_store_up 0``."""
 
     def __init__(self, vitals: Callable[[], Vitals]) -> None:
         self._vitals = vitals
@@ -61,7 +61,7 @@ class _StoreCollector(Collector):
 
 
 def _run_times(runs: Sequence[Run]) -> Iterator[Metric]:
-    """Quantiles over the successful jobs that ended last, by process."""
+    """Quantiles over the latest successful jobs, by process."""
     waited = GaugeMetricFamily(
         "safestart_job_wait_seconds", "Time from submission to start.", labels=["process", "quantile"]
     )
@@ -79,7 +79,7 @@ def _run_times(runs: Sequence[Run]) -> Iterator[Metric]:
 
 
 class Metrics:
-    """One registry per application, so that several live side by side in the tests."""
+    """One registry per application, so that tests can run several side by side."""
 
     def __init__(self, vitals: Callable[[], Vitals]) -> None:
         self.registry = CollectorRegistry(auto_describe=False)
@@ -97,7 +97,7 @@ class Metrics:
             registry=self.registry,
         )
         self.registry.register(_StoreCollector(vitals))
-        # Looking a labelled child up takes longer than updating it, so the children are kept.
+        # Cache the labelled children: looking one up takes longer than updating it.
         self._children: dict[tuple[str, str, int], tuple[Callable[[], None], Callable[[float], None]]] = {}
 
     def observe(self, method: str, route: str, status: int, seconds: float) -> None:
@@ -113,8 +113,12 @@ class Metrics:
         child[0]()
         child[1](seconds)
 
+    def refused(self, status: int) -> None:
+        """Count a refusal from before any route: at the gate, or on the wire."""
+        self._requests.labels("*", UNROUTED, str(status)).inc()
+
     def render(self) -> bytes:
-        """The exposition text; asks the database, so call it off the event loop."""
+        """The exposition text; queries the database, so call it off the event loop."""
         return generate_latest(self.registry)
 
 
@@ -135,7 +139,7 @@ class MetricsMiddleware:
         async def send_timed(message: Message) -> None:
             if message["type"] == "http.response.start":
                 route = scope.get("route")
-                # Only templates become labels: a label per path would grow without bound.
+                # Use path templates as labels: labels by path would grow without bound.
                 path = UNROUTED if route is None else getattr(route, "path", UNROUTED)
                 method = scope["method"] if route is not None else "*"
                 self.metrics.observe(method, path, message["status"], perf_counter() - start)

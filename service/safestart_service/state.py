@@ -1,4 +1,4 @@
-"""What the routes share: settings and the repositories, opened with the application and closed with it."""
+"""State shared by the routes: settings and repositories, opened and closed with the application."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ if TYPE_CHECKING:
     from safestart.store.database import Database
 
 MOST_COMPUTED = 400
-"""Answers that are computed or wait for it."""
+"""Limit on answers that are being computed or wait for it."""
 
 
 class Services:
-    """Settings, repositories, metrics and the context of answers at once, of one application.
+    """Settings, repositories, metrics and the context of instant answers of one application.
 
-    The store is imported when it is first needed: the instant answers and the API description do without.
+    The store is imported at its first use; the instant answers and the API description do not need it.
     """
 
     def __init__(self, settings: Settings, database: Database | None = None) -> None:

@@ -23,7 +23,8 @@ from safestart.families.members import Family
 from safestart.families.prove import proof_for_all
 from safestart.model.scenario import Chaser, CorridorShape, Scenario, Target
 from safestart.proofs.checker import check
-from safestart.proofs.statement import ProofRejected, digest_of
+from safestart.proofs.statement import digest_of
+from safestart.proofs.strict import ProofRejected
 from safestart.runtime.plain_json import loads
 from tests.fuzzing.decided import truth
 from tests.fuzzing.disturbed import truth_against

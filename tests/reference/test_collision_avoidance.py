@@ -11,6 +11,8 @@ from safestart.collision_avoidance.tube import solve_tube
 from safestart.collision_avoidance.tube_settings import TubeSettings
 from safestart.constraints.thrust import InputSet
 
+pytestmark = pytest.mark.slow
+
 # Section IV-A: mean motion (rad/s), bounds of both players by axis (m/s^2).
 MOTION, THRUST, DISTURBANCE = 0.0011, 0.1, 0.05
 # What the paper does not print is as small as it can be.

@@ -5,6 +5,8 @@ import pytest
 from safestart.processes.execute import execute
 from safestart.proofs.single import check
 
+pytestmark = pytest.mark.slow
+
 SETS = ["tube", "analytical_tube", "analytical", "synchronize", "stay", "exact_position"]
 
 

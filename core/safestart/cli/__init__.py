@@ -9,6 +9,7 @@ import typer
 
 from safestart.cli import bench, demo, go_no_go, keys, records, run, up, verify
 from safestart.cli.reproduce import command as reproduce
+from safestart.cli.streams import patient_streams
 from safestart.errors import SafestartError
 
 COMMAND_GROUP = "safestart.commands"
@@ -33,12 +34,18 @@ def build() -> typer.Typer:
 
 def main() -> None:
     """Run the command line; our own errors end it with one line and exit code 2."""
+    with patient_streams() as streams:
+        code = streams.code(_run())
+    sys.exit(code)
+
+
+def _run() -> int:
+    """Run the command; the exit code it asks for."""
     try:
         build()()
     except SafestartError as error:
         sys.stderr.write(f"safestart: {error.detail}\n")
-        sys.exit(2)
-    except BrokenPipeError:
-        # The reader (head, less) closed the pipe; this is not an error.
-        sys.stderr.close()
-        sys.exit(0)
+        return 2
+    except SystemExit as ended:
+        return ended.code if isinstance(ended.code, int) else int(ended.code is not None)
+    return 0

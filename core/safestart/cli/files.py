@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from stat import S_ISREG
+from typing import Any, BinaryIO
 
 from safestart.errors import invalid
 
@@ -25,10 +27,47 @@ def writable(option: str, path: Path) -> Iterator[None]:
         yield
 
 
-def write_json(option: str, path: Path, document: Any, indent: int | None = None) -> None:
-    """Write a document as JSON in UTF-8 with a newline at its end; raises ``InvalidInput``."""
+class Target:
+    """A file that is opened before the work; its old content stays until the result is written."""
+
+    def __init__(self, option: str, path: Path, file: BinaryIO) -> None:
+        self._option = option
+        self.path = path
+        self._file = file
+
+    def write(self, data: bytes) -> None:
+        """Write all of it; raises ``InvalidInput``."""
+        with writable(self._option, self.path):
+            if S_ISREG(os.fstat(self._file.fileno()).st_mode):  # a pipe or a device holds nothing
+                self._file.truncate(0)
+            self._file.write(data)
+            self._file.flush()
+
+    def write_json(self, document: Any, indent: int | None = None) -> None:
+        """Write a document as JSON in UTF-8 with a newline at its end; raises ``InvalidInput``."""
+        self.write((json.dumps(document, allow_nan=False, indent=indent) + "\n").encode())
+
+
+@contextmanager
+def target(option: str, path: Path | None) -> Iterator[Target | None]:
+    """Open ``path`` for the block and create its directory; None for None. Raises ``InvalidInput``.
+
+    The block removes a new file when it fails.
+    """
+    if path is None:
+        yield None
+        return
     with writable(option, path):
-        path.write_text(json.dumps(document, allow_nan=False, indent=indent) + "\n", encoding="utf-8")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        new = not path.exists()
+        file = path.open("ab", buffering=0)
+    try:
+        with file:
+            yield Target(option, path, file)
+    except BaseException:
+        if new:
+            path.unlink(missing_ok=True)
+        raise
 
 
 @contextmanager

@@ -8,12 +8,21 @@ from typing import Annotated, Any
 import typer
 
 from safestart.cli.console import Json, out, print_json
-from safestart.cli.files import write_json
+from safestart.cli.files import target
 from safestart.cli.options import takes
 from safestart.errors import invalid
 from safestart.processes.go_no_go.one_start import ONE_START
 from safestart.processes.go_no_go.run import answer
 from safestart.runtime.progress import Context
+
+_BY = {
+    "certified": "the certificate in closed form (docs/theory/certified.md)",
+    "exact": "a cone program",
+    "atlas": "an atlas of cone programs",
+    "families": "cone programs for all members",
+    "tube": "a cone program in the tightened corridor",
+    "paper": "the paper's conditions; this proves nothing",
+}
 
 
 def register(app: typer.Typer) -> None:
@@ -30,27 +39,30 @@ def register(app: typer.Typer) -> None:
         as_json: Json = False,
         **asked: Any,
     ) -> None:
-        """May a chaser at rest at this point start its approach? By the closed form at once, or proved (exact)."""
+        """May a chaser at rest at this point start its approach? No GO without a proof, but by method paper."""
         given = {name: value for name, value in asked.items() if value is not None}
         inputs = ONE_START.parse(given | {"proofs": proof is not None})
-        found = answer(inputs, Context())
-        document = found.document_of_one()
-        if proof is not None:
-            _write(proof, document["proof"])
+        with target("--proof", proof) as file:
+            document = answer(inputs, Context()).document_of_one()
+            if file is not None:
+                file.write_json(_proved(document["proof"]))
         print_json(document) if as_json else _show(document)
 
 
 def _show(document: dict[str, Any]) -> None:
-    """Print the verdict on the start, the reason, and the closed form's verdict."""
+    """Print the verdict on the one start, why, what decided, and what the paper's conditions say of it."""
     verdict = document["verdict"]
     out.print(f"[bold {'green' if verdict == 'GO' else 'red'}]{verdict}[/]: {document['reason']}")
     for member in document["examples"] or ():
         out.print(f"  {_told(member)}", soft_wrap=True)
+    if document["decided_by"] is not None:
+        out.print(f"  decided by: {_BY.get(document['decided_by'], document['decided_by'])}")
     r_sync = document["r_sync_m"]
     shown = f"{r_sync:.2f} m" if r_sync is not None else f"none ({document['r_sync_reason']})"
+    out.print("  beside it the paper's conditions, which are not sound:")
     out.print(f"  synchronization range limit: {shown}")
     for face, margin in document["face_margins_m"].items():
-        out.print(f"  closed-form margin {face:<11} {margin:9.2f} m")
+        out.print(f"  margin after erosion {face:<11} {margin:9.2f} m")
 
 
 def _told(member: dict[str, Any]) -> str:
@@ -63,7 +75,7 @@ def _told(member: dict[str, Any]) -> str:
     )
 
 
-def _write(path: Path, document: object) -> None:
+def _proved(document: object) -> object:
     if document is None:
         raise invalid("--proof", "a proved verdict (method exact, GO or NO_GO)", "none")
-    write_json("--proof", path, document)
+    return document

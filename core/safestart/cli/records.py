@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from safestart.cli.console import Json, err, out, print_json, reporting
-from safestart.cli.files import readable, writable
+from safestart.cli.files import readable, target
 from safestart.errors import InvalidInput, invalid
 
 if TYPE_CHECKING:
@@ -70,10 +70,11 @@ def export(
     """Write a job as one file that opens without a server (unzip it, open index.html)."""
     from safestart.records.bundle import pack
 
-    data, seal = pack(_bundle_of(job, database_url))
     path = output or Path(f"{job}.zip")
-    with writable("--output", path):
-        path.write_bytes(data)
+    with target("--output", path) as file:
+        data, seal = pack(_bundle_of(job, database_url))
+        if file is not None:
+            file.write(data)
     out.print(f"wrote {path} ({len(data)} bytes), seal {seal}", soft_wrap=True)
 
 

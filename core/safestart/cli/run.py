@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from safestart.cli.console import Json, err, print_json, reporting
-from safestart.cli.files import readable, writable, write_json
+from safestart.cli.files import Target, readable, target, writable
 from safestart.errors import InvalidInput, invalid
 from safestart.processes.execute import Execution, execute
 from safestart.processes.registry import PROCESS_IDS, process
@@ -40,10 +40,11 @@ def register(app: typer.Typer) -> None:
         spec = process(process_id)
         inputs = _read(input_file)
         spec.parse(inputs)
-        with reporting(process_id) as context:
-            result = execute(process_id, inputs, context)
-        if output_file is not None:
-            _write(output_file, result)
+        with target("--output", output_file) as file:
+            with reporting(process_id) as context:
+                result = execute(process_id, inputs, context)
+            if file is not None:
+                _write(file, result)
         if as_json or output_file is None:
             print_json(result.document)
 
@@ -64,13 +65,12 @@ def _read(source: str) -> Any:
         raise InvalidInput(f"--input: required JSON, received text that is not ({error})") from None
 
 
-def _write(path: Path, result: Execution) -> None:
-    with writable("--output", path):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        write_json("--output", path, result.document, indent=2)
-        written = [path]
-        for artifact in result.artifacts:
-            written.append(path.with_name(f"{path.stem}.{artifact.name}"))
+def _write(file: Target, result: Execution) -> None:
+    file.write_json(result.document, indent=2)
+    written = [file.path]
+    for artifact in result.artifacts:
+        written.append(file.path.with_name(f"{file.path.stem}.{artifact.name}"))
+        with writable("--output", written[-1]):
             written[-1].write_bytes(artifact.data)
     for item in written:
-        err.print(f"wrote {item}", soft_wrap=True)
+        err.print(f"wrote {item}", soft_wrap=True, markup=False)

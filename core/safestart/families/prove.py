@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from safestart.errors import invalid
-from safestart.exact.decide import Verdict
+from safestart.exact.answer import Verdict
 from safestart.exact.prove import GO_STAND_BACK_M, NO_GO_STAND_BACK_M, multiplier_of, question_of
 from safestart.families.answer import ForAll
 from safestart.families.members import Family

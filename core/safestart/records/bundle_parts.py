@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable
 from typing import Annotated, Any, Literal
+from unicodedata import category
 
 from pydantic import (
+    AfterValidator,
     AwareDatetime,
     BaseModel,
     BeforeValidator,
@@ -18,6 +20,8 @@ from pydantic import (
 
 from safestart.errors import InvalidInput, invalid
 from safestart.model.validation import validation_error
+
+_NOT_PRINTED = frozenset({"Cc", "Cf", "Cn", "Co", "Cs", "Zl", "Zp"})
 
 
 def _storable(value: Any) -> Any:
@@ -42,6 +46,12 @@ def _whole(digits: str) -> int:
     if len(digits) > 20 or not -(2**63) <= int(digits) < 2**64:
         raise ValueError(digits)
     return int(digits)
+
+
+def _printing(name: str) -> str:
+    if any(category(letter) in _NOT_PRINTED for letter in name):
+        raise ValueError("a name without control, format and unassigned characters")
+    return name
 
 
 _Text = Annotated[str, BeforeValidator(_storable)]
@@ -107,9 +117,13 @@ class ResultFacts(Closed):
 
 
 class ArtifactFacts(BaseModel):
-    """Name and media type of a file. The name must not be a path: unpacking would write to it."""
+    """Name and media type of a file.
 
-    name: Annotated[_Text, Field(pattern=r"^[^/\\:]{1,255}$")]
+    The name must not be a path: unpacking would write to it. It has no control or format characters, because pages,
+    header lines and links show it.
+    """
+
+    name: Annotated[_Text, AfterValidator(_printing), Field(pattern=r"^[^/\\:]{1,255}$")]
     media_type: Annotated[str, Field(pattern=r"^[\x20-\x7e]{1,255}$")]
 
 

@@ -10,7 +10,7 @@ import select
 import sqlite3
 import time
 from datetime import UTC, datetime
-from typing import Any
+from typing import Any, cast
 
 from sqlalchemy import Connection, DateTime, Dialect, Engine, event, text
 from sqlalchemy.exc import InvalidatePoolError
@@ -112,6 +112,7 @@ def prepare(engine: Engine) -> None:
         event.listen(engine, "connect", _on_sqlite_connect)
         event.listen(engine, "begin", _on_sqlite_begin)
     else:
+        event.listen(engine, "do_connect", _do_postgresql_connect)
         event.listen(engine, "connect", _on_postgresql_connect)
         event.listen(engine, "checkout", _on_postgresql_checkout)
 
@@ -137,8 +138,17 @@ def _on_sqlite_connect(connection: sqlite3.Connection, _record: Any) -> None:
     cursor.close()
 
 
+def _do_postgresql_connect(_dialect: Any, _record: Any, arguments: Any, options: Any) -> Any:
+    from safestart.store.patient import PatientConnection  # SQLite does without psycopg
+
+    return PatientConnection.connect(*arguments, **options)
+
+
 def _on_postgresql_connect(connection: Any, _record: Any) -> None:
+    from safestart.store.patient import STATEMENT_S
+
     with connection.cursor() as cursor:
+        cursor.execute(f"SET statement_timeout = {int(STATEMENT_S * 1000)}")
         # A process stopped in the middle of a transaction would keep its rows locked, and nobody could take over.
         cursor.execute(f"SET idle_in_transaction_session_timeout = {int(STOPPED_S * 1000)}")
         # The same limit as for SQLite: a foreign lock must not hang every request.
@@ -150,6 +160,7 @@ def _on_postgresql_checkout(connection: Any, _record: Any, _proxy: Any) -> None:
     # An idle connection becomes readable only when its server has closed it. This check costs no round trip, unlike
     # a query before every transaction. The pool then drops its connections and makes a new one.
     if not connection.closed:
+        connection.patience_s = type(connection).patience_s
         heard = select.poll()
         heard.register(connection, select.POLLIN)
         if not heard.poll(0):
@@ -166,7 +177,11 @@ def _on_sqlite_begin(connection: Connection) -> None:
 def lock_schema(connection: Connection) -> None:
     """Take the schema lock for this transaction, waiting without limit: every migration ends by itself."""
     if connection.dialect.name == "postgresql":
+        from safestart.store.patient import MIGRATION_S
+
         connection.execute(text("SET LOCAL lock_timeout = 0"))
+        connection.execute(text("SET LOCAL statement_timeout = 0"))
+        cast(Any, connection.connection.driver_connection).patience_s = MIGRATION_S
     _wait_for(connection, _SCHEMA_LOCK)
 
 

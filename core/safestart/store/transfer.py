@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from datetime import datetime
-from hashlib import sha256
 from typing import Any
 
 from sqlalchemy import insert, select
@@ -16,6 +14,7 @@ from safestart.records.bundle import Bundle
 from safestart.records.bundle_parts import event_facts, job_facts
 from safestart.records.comparable import digest
 from safestart.store.database import Database
+from safestart.store.jobs.results import require_unaltered
 from safestart.store.jobs.submissions import find, request_hash
 from safestart.store.jobs.writing import add_result
 from safestart.store.models import ArtifactRow, EventRow, JobRow, ResultRow
@@ -37,7 +36,7 @@ class Transfer:
     def read(self, job_id: str) -> Bundle:
         """All of an ended job; raises ``NotFound``, and ``Conflict`` before its end.
 
-        It also raises ``Conflict`` when the stored result was altered, so that no altered result leaves the store.
+        It raises ``Altered`` when the stored result was altered, so that no altered result leaves the store.
         The names of the submitter and the worker are not exported.
         """
         with self._database.session() as session:
@@ -56,7 +55,7 @@ class Transfer:
             files = session.scalars(
                 select(ArtifactRow).where(ArtifactRow.job_id == job_id).order_by(ArtifactRow.name)
             ).all()
-            _require_unaltered(job_id, stored, files)
+            require_unaltered(job_id, stored, files)
             return Bundle(
                 job,
                 None if stored is None else stored.document,
@@ -93,20 +92,6 @@ def _values(job: dict[str, Any]) -> dict[str, Any]:
         "cancel_requested": values["status"] == JobStatus.DISMISSED.value,
         "request_sha256": request_hash(values["process_id"], values["inputs"]),
     }
-
-
-def _require_unaltered(job_id: str, stored: ResultRow | None, files: Sequence[ArtifactRow]) -> None:
-    altered = [] if stored is None or digest(stored.document) == stored.sha256 else ["the result"]
-    altered += [
-        f"artifact {file.name}" for file in files if sha256(bytes(file.data)).hexdigest() != file.sha256
-    ]
-    if altered:
-        raise Conflict(
-            f"job {job_id} is not as it was stored: {', '.join(altered)} does not have the SHA-256 on record",
-            field="jobID",
-            required="a result and artifacts with the SHA-256 on record",
-            received=", ".join(altered),
-        )
 
 
 def _require_same(session: Session, bundle: Bundle) -> None:

@@ -1,1 +1,1 @@
-"""Who may pass: keys, roles, rates, and places in costly calls."""
+"""Access control: keys, roles, rates, and places in costly calls."""

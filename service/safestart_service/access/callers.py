@@ -1,4 +1,4 @@
-"""Calls that cost something for as long as they last: so many of a kind at once, of which one key may have half."""
+"""Limits on costly calls: a fixed number of a kind at the same time, of which one key may have half."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from safestart_service.http.places import Places
 
 
 class Callers:
-    """Places for one kind of call; ``what`` it is called in refusals."""
+    """Places for one kind of call; refusals call it ``what``."""
 
     def __init__(self, what: str, most: int) -> None:
         self._what = what
@@ -21,11 +21,11 @@ class Callers:
 
     @property
     def now(self) -> int:
-        """How many there are."""
+        """The number of places."""
         return self._places.taken
 
     def enter(self, request: Request) -> str | None:
-        """Take a place; returns the name to leave it under. Raises ``RateLimited``."""
+        """Take a place; returns the name under which to give it back. Raises ``RateLimited``."""
         name = caller(request).key_id
         if self._places.take(name):
             return name

@@ -1,6 +1,6 @@
-"""Who may pass: the Host header, the key, the role that a call needs, and how often.
+"""Access checks: the Host header, the key, the role that a call needs, and the rate.
 
-Called once per request before anything else looks at it, and asks no database.
+Called once per request, before any other code, and without the database.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ Presented = tuple[bytes | None, bytes | None, bytes | None]
 """Host, Authorization and X-API-Key of a request."""
 
 PUBLIC = frozenset({"/", "/conformance", "/dashboard", "/docs", "/healthz", "/openapi.json", "/readyz"})
-"""Answered without a key: what the service is, whether it is well, and pages that hold no data and ask for the key."""
+"""Answered without a key: what the service is, its health, and pages that hold no data and ask for the key."""
 INSTANT = frozenset({"/go-no-go", "/go-no-go/proof", "/certificates"})
-"""Computed from the request alone: a POST there reads, and changes nothing."""
+"""Computed from the request alone: a POST to these paths changes nothing."""
 MOST_FAILURES_PER_S = 5.0
 _LONGEST_KEY = 512
 _LONGEST_HOST = 260
@@ -41,9 +41,9 @@ REMEDY = "a key made with `safestart keys create`, as Authorization: Bearer KEY 
 
 
 def needed_role(method: str, path: str) -> Role | None:
-    """The role that a call needs; None for what is public. What is not known to read needs ``submit``.
+    """The role that a call needs; None for public calls. Calls that are not known to only read need ``submit``.
 
-    An execution that runs at once stores nothing; where it queues a job, :meth:`Access.require_submit` asks for more.
+    An execution that runs at once stores nothing; if it queues a job, :meth:`Access.require_submit` checks further.
     """
     if path in INSTANT:
         return Role.READ
@@ -66,7 +66,7 @@ class Access:
         self._failures = Buckets(MOST_FAILURES_PER_S)
 
     def refusal(self, scope: Scope, presented: Presented) -> SafestartError | None:
-        """Why this request may not pass; None when it may. Leaves the key in the scope for :func:`caller`."""
+        """The reason to refuse this request, or None. Leaves the key in the scope for :func:`caller`."""
         host, authorization, api_key = presented
         refused = _without_host(scope) if host is None else self._host_refusal(host[: 1 + _LONGEST_HOST])
         if refused is not None:
@@ -82,21 +82,21 @@ class Access:
         scope["safestart.key"] = key
         if not self._requests.take(key.id):
             return _rate_limited("requests", self._requests.rate)
-        if needed is Role.READ:  # every key may
+        if needed is Role.READ:  # every key may do this
             return None
         if not key.role.allows(needed):
             return _forbidden(key, needed)
         return self._too_many(key) if needed is Role.SUBMIT else None
 
     def still_passes(self, request: Request) -> bool:
-        """False once whoever was let in would not be any more: the key has ended, or one is asked for now."""
+        """False once the caller's access has ended: the key has ended, or keys are now required."""
         key: ApiKey | None = request.scope.get("safestart.key")
         return not self._keyring.required if key is None else self._keyring.in_force(key.id)
 
     def require_submit(self, request: Request) -> None:
         """Raise ``Forbidden`` or ``RateLimited`` unless the caller may queue a job."""
         key: ApiKey | None = request.scope.get("safestart.key")
-        if key is None:  # open to this machine
+        if key is None:  # open to callers on this machine
             return
         if not key.role.allows(Role.SUBMIT):
             raise _forbidden(key, Role.SUBMIT)
@@ -110,7 +110,7 @@ class Access:
         return _rate_limited("submissions and dismissals", self._submissions.rate)
 
     def _without_keys(self, scope: Scope, needed: Role) -> SafestartError | None:
-        """No key was ever made: open to whoever comes over loopback, except for administration."""
+        """No key was ever made: open to callers over loopback, except for administration."""
         if not self._keyring.known and get_route_path(scope) not in INSTANT | {"/metrics"}:
             return Unavailable("the API keys cannot be read from the database", required="the database")
         if not from_this_machine(scope):
@@ -132,14 +132,14 @@ class Access:
 
 
 def ended_key() -> Unauthorized:
-    """One sentence for every reason: an answer does not say which keys exist."""
+    """One sentence for every reason, so that answers do not show which keys exist."""
     return Unauthorized(
         f"no key, or one that is unknown, expired or revoked; required {REMEDY}", required=REMEDY
     )
 
 
 def presented_key(authorization: bytes | None, api_key: bytes | None) -> bytes:
-    """The key in the headers; empty when there is none."""
+    """The key in the headers; empty without one."""
     if authorization is None:
         return (api_key or b"")[:_LONGEST_KEY]
     scheme, _, rest = authorization[:_LONGEST_KEY].partition(b" ")
@@ -147,7 +147,7 @@ def presented_key(authorization: bytes | None, api_key: bytes | None) -> bytes:
 
 
 def caller(request: Request) -> Caller:
-    """Who asks, for the audit log."""
+    """The caller, for the audit log."""
     scope = request.scope
     client = scope.get("client")
     address = client[0] if client else None
@@ -170,7 +170,7 @@ def require_own(by: Caller, submitter: str | None) -> None:
 
 
 def _host_refusal(host: bytes, names: frozenset[str]) -> SafestartError | None:
-    """Addresses and localhost cannot be rebound by a foreign name server; names must be known."""
+    """A foreign name server cannot rebind addresses and localhost; other names must be configured."""
     shown = host[:100].decode("latin-1")
     match = _HOST_PORT.fullmatch(host.decode("latin-1").lower())
     if match is None or len(host) > _LONGEST_HOST or int(match[2] or 0) > 65535:
@@ -194,7 +194,7 @@ def _host_refusal(host: bytes, names: frozenset[str]) -> SafestartError | None:
 
 
 def _without_host(scope: Scope) -> SafestartError | None:
-    """HTTP/1.0 knows no Host; from HTTP/1.1 on, every request has one."""
+    """HTTP/1.0 has no Host header; from HTTP/1.1 on every request has one."""
     if scope.get("http_version") == "1.0":
         return None
     return _malformed_host("one, as the request is no HTTP/1.0", None)

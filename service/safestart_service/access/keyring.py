@@ -1,7 +1,7 @@
-"""The keys in memory, so that checking one asks no database; read again twice a second.
+"""The keys in memory, read again twice a second, so that checking a key needs no database.
 
-A key made, revoked or expired elsewhere counts here at most that much later; one revoked through this service, at once.
-While the database is away, what was read last goes on to count.
+A key made, revoked or expired elsewhere takes effect here at most that much later; a key revoked through this
+service, at once. While the database is unavailable, the last read keys stay valid.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from safestart.store.records import ApiKey
 
 REFRESH_S = 0.5
-# The last use of a key is noted about once a minute: a busy key must not write with every request.
+# Record the last use of a key about once a minute: a busy key must not write with every request.
 NOTE_S = 60.0
 
 log = logging.getLogger("safestart.service")
@@ -33,8 +33,8 @@ log = logging.getLogger("safestart.service")
 class Keyring:
     """Digests and records of all keys.
 
-    ``known`` is False until they were read once. ``required``: a key was made at some time, so that one is asked for,
-    even if none is in force any more.
+    ``known`` is False until the first read. ``required``: a key was made at some time, so callers need one, even if
+    no key is in force now.
     """
 
     def __init__(self, keys: KeyRepository) -> None:
@@ -48,11 +48,11 @@ class Keyring:
         self.required = False
 
     def check(self, presented: bytes) -> ApiKey | None:
-        """The key, if it is one and in force.
+        """The key's record, if the key exists and is in force.
 
-        The same steps are taken whatever was presented: a digest, a look-up by the digest, and a comparison in
-        constant time, with a decoy where nothing was found. How long a look-up takes depends on the digest, which
-        says nothing about the key. Whether a key is in force is asked only of who presented the whole of it.
+        Every presented text takes the same steps: a digest, a look-up by the digest, and a comparison in constant
+        time, with a decoy when nothing was found. The look-up time depends on the digest, which says nothing about
+        the key. Only a caller with the whole key reaches the check whether it is in force.
         """
         digest = key_digest(presented)
         key, kept = self._held.get(digest, self._decoy)
@@ -66,7 +66,7 @@ class Keyring:
         return key_id in self._in_force
 
     def load(self) -> None:
-        """Read the keys, and note which were used; raises ``Unavailable``."""
+        """Read the keys, and record which were used; raises ``Unavailable``."""
         held: dict[bytes, tuple[ApiKey | None, bytes]] = {
             digest: (key, digest) for key, digest in self._keys.digests()
         }
@@ -81,8 +81,8 @@ class Keyring:
 
     @asynccontextmanager
     async def kept_fresh(self) -> AsyncIterator[None]:
-        """Read the keys now, and again and again until the end."""
-        # A thread of its own: however much there is to compute, a key revoked elsewhere is refused in time.
+        """Read the keys now and repeatedly until the end."""
+        # In its own thread, so that a key revoked elsewhere is refused in time even under heavy computing.
         reader = ThreadPoolExecutor(1, "keyring")
         await self._try_load(reader)
         task = asyncio.create_task(self._keep(reader))

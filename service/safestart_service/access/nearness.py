@@ -1,4 +1,4 @@
-"""Who asks from this machine: the address of the socket, and whatever a proxy says of those behind it."""
+"""Whether a caller is on this machine, by the socket's address and the proxy headers."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ _HOST_PORT = re.compile(r"\[([^\]]*)\](?::\d{1,5})?|([^:]*):\d{1,5}")
 
 
 def from_this_machine(scope: Scope) -> bool:
-    """True when both ends are on this machine and no proxy speaks for somebody who is not.
+    """True when both ends are on this machine and no proxy forwards for a client elsewhere.
 
-    What is not a loopback address counts as somebody else: an unknown or hidden client, a name, an empty element.
+    Anything but a loopback address counts as elsewhere: an unknown or hidden client, a name, an empty element.
     """
     client, server = scope.get("client"), scope.get("server")
-    if server is not None and server[1] is None:  # a Unix socket: its other end is here, too
+    if server is not None and server[1] is None:  # a Unix socket: both ends are on this machine
         near = client is None or not client[0] or is_local(client[0])
     else:
         near = all(end is not None and is_local(end[0]) for end in (client, server))
@@ -43,7 +43,7 @@ def from_this_machine(scope: Scope) -> bool:
 
 @lru_cache(64)
 def is_local(address: str) -> bool:
-    """True for a loopback address, and for nothing else."""
+    """True only for a loopback address."""
     try:
         found = ipaddress.ip_address(address.partition("%")[0])
     except ValueError:
@@ -61,12 +61,12 @@ def _only_local(name: bytes, value: bytes) -> bool:
 
 
 def _nodes(text: str) -> list[str]:
-    """The client of each element of ``Forwarded`` (RFC 7239); "" for an element that names none or cannot be read."""
+    """The client of each element of ``Forwarded`` (RFC 7239); "" for an element without a client or unreadable."""
     found: list[str] = []
     node, at = "", 0
     while True:
         match = _ELEMENTS.match(text, at)
-        if match is None:  # a quote that does not end
+        if match is None:  # an unterminated quote
             return [*found, ""]
         pair = _FOR.fullmatch(match[1])
         if pair is not None:

@@ -11,7 +11,7 @@ MOST_NAMES = 10_000
 class Buckets:
     """One bucket per name: it holds ``burst`` tokens and fills at ``rate`` per second.
 
-    Beyond :data:`MOST_NAMES` the oldest names are forgotten: memory stays bounded whoever asks.
+    Beyond :data:`MOST_NAMES` it forgets the oldest names, so memory stays bounded.
     """
 
     def __init__(self, rate: float, burst: float | None = None) -> None:

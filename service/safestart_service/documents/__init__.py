@@ -1,1 +1,1 @@
-"""The documents that the service answers with."""
+"""The documents in the service's answers."""

@@ -15,8 +15,8 @@ MOST_NUMBERS = 1_000_000
 def arrays_of(file: Artifact, names: str | None) -> dict[str, Any]:
     """Arrays by name as nested lists, NaN and infinity as None.
 
-    Raises ``InvalidInput`` for a file that is no NPZ and for more than a million numbers, ``NotFound`` for a name that
-    is not in it.
+    Raises ``InvalidInput`` for a file that is not NPZ and for more than a million numbers, and ``NotFound`` for an
+    unknown name.
     """
     import numpy as np
 

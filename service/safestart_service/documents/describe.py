@@ -54,7 +54,7 @@ def description(spec: ProcessSpec, base: str) -> dict[str, Any]:
 
 
 def _looks(spec: ProcessSpec) -> dict[str, Any]:
-    """How a page shows the outputs: additions to the standard, under names of our own."""
+    """How a page shows the outputs: additions to the standard, under our own names."""
     return {
         "safestart:tables": [asdict(table) for table in spec.tables],
         "safestart:views": views.documents(spec.views),
@@ -84,7 +84,7 @@ def _interface_of(process_id: str) -> dict[str, Any]:
 def _properties(
     model: type[BaseModel], mode: Literal["validation", "serialization"]
 ) -> tuple[dict[str, dict[str, Any]], frozenset[str]]:
-    """Title, description and self-contained schema of each field, and the names of the required ones."""
+    """Title, description and self-contained schema of each field, and the names of the required fields."""
     schema = model.model_json_schema(mode=mode)
     definitions = schema.get("$defs", {})
     entries = {}
@@ -99,7 +99,7 @@ def _properties(
 
 
 def _inline(node: Any, definitions: dict[str, Any]) -> Any:
-    """Replace every reference by what it points to: each input's schema stands alone. No model is recursive."""
+    """Replace every reference by its target, so that each input's schema stands alone. No model is recursive."""
     if isinstance(node, list):
         return [_inline(item, definitions) for item in node]
     if not isinstance(node, dict):

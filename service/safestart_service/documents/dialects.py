@@ -1,7 +1,8 @@
-"""JSON schemas in words that mean the same in JSON Schema 2020-12 and in OpenAPI 3.0.
+"""JSON schemas that mean the same in JSON Schema 2020-12 and in OpenAPI 3.0.
 
-OGC API - Processes 1.0 describes inputs by the schema object of OpenAPI 3.0, where exclusive bounds are truth values,
-null is no type and tuples do not exist; everybody else reads JSON Schema. Everything here is valid in both.
+OGC API - Processes 1.0 describes inputs by the schema object of OpenAPI 3.0, where exclusive bounds are truth
+values, null is not a type and tuples do not exist. Most other tools read JSON Schema. The schemas here are valid in
+both.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ _DROPPED = ("$defs", "examples", "propertyNames", "discriminator", "$schema")
 
 
 def common(schema: Any) -> Any:
-    """The schema, without references, rewritten; at worst it allows more than before, never less."""
+    """Rewrite a schema without references. The result may allow more than the original, never less."""
     if isinstance(schema, list):
         return [common(item) for item in schema]
     if not isinstance(schema, dict):
@@ -41,7 +42,7 @@ def common(schema: Any) -> Any:
 
 
 def _bounds(found: dict[str, Any]) -> None:
-    """An exclusive bound becomes the next number of float64, for integers the next integer."""
+    """Replace an exclusive bound by the next float64 number, or for integers by the next integer."""
     whole = found.get("type") == "integer"
     for exclusive, inclusive, side in (
         ("exclusiveMinimum", "minimum", 1),

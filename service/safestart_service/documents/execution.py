@@ -27,7 +27,7 @@ class OutputRequest(WireModel):
 
 
 class ExecuteRequest(WireModel):
-    """What all execution requests share. Each process has its own subclass with typed ``inputs``."""
+    """The common part of execution requests. Each process has its own subclass with typed ``inputs``."""
 
     priority: int = Field(
         0,
@@ -58,8 +58,8 @@ def execute_model(process_id: str) -> type[ExecuteRequest]:
 def parse_request(process_id: str, body: bytes) -> ExecuteRequest:
     """Validate a body; raises as :func:`parse_body`.
 
-    An input may come as a qualified value, ``{"value": ...}``, as the standard has it for objects; that is looked at
-    only where the body is not valid without.
+    An input may be a qualified value, ``{"value": ...}``, which the standard uses for objects; this is tried only
+    when the body is otherwise invalid.
     """
     model = execute_model(process_id)
     try:
@@ -72,7 +72,7 @@ def parse_request(process_id: str, body: bytes) -> ExecuteRequest:
 
 
 def _unqualified(body: bytes) -> bytes | None:
-    """The body with bare values for qualified ones; None where there is none."""
+    """The body with bare values for qualified ones; None when it has no qualified value."""
     try:
         document = orjson.loads(body)
         inputs = document["inputs"].items()
@@ -80,7 +80,7 @@ def _unqualified(body: bytes) -> bytes | None:
         return None
     bare = {name: value["value"] for name, value in inputs if _is_qualified(value)}
     if bare:
-        require_once(body)  # before the names are written anew, each once
+        require_once(body)  # before a new document repeats each name only once
     return orjson.dumps(document | {"inputs": document["inputs"] | bare}) if bare else None
 
 
@@ -89,7 +89,7 @@ def _is_qualified(value: Any) -> bool:
 
 
 def check_outputs(spec: ProcessSpec, request: ExecuteRequest, *, sync: bool) -> None:
-    """Raise ``InvalidInput`` for outputs the process has not, and for a raw response that cannot be given."""
+    """Raise ``InvalidInput`` for unknown outputs and for an impossible raw response."""
     known = output_ids(spec)
     for name in request.outputs or ():
         if name not in known:
@@ -101,7 +101,7 @@ def check_outputs(spec: ProcessSpec, request: ExecuteRequest, *, sync: bool) -> 
 
 
 def check_states(spec: ProcessSpec, inputs: WireModel, max_states: int) -> None:
-    """Raise ``InvalidInput`` beyond the number of states that this service is set to take."""
+    """Raise ``InvalidInput`` for more states than the service's settings allow."""
     if spec.states and len(getattr(inputs, spec.states)) > max_states:
         raise invalid(spec.states, f"at most {max_states} items", len(getattr(inputs, spec.states)))
 
@@ -112,7 +112,7 @@ def run_now(spec: ProcessSpec, inputs: WireModel, context: Context) -> dict[str,
 
 
 def selected(document: dict[str, Any], request: ExecuteRequest) -> Any:
-    """The outputs asked for as the standard's results, or the bare value of a raw response."""
+    """The requested outputs as the standard's results document, or the bare value of a raw response."""
     chosen = document if request.outputs is None else {name: document[name] for name in request.outputs}
     return next(iter(chosen.values())) if request.response == "raw" else ogc_values(chosen)
 

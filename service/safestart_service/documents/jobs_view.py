@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from typing import Any
+from urllib.parse import quote
 
 from safestart.errors import NotFound
 from safestart.processes.registry import PROCESS_IDS, process
@@ -21,7 +22,7 @@ _JOB_ID = re.compile(r"[0-9A-Za-z-]{1,64}")
 def known_job(services: Services, job_id: str) -> Job:
     """The job named in a path; raises ``NoSuchJob``."""
     try:
-        # What cannot be an id is not put to the database (PostgreSQL refuses NUL, for one).
+        # Do not query the database for an impossible id (PostgreSQL refuses NUL, for example).
         if not _JOB_ID.fullmatch(job_id):
             raise NotFound(f"no job {job_id!r}")
         return services.jobs.get(job_id)
@@ -30,7 +31,7 @@ def known_job(services: Services, job_id: str) -> Job:
 
 
 def status_infos(services: Services, jobs: Sequence[JobEntry], base: str) -> list[dict[str, Any]]:
-    """statusInfo of each job of a list, with its place in the queue and without the estimates of waiting ones."""
+    """statusInfo of each job of a list, with its place in the queue but without estimates for waiting jobs."""
     places = services.jobs.positions(job.id for job in jobs if job.status is JobStatus.ACCEPTED)
     crew = services.jobs.crew()
     waits = {job_id: Wait(place, None, None) for job_id, place in places.items()}
@@ -38,7 +39,7 @@ def status_infos(services: Services, jobs: Sequence[JobEntry], base: str) -> lis
 
 
 def status_info(services: Services, job: Job, base: str) -> dict[str, Any]:
-    """statusInfo of one job; one that waits has estimates of its start and end."""
+    """statusInfo of one job; a waiting job has estimates of its start and end."""
     wait = services.jobs.wait(job.id) if job.status is JobStatus.ACCEPTED else None
     return _status_info(job, base, wait, services.jobs.crew())
 
@@ -51,7 +52,7 @@ def _status_info(job: JobEntry, base: str, wait: Wait | None, crew: Crew) -> dic
         "status": job.status.value,
         "message": job.message,
         "created": job.created_at,
-        # The standard's times have no null: they come when there are any.
+        # The standard's times must not be null, so missing ones are left out.
         **({} if job.started_at is None else {"started": job.started_at}),
         **({} if job.finished_at is None else {"finished": job.finished_at}),
         "updated": job.updated_at,
@@ -78,7 +79,7 @@ def job_detail(services: Services, job: Job, base: str) -> dict[str, Any]:
 
 
 def waiting_reason(wait: Wait | None, crew: Crew) -> str | None:
-    """Why a job waits, in a sentence; None when it does not wait."""
+    """One sentence on why a job waits; None when it does not wait."""
     if wait is None:
         return None
     ahead = wait.position - 1
@@ -117,7 +118,7 @@ def _links(job: JobEntry, base: str) -> list[dict[str, str]]:
 
 
 def partial_document(services: Services, job: Job, base: str) -> dict[str, Any]:
-    """What the finished shards of a job say already; raises ``NotFound`` for a process without shards."""
+    """The partial result from a job's finished shards; raises ``NotFound`` for a process without shards."""
     spec = process(job.process_id)
     if spec.sharding is None:
         raise NotFound(
@@ -129,7 +130,7 @@ def partial_document(services: Services, job: Job, base: str) -> dict[str, Any]:
     inputs = spec.parse(job.inputs)
     documents = services.jobs.shard_documents(job.id)
     total = len(spec.sharding.parts(inputs))
-    # The shards of a successful job are gone: its result replaces them.
+    # A successful job has no shards any more: its result replaces them.
     done = total if job.status is JobStatus.SUCCESSFUL else len(documents)
     return {
         "jobID": job.id,
@@ -155,7 +156,7 @@ def result_document(services: Services, job_id: str, base: str) -> dict[str, Any
                 "media_type": info.media_type,
                 "size": info.size,
                 "sha256": info.sha256,
-                "href": f"{base}/jobs/{job_id}/artifacts/{info.name}",
+                "href": f"{base}/jobs/{job_id}/artifacts/{quote(info.name, safe='')}",
             }
             for info in services.results.artifacts(job_id)
         ],

@@ -76,7 +76,7 @@ def content(media_type: str, schema: dict[str, Any], text: str, **headers: str) 
 
 
 def refusals(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    """Problem responses of a route; every route can be refused for its query's length and can fail."""
+    """Problem responses of a route; every route can refuse a long query and can fail."""
     found: dict[int | str, dict[str, Any]] = {}
     for status in sorted({*statuses, 414, 500}):
         if status == 304:
@@ -87,7 +87,7 @@ def refusals(*statuses: int) -> dict[int | str, dict[str, Any]]:
 
 
 def json_body(models: dict[str, type[BaseModel]], examples: dict[str, Any]) -> dict[str, Any]:
-    """``openapi_extra`` of a route that reads its body itself: any of the models, with named examples."""
+    """``openapi_extra`` of a route that parses its body itself: any of the models, with named examples."""
     references = [{"$ref": REF + model.__name__} for model in models.values()]
     schema = references[0] if len(references) == 1 else {"anyOf": references}
     named = {name: {"summary": name, "value": value} for name, value in examples.items()}
@@ -108,7 +108,7 @@ _ROLE_TEXT = "Needs a key with role `{role}` once keys are in use."
 
 
 def _add_access(document: dict[str, Any]) -> None:
-    """What the gate asks of each operation, and how it can refuse it."""
+    """The role that the gate requires for each operation, and its refusals."""
     document["components"]["securitySchemes"] = _SECURITY_SCHEMES
     for path, operations in document["paths"].items():
         for method, operation in operations.items():
@@ -130,7 +130,7 @@ def _add_access(document: dict[str, Any]) -> None:
 
 
 def build(app: FastAPI) -> dict[str, Any]:
-    """The whole document; the caller keeps it."""
+    """Build the whole document; the caller stores it."""
     document = get_openapi(
         title=app.title, version=app.version, description=app.description, routes=app.routes
     )

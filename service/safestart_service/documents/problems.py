@@ -29,7 +29,7 @@ log = logging.getLogger("safestart.service")
 
 
 class Problem(BaseModel):
-    """RFC 9457 problem document; ``field``, ``required`` and ``received`` are ours."""
+    """RFC 9457 problem document; ``field``, ``required`` and ``received`` are our additions."""
 
     model_config = ConfigDict(extra="allow")
 
@@ -45,7 +45,7 @@ class Problem(BaseModel):
 
 
 def type_uri(slug: str) -> str:
-    """Problem type of a slug: the standard's where OGC API - Processes 1.0 defines one."""
+    """Problem type of a slug; the type of OGC API - Processes 1.0 if it defines one."""
     return (OGC_PREFIX if slug in OGC_SLUGS else OWN_PREFIX) + slug
 
 
@@ -114,7 +114,7 @@ def of_error(error: SafestartError, instance: str, request_id: str | None = None
 
 
 def unexpected(instance: str, request_id: str | None) -> dict[str, Any]:
-    """Problem document of an error nobody foresaw: says nothing of the inside."""
+    """Problem document of an unexpected error; reveals no internals."""
     return document(
         "internal",
         "Internal error",
@@ -129,7 +129,7 @@ def headers_of(error: SafestartError) -> dict[str, str]:
     """Header fields that belong to an error's status."""
     if error.status == 401:
         return {"WWW-Authenticate": CHALLENGE}
-    if error.status in (408, 413):  # the rest of the body is not read
+    if error.status in (408, 413):  # the rest of the body stays unread
         return {"Connection": "close"}
     if error.status in (429, 503):
         return {"Retry-After": "1" if error.slug == "rate-limited" else "5"}
@@ -150,7 +150,7 @@ async def _on_own(request: Request, error: Exception) -> Response:
 
 
 def _methods_at(request: Request) -> str:
-    """Methods answered at this path: those of every route (each alone knows only its own), HEAD and OPTIONS."""
+    """Methods allowed at this path: those of every route with this path, HEAD and OPTIONS."""
     methods: set[str] = set()
     for pattern, answered in request.app.state.route_table:
         if pattern.fullmatch(request.scope["path"]):
@@ -195,7 +195,7 @@ async def _on_validation(request: Request, error: Exception) -> Response:
 
 
 def install(app: FastAPI) -> None:
-    """Register the handlers; what none of them takes becomes a 500 in :mod:`safestart_service.http.limits`."""
+    """Register the handlers; :mod:`safestart_service.http.limits` answers all other errors with a 500."""
     app.add_exception_handler(SafestartError, _on_own)
     app.add_exception_handler(HTTPException, _on_http)
     app.add_exception_handler(RequestValidationError, _on_validation)

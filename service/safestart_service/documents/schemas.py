@@ -1,4 +1,4 @@
-"""Documents the service answers with, as models: they are what the OpenAPI description shows."""
+"""Models of the service's documents, which the OpenAPI description shows."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ class ViewDescription(BaseModel):
     kind: str
 
 
-# A field that may be absent and is never null: the default that stands for its absence is no part of the schema.
+# A field that may be absent but is never null; its default only marks absence and is not in the schema.
 _ABSENT: dict[str, Any] = {"json_schema_extra": lambda schema: schema.pop("default", None)}
 
 

@@ -1,6 +1,6 @@
-"""Outputs as tables: lists of objects, and what a process says of its other lists.
+"""Outputs as tables: lists of objects, and the tables that a process declares over its other lists.
 
-Which lists belong side by side cannot be told from their lengths: the axes of a map are often as long as each other.
+Lengths do not show which lists belong side by side: the axes of a map often have equal lengths.
 """
 
 from __future__ import annotations
@@ -11,14 +11,14 @@ from typing import Any
 from safestart.processes.base import Table
 
 Rows = list[dict[str, Any]]
-# A list of at most so many numbers is a vector, and gets a column for each.
+# A list of at most this many numbers is a vector, with one column per number.
 _MOST_ENTRIES = 8
 
 
 def tables_of(outputs: dict[str, Any], declared: Iterable[Table] = ()) -> dict[str, Rows]:
-    """The tables among outputs by name: those that are declared, then lists of objects.
+    """The tables among outputs by name: declared ones, then lists of objects.
 
-    A list of objects within the rows of another one is a table too, ``outer.inner``, beside what its row says.
+    A list of objects within the rows of another list is a table too, ``outer.inner``, beside its row's scalars.
     """
     found = {}
     for table in declared:
@@ -32,12 +32,12 @@ def tables_of(outputs: dict[str, Any], declared: Iterable[Table] = ()) -> dict[s
 
 
 def columns_of(rows: Rows) -> list[str]:
-    """Names of all columns, in the order in which they first come."""
+    """Names of all columns, in the order of their first appearance."""
     return list(dict.fromkeys(name for row in rows for name in row))
 
 
 def _declared(outputs: dict[str, Any], table: Table) -> Rows:
-    """Rows of a declared table; none where its columns are not there, or not of one length."""
+    """Rows of a declared table; none if columns are missing or differ in length."""
     columns = {name: outputs[name] for name in table.columns if outputs.get(name) is not None}
     if not columns or any(name not in outputs for name in table.axes):
         return []
@@ -71,7 +71,7 @@ def _objects_tables(name: str, value: Rows) -> dict[str, Rows]:
 
 
 def _flat(row: dict[str, Any]) -> dict[str, Any]:
-    """The scalars of a row: of inner objects as ``name.member``, of vectors as ``name.0``; short words as one text."""
+    """The scalars of a row: inner objects as ``name.member``, vectors as ``name.0``, short words as one text."""
     found: dict[str, Any] = {}
     for name, value in row.items():
         if isinstance(value, dict):
@@ -86,7 +86,7 @@ def _flat(row: dict[str, Any]) -> dict[str, Any]:
 
 
 def _tidy(rows: Rows) -> Rows:
-    """Without the columns that only say that an object, whose members have columns, is not there."""
+    """Drop columns that only mark a missing object whose members have columns."""
     names = columns_of(rows)
     outer = {name.rpartition(".")[0] for name in names}
     outer |= {name[:place] for name in outer for place, letter in enumerate(name) if letter == "."}

@@ -1,1 +1,1 @@
-"""HTTP itself: the wire, its limits, bodies, media types, answers and event streams."""
+"""HTTP: the wire, its limits, bodies, media types, answers and event streams."""

@@ -26,7 +26,7 @@ class Json(Response):
 
 
 async def send_json(send: Send, document: Any) -> None:
-    """What :class:`Json` sends, without the object."""
+    """The bytes that :class:`Json` would send."""
     body = orjson.dumps(document)
     headers = [(b"content-length", b"%d" % len(body)), (b"content-type", b"application/json")]
     await send({"type": "http.response.start", "status": 200, "headers": headers})
@@ -36,7 +36,7 @@ async def send_json(send: Send, document: Any) -> None:
 def base_url(request: Request) -> str:
     """Scheme, host and mount path of this request, without a trailing slash.
 
-    A Host header that is no host is not repeated; the address of the socket stands in for it.
+    The address of the socket replaces an invalid Host header.
     """
     scope = request.scope
     host = request.headers.get("host", "")
@@ -47,13 +47,13 @@ def base_url(request: Request) -> str:
 
 
 def this_url(request: Request) -> str:
-    """The address that was asked for, query included."""
+    """The requested address, query included."""
     query = request.scope["query_string"].decode("latin-1")
     return f"{base_url(request)}{get_route_path(request.scope)}{'?' if query else ''}{query}"
 
 
 def tagged(request: Request, content: Any, headers: dict[str, str] | None = None) -> Response:
-    """A JSON answer with the entity tag of its bytes; 304 when the caller has them already."""
+    """A JSON answer with the entity tag of its bytes; 304 if the caller has them already."""
     answer = Json(content, headers={"Cache-Control": "private, no-cache", **(headers or {})})
     tag = entity_tag(sha256(bytes(answer.body)).hexdigest()[:32])
     answer.headers["ETag"] = tag
@@ -61,7 +61,7 @@ def tagged(request: Request, content: Any, headers: dict[str, str] | None = None
 
 
 def link(href: str, rel: str, title: str, media_type: str = "application/json") -> dict[str, str]:
-    """A link object as OGC API documents carry them."""
+    """A link object of OGC API documents."""
     return {"href": href, "rel": rel, "type": media_type, "title": title}
 
 
@@ -71,7 +71,7 @@ def entity_tag(sha256: str) -> str:
 
 
 def not_modified(request: Request, tag: str) -> Response | None:
-    """304 when the caller has this content already (If-None-Match, weak comparison)."""
+    """304 if the caller has this content already (If-None-Match, weak comparison)."""
     known = request.headers.get("if-none-match")
     if known is None:
         return None

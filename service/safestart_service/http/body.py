@@ -1,4 +1,4 @@
-"""Read a JSON body and validate it strictly: text and booleans are no numbers; fields are known, and come once."""
+"""Read a JSON body and validate it strictly: no text or booleans for numbers, no unknown or repeated fields."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Model = TypeVar("Model", bound=BaseModel)
 
 
 async def read_body(request: Request) -> bytes:
-    """The body's bytes, if the request says that they are JSON; the caps are :mod:`limits`' work."""
+    """The body's bytes, if the request declares JSON; :mod:`limits` enforces the caps."""
     received = request.headers.get("content-type", "")
     kind = received.partition(";")[0].strip().lower()
     if kind != "application/json" and not (kind.startswith("application/") and kind.endswith("+json")):
@@ -38,14 +38,14 @@ async def read_body(request: Request) -> bytes:
 
 
 def parse_body(model: type[Model], body: bytes) -> Model:
-    """Validate bytes against a model; raises ``MalformedBody`` or ``InvalidInput``, which name what is wrong.
+    """Validate bytes against a model; raises ``MalformedBody`` or ``InvalidInput``, which name the mistake.
 
-    pydantic parses and validates in one pass, which is what makes 100 000 states affordable.
+    pydantic parses and validates in one pass, which makes 100 000 states affordable.
     """
     try:
         found = model.model_validate_json(body, strict=True)
     except ValidationError as error:
-        # One report by itself: listing those of a hundred thousand unknown fields takes a second.
+        # Take the first report only: listing those of a hundred thousand unknown fields takes a second.
         only = error.errors(include_url=False)[0] if error.error_count() == 1 else None
         if only is not None and only["type"] == "json_invalid":
             raise MalformedBody(
@@ -60,7 +60,7 @@ def parse_body(model: type[Model], body: bytes) -> Model:
 
 
 def require_once(body: bytes) -> None:
-    """Raise ``InvalidInput`` for a name that comes twice in an object of a body that is JSON."""
+    """Raise ``InvalidInput`` for a name that appears twice in an object of a JSON body."""
     try:
         require_unique_names(body)
     except NameTwice as error:

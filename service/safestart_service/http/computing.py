@@ -1,6 +1,6 @@
-"""Answers computed while the client waits, beside the event loop: few at once, and so many in line.
+"""Answers computed in threads while the client waits: few at the same time, and a limited line.
 
-An answer that nobody waits for any more is not computed: a page asks again with every move of a slider.
+If the client has left, its answer is not computed: a page asks again with every move of a slider.
 """
 
 from __future__ import annotations
@@ -24,10 +24,11 @@ Answer = TypeVar("Answer")
 
 
 async def computed(request: Request, work: Callable[[Context], Answer]) -> Answer:
-    """Do the work in a thread; raises ``RateLimited`` where too much is in line, ``ClientDisconnect`` for who left.
+    """Do the work in a thread; raises ``RateLimited`` when the line is full, ``ClientDisconnect`` when the client
+    left.
 
-    The context that the work is given says that it is cancelled once the client has left. Work still in line is then
-    not begun; a process that asks its context, as it must, ends early.
+    The work's context reports cancellation once the client has left. Work in line is then not started; a running
+    process polls its context, as it must, and ends early.
     """
     found = services(request)
     line: Callers = found.computing
@@ -49,8 +50,8 @@ async def computed(request: Request, work: Callable[[Context], Answer]) -> Answe
 
 
 async def _leaves(request: Request, left: threading.Event) -> None:
-    """Wait for the client to leave; the body has been read, or there is none."""
-    with suppress(SafestartError):  # of a body that nobody asked for
+    """Wait for the client to leave; the body must be read already or absent."""
+    with suppress(SafestartError):  # an unused body
         while (await request.receive())["type"] != "http.disconnect":
             pass
         left.set()

@@ -1,4 +1,4 @@
-"""Event streams and long polls: each asks the database again and again for as long as its client likes."""
+"""Event streams and long polls: each queries the database repeatedly until its client leaves."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ UNSLOWED = 40
 
 
 class Following(Callers):
-    """Those who follow a job."""
+    """The clients that follow jobs."""
 
     def __init__(self, most: int, access: Access) -> None:
         super().__init__("event streams and long polls", most)
@@ -27,11 +27,11 @@ class Following(Callers):
 
     @property
     def pause_s(self) -> float:
-        """How long to wait before asking again: the more follow, the longer, so that all together ask no more often."""
+        """Time between queries: it grows with the number of followers, so that their total rate stays the same."""
         return POLL_S * max(1.0, self.now / UNSLOWED)
 
     async def pause(self, request: Request, most_s: float = math.inf) -> bool:
-        """Wait that long, ``most_s`` at most; False, within :data:`POLL_S`, when the caller may not follow any more."""
+        """Wait that long, at most ``most_s``; False, within :data:`POLL_S`, once the caller's access has ended."""
         until = monotonic() + min(self.pause_s, most_s)
         while (left := until - monotonic()) > 0:
             if not self._access.still_passes(request):
@@ -41,7 +41,7 @@ class Following(Callers):
 
 
 class Followed(StreamingResponse):
-    """A stream that holds a place from before its first byte until its end, however it ends."""
+    """A stream that holds a place from before its first byte until it ends for any reason."""
 
     def __init__(self, following: Following, request: Request, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)

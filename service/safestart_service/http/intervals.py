@@ -1,4 +1,4 @@
-"""Times and intervals in queries, as OGC API parameters have them."""
+"""Times and intervals in queries, in the form of OGC API parameters."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _REQUIRED = "a time of RFC 3339 with its zone, or an interval FROM/TO with .. fo
 
 
 def interval(name: str, text: str | None) -> tuple[datetime | None, datetime | None]:
-    """Both ends, None where open; a single time is both. Raises ``InvalidInput``."""
+    """Both ends, None for an open end; a single time gives two equal ends. Raises ``InvalidInput``."""
     if text is None:
         return None, None
     parts = text.split("/")
@@ -27,7 +27,7 @@ def _time(name: str, part: str, text: str) -> datetime | None:
         return None
     try:
         found = datetime.fromisoformat(part.replace("t", "T").replace("z", "Z"))
-        # A + in a query that was not escaped arrives as a space; a time without zone could be any.
+        # An unescaped + in a query arrives as a space; a time without zone is ambiguous.
         if found.tzinfo is None or "T" not in part.upper():
             raise ValueError
         return found.astimezone(UTC)
@@ -36,5 +36,5 @@ def _time(name: str, part: str, text: str) -> datetime | None:
 
 
 def without_nul(text: str) -> str:
-    """Text that every database takes: PostgreSQL refuses NUL. Nothing has one, so it finds nothing either way."""
+    """Replace NUL, which PostgreSQL refuses; no stored text contains it, so a search still finds nothing."""
     return text.replace("\0", "\N{REPLACEMENT CHARACTER}")

@@ -1,7 +1,7 @@
 """A route whose whole input is one query, without FastAPI's dependency machinery.
 
-FastAPI documents its model as usual, but resolving the parameters one by one costs more than the closed-form answer
-itself. Here the query string is split once and validated in one call.
+FastAPI documents its model as usual, but resolving the parameters one by one would take longer than a closed-form
+answer. This route splits the query string once and validates it in one call.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ _GROUPED = re.compile(r"\d_\d")
 def query_values(raw: bytes) -> dict[str, str]:
     """Parameters of a query string.
 
-    Raises ``InvalidInput`` when one comes twice, as it is unclear which counts, and for ``1_0``, which pydantic reads
-    as 10: in a thrust it is more likely a slip for 1.0.
+    Raises ``InvalidInput`` for a repeated parameter, which is ambiguous, and for ``1_0``, which pydantic reads as
+    10 but is more likely a slip for 1.0.
     """
     text = raw.decode("latin-1")
     if "%" in text or "+" in text:
         pairs = parse_qsl(text, keep_blank_values=True)
         text = "&".join(value for _, value in pairs)
-    else:  # nothing to unescape, which is the usual case
+    else:  # nothing to unescape, the usual case
         pairs = [part.partition("=")[::2] for part in text.split("&") if part]
     values = dict(pairs)
     if len(values) != len(pairs):
@@ -53,11 +53,12 @@ def query_values(raw: bytes) -> dict[str, str]:
 def query_route(
     parse: Callable[[dict[str, str]], Query],
     answer: Callable[[Request, Query], Awaitable[Response]],
-    instant: Callable[[Query], Any] = lambda _: None,
+    instant: Callable[[Query, bytes], Any] = lambda _, __: None,
 ) -> type[APIRoute]:
-    """An ``APIRoute`` class that serves ``answer(request, parse(parameters))``; the endpoint is the documentation.
+    """An ``APIRoute`` class that serves ``answer(request, parse(parameters))``; the endpoint is only documentation.
 
-    ``instant`` gives the document of a query that takes microseconds, or None: it is sent without more ado.
+    ``instant`` gives the document of a query that takes microseconds, sent at once, or None. Its second argument is
+    the query string.
     """
 
     class QueryRoute(APIRoute):
@@ -69,7 +70,7 @@ def query_route(
                 await super().handle(scope, receive, send)  # refuses it
                 return
             query = parse(query_values(scope["query_string"]))
-            document = instant(query)
+            document = instant(query, scope["query_string"])
             if document is None:
                 response = await answer(Request(scope, receive, send), query)
                 await response(scope, receive, send)

@@ -1,7 +1,7 @@
 """The outermost layer, pure ASGI: request id, security headers, access, caps on body and query, the last-resort 500.
 
-It sits in front of every answer, the instant ones too, so it does no more per request than it must: headers are
-encoded once and read in one pass, and ``receive`` is wrapped only when a body is announced.
+It precedes every answer, the instant ones too, so it does little per request: it encodes headers once, reads them
+in one pass, and wraps ``receive`` only when a body is announced.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import itertools
 import logging
 import re
 import secrets
+from collections.abc import Callable
 
 from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -50,12 +51,18 @@ class Limits:
     """ASGI middleware around the whole application."""
 
     def __init__(
-        self, app: ASGIApp, max_body_bytes: int, access: Access | None = None, timeout_s: float = 60.0
+        self,
+        app: ASGIApp,
+        max_body_bytes: int,
+        access: Access | None = None,
+        timeout_s: float = 60.0,
+        refused: Callable[[int], None] = lambda _: None,
     ) -> None:
         self.app = app
         self.max_body_bytes = max_body_bytes
         self.access = access
         self.timeout_s = timeout_s
+        self.refused = refused  # told the status of what no route answers
         self._prefix = secrets.token_hex(4).encode() + b"-"
         self._numbers = itertools.count(1)
 
@@ -65,7 +72,7 @@ class Limits:
             await self.app(scope, receive, send)
             return
         if scope["method"] == "HEAD" and not scope["path"].endswith("/events"):
-            scope = {**scope, "method": "GET"}  # the server sends the head of the answer alone
+            scope = {**scope, "method": "GET"}  # the server sends only the head of the answer
         headers, twice = _single(scope)
         request_id = headers.get(b"x-request-id", b"")
         if not _SAFE_ID.fullmatch(request_id):
@@ -84,6 +91,7 @@ class Limits:
 
         refusal = twice or self._refusal(scope, headers)
         if refusal is not None:
+            self.refused(refusal.status)
             problem = problems.of_error(refusal, scope["path"], request_id.decode())
             await _answer(send_with_headers, problem, problems.headers_of(refusal))
             return
@@ -95,8 +103,9 @@ class Limits:
             log.info("the caller left", extra=about(request=request_id.decode()))
         except Exception:
             log.exception("%s %s", scope["method"], scope["path"], extra=about(request=request_id.decode()))
-            if started:  # too late for a problem document: let the server cut the connection
+            if started:  # too late for a problem document: the server cuts the connection
                 raise
+            self.refused(500)
             await _answer(send_with_headers, problems.unexpected(scope["path"], request_id.decode()))
 
     def _refusal(self, scope: Scope, headers: dict[bytes, bytes]) -> SafestartError | None:
@@ -128,7 +137,7 @@ class Limits:
         )
 
     def _watched(self, receive: Receive) -> Receive:
-        """Count what comes, as a chunked body announces no length, and stop reading beyond the cap or too late."""
+        """Count the bytes received, as a chunked body announces no length; stop at the cap or the deadline."""
         total = 0
         complete = False
         deadline = asyncio.get_running_loop().time() + self.timeout_s
@@ -162,9 +171,9 @@ class Limits:
 
 
 def _single(scope: Scope) -> tuple[dict[bytes, bytes], MalformedRequest | None]:
-    """The header fields of :data:`_READ`, and the refusal of a second line of one that has one value.
+    """The header fields of :data:`_READ`.
 
-    Of two, one layer would look at the first and the next at the last.
+    Refuses a repeated single-valued field: one layer would use its first value and another its last.
     """
     found: dict[bytes, bytes] = {}
     refusal = None

@@ -1,4 +1,4 @@
-"""Which of the offered media types a caller takes (RFC 9110, 12.5.1)."""
+"""Which of the offered media types a caller accepts (RFC 9110, 12.5.1)."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from safestart_service.errors import NotAcceptable
 
 
 def chosen(accept: str | None, offered: Sequence[str]) -> str:
-    """The best of ``offered``; the first one when it makes no difference. Raises ``NotAcceptable``."""
+    """The best of ``offered``; the first of several equally good ones. Raises ``NotAcceptable``."""
     if not accept:
         return offered[0]
     ranges = [_range(part) for part in accept.split(",") if part.strip()]
@@ -38,7 +38,7 @@ def _range(part: str) -> tuple[str, float]:
 
 
 def _quality(kind: str, ranges: Sequence[tuple[str, float]]) -> tuple[float, int]:
-    """Quality by the most specific range that holds the type, and how specific that one is."""
+    """Quality by the most specific range that includes the type, and how specific that range is."""
     best = (0.0, 0)
     for specificity, wanted in enumerate(("*/*", kind.partition("/")[0] + "/*", kind), start=1):
         for name, quality in ranges:

@@ -1,4 +1,4 @@
-"""Query parameters that have one value come once: of two, the last would count, and nobody would be told."""
+"""Single-valued query parameters must not repeat: otherwise the last value would silently count."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from safestart.errors import invalid
 
 
 class OnceRoute(APIRoute):
-    """A route that refuses a second value of every query parameter of its that is no list."""
+    """A route that refuses a second value for each of its query parameters that is not a list."""
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
-        """The usual handler, behind that check."""
+        """The usual handler, after that check."""
         handle = super().get_route_handler()
         single = frozenset(_single(self))
 
@@ -34,7 +34,7 @@ class OnceRoute(APIRoute):
 
 
 def _single(route: APIRoute) -> Iterator[str]:
-    """Names of the query parameters that have one value."""
+    """Names of the single-valued query parameters."""
     for parameter in route.dependant.query_params:
         model = parameter.field_info.annotation
         if isinstance(model, type) and issubclass(model, BaseModel):

@@ -1,4 +1,4 @@
-"""Every connection is an open file to the system, which limits how many a process may have."""
+"""Each connection is an open file, and the system limits how many a process may have."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ import sys
 from safestart.errors import InvalidInput
 
 SPARE = 224
-"""For the database, the event loop and connections that are being turned away."""
+"""For the database, the event loop and connections being refused."""
 
 
 def make_room(connections: int) -> None:
-    """Raise this process's own limit where it is too low; raises ``InvalidInput`` when the system allows no more."""
+    """Raise this process's limit if it is too low; raises ``InvalidInput`` when the system does not allow enough."""
     if sys.platform == "win32":
         return
     import resource

@@ -1,10 +1,10 @@
-"""So many at once: places that are taken and left again, of which one name may hold half."""
+"""A fixed number of places, to take and give back; one name may hold half of them."""
 
 from __future__ import annotations
 
 
 class Places:
-    """``most`` places. Whoever has a name leaves the other half to the others; None has no name and no such limit."""
+    """``most`` places. One name may hold half of them, so that the rest stays for others; None has no such limit."""
 
     def __init__(self, most: int) -> None:
         self.most = most
@@ -13,7 +13,7 @@ class Places:
         self._by: dict[str, int] = {}
 
     def take(self, name: str | None) -> bool:
-        """Take a place; False when none is left, or none for this name."""
+        """Take a place; False when none is left for this name."""
         if self.taken >= self.most:
             return False
         if name is not None:
@@ -25,7 +25,7 @@ class Places:
         return True
 
     def leave(self, name: str | None) -> None:
-        """Give back a place that was taken under this name."""
+        """Give back a place taken under this name."""
         self.taken -= 1
         if name is not None:
             own = self._by.pop(name) - 1

@@ -1,4 +1,4 @@
-"""Events of a job as a stream of server-sent events that can be resumed."""
+"""Events of a job as a resumable stream of server-sent events."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def resume_point(header: str | None) -> int:
 
 
 def encode(event: Event) -> bytes:
-    """One event in the format of the HTML standard; JSON has no line breaks, so one data line is enough."""
+    """One event in the format of the HTML standard; our JSON has no line breaks, so one data line is enough."""
     data: dict[str, Any] = {"at": event.at, **event.data}
     return b"id: %d\nevent: %s\ndata: %s\n\n" % (event.id, event.kind.encode(), orjson.dumps(data))
 
@@ -36,9 +36,9 @@ def encode(event: Event) -> bytes:
 async def stream(request: Request, job_id: str, after: int) -> AsyncIterator[bytes]:
     """Events after ``after`` until the job has ended and all were sent; comments keep idle connections open.
 
-    Ends before that when the key has ended with which they were asked for.
+    The stream ends earlier when the caller's key ends.
 
-    The status is read before the events: once it is final, no event comes any more that was not read then.
+    The status is read before the events: once it is final, that read has all events.
     """
     found, spoke = services(request), monotonic()
     yield b"retry: 1000\n\n"

@@ -1,4 +1,4 @@
-"""Answers that nobody reads: what is sent waits in memory, on a connection that no other deadline ends."""
+"""Unread answers: they stay in memory, on a connection that no other deadline ends."""
 
 from __future__ import annotations
 
@@ -7,32 +7,32 @@ from asyncio import TimerHandle, Transport
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 
 UNREAD_S = 60.0
-"""Who takes nothing of an answer for so long does not want it."""
+"""A client that reads none of an answer for this long, s, has given up."""
 
 
 class Read(HttpToolsProtocol):
-    """A connection that is cut off when its peer takes nothing of what waits for it."""
+    """A connection that is cut when its peer reads none of the waiting data."""
 
     _unread: TimerHandle | None = None
     _waiting = 0
 
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
-        """Be told of everything that is not taken at once."""
+        """Ask asyncio to report all data that the peer does not take at once."""
         super().connection_made(transport)
         transport.set_write_buffer_limits(high=0)
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Expect nothing any more."""
+        """Stop watching."""
         self._expect_nothing()
         super().connection_lost(exc)
 
     def pause_writing(self) -> None:
-        """The peer does not take what we send; see whether it does later."""
+        """The peer does not read our data; check later whether it does."""
         super().pause_writing()
         self._expect()
 
     def resume_writing(self) -> None:
-        """It has taken everything."""
+        """The peer has read everything."""
         super().resume_writing()
         self._expect_nothing()
 

@@ -1,7 +1,7 @@
-"""HTTP on the wire: uvicorn's protocol, with our words for what is no request, and limits on what one peer may take.
+"""HTTP on the wire: uvicorn's protocol with our messages for invalid requests, and limits on each peer.
 
-:mod:`limits` sees a request once its head has been read. What is no HTTP, never comes to an end, is never read, or
-comes from too many at once, is met here.
+:mod:`limits` sees a request after its head. This module handles bytes that are not HTTP, heads that never end,
+answers that nobody reads, and too many connections.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import ipaddress
 import logging
 import secrets
 from asyncio import TimerHandle, Transport
+from collections.abc import Callable
 from enum import Enum, auto
 from http import HTTPStatus
 from typing import Any
@@ -26,7 +27,7 @@ from safestart_service.http.unread import Read
 HEAD_S = 20.0
 MAX_HEAD_BYTES = 131_072
 MOST_AHEAD = 100
-"""Requests read ahead on one connection, about: what comes behind them waits as it is for the answers before it."""
+"""Approximate number of requests parsed ahead on one connection; later bytes wait unparsed for earlier answers."""
 _PIECE = 8192
 TURNED_AWAY_S = 1.0
 MOST_TURNED_AWAY = 64
@@ -35,7 +36,7 @@ log = logging.getLogger("safestart.service")
 
 
 class Message(Enum):
-    """Where the bytes that come next belong."""
+    """The part of a message that the next bytes belong to."""
 
     BETWEEN = auto()
     HEAD = auto()
@@ -52,13 +53,14 @@ class Protocol(Read):
     _seated = False
     _active: Any = None
 
-    def __init__(self, *args: Any, places: Places, **kwargs: Any) -> None:
+    def __init__(self, *args: Any, places: Places, refused: Callable[[int], None], **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
         self._places = places
+        self._refused = refused
         self._held = b""
 
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
-        """Wait for the first head, if there is a place; otherwise say so to the first bytes, or soon."""
+        """Wait for the first head if a place is free; otherwise refuse at the first bytes or after a short time."""
         super().connection_made(transport)
         self._holder = holder(self.client[0] if self.client else "")
         self._seated = self._places.take(self._holder)
@@ -66,11 +68,11 @@ class Protocol(Read):
             self._wait()
         elif len(self.connections) > self._places.taken + MOST_TURNED_AWAY:
             self._turn_away()
-        else:  # closing before what was sent is read would take our words back
+        else:  # closing before reading the request would discard our answer
             self._deadline = self.loop.call_later(TURNED_AWAY_S, self._turn_away)
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Wait no longer, and leave the place to another."""
+        """Stop the timers and free the place."""
         self._wait_no_longer()
         if self._seated:
             self._seated = False
@@ -90,7 +92,7 @@ class Protocol(Read):
         super().on_headers_complete()
         self._message = Message.BODY
         self._parts += 1
-        self.headers = []  # trailers go here, and nowhere: they are no part of the head, which was judged
+        self.headers = []  # drop trailers: they do not belong to the head, which is checked already
 
     def on_body(self, body: bytes) -> None:
         """A part of the body."""
@@ -98,13 +100,13 @@ class Protocol(Read):
         super().on_body(body)
 
     def on_message_complete(self) -> None:
-        """Nothing more of this request."""
+        """The request is complete."""
         self._message = Message.BETWEEN
         self._parts += 1
         super().on_message_complete()
 
     def on_response_complete(self) -> None:
-        """Read on what was held, and wait for the next head, unless it is there."""
+        """Parse the held bytes, and wait for the next head unless it is there already."""
         super().on_response_complete()
         if self._held:
             self._read_on()
@@ -112,7 +114,7 @@ class Protocol(Read):
             self._wait()
 
     def data_received(self, data: bytes) -> None:
-        """Read it in pieces, for as long as not too many requests wait for their answers."""
+        """Parse the data in pieces while not too many requests wait for answers."""
         if not self._seated:
             self._turn_away()
             return
@@ -121,7 +123,7 @@ class Protocol(Read):
 
     def _read_on(self) -> None:
         held, at = self._held, 0
-        self._held = b""  # a piece that completes an answer would come here again
+        self._held = b""  # a piece that completes an answer would call this again
         while at < len(held) and len(self.pipeline) < MOST_AHEAD and not self.transport.is_closing():
             self._read(held[at : at + _PIECE])
             at += _PIECE
@@ -130,9 +132,9 @@ class Protocol(Read):
             self.flow.pause_reading()
 
     def _read(self, data: bytes) -> None:
-        """Count what ends no head and is no body: long headers, trailers, chunk extensions.
+        """Count bytes outside bodies that do not end a head: long headers, trailers, chunk extensions.
 
-        The piece in which a head begins or ends is not counted.
+        A piece in which a head begins or ends does not count.
         """
         before = self._parts
         super().data_received(data)
@@ -149,7 +151,7 @@ class Protocol(Read):
                 )
 
     def send_400_response(self, msg: str) -> None:  # noqa: ARG002
-        """What is no HTTP; called by uvicorn, whose own words are plain text."""
+        """Answer bytes that are not HTTP; replaces uvicorn's plain-text answer."""
         self._refuse(
             MalformedRequest("the request is not HTTP/1.1 (RFC 9112)", required="HTTP/1.1 or HTTP/1.0")
         )
@@ -164,7 +166,7 @@ class Protocol(Read):
             self._deadline = None
 
     def _too_slow(self) -> None:
-        if self._message is not Message.HEAD:  # nothing was asked, so nothing is answered
+        if self._message is not Message.HEAD:  # no request came, so no answer is due
             self.transport.close()
             return
         required = f"request line and headers within {HEAD_S:g} s"
@@ -175,9 +177,10 @@ class Protocol(Read):
         self._refuse(TooManyConnections(f"no place is left; required {required}", required=required))
 
     def _refuse(self, error: SafestartError) -> None:
-        """Answer and close; where another answer is due or under way on this connection, only close."""
+        """Answer and close; if another answer is due or being sent on this connection, only close."""
         if self.transport.is_closing():
             return
+        self._refused(error.status)
         if self._may_answer():
             request_id = secrets.token_hex(8)
             log.info("refused: %s", error.detail, extra=about(request=request_id))
@@ -190,13 +193,13 @@ class Protocol(Read):
         super()._start_asgi_task(cycle, app)
 
     def _abandon(self) -> None:
-        """Tell whoever answers now that nobody listens; uvicorn tells only the request that came last."""
+        """Tell the current handler that the client has left; uvicorn tells only the latest request."""
         if self._active is not None and not self._active.response_complete:
             self._active.disconnected = True
             self._active.message_event.set()
 
     def _may_answer(self) -> bool:
-        """True when whoever asked last will take the next answer for the answer to that."""
+        """True when the peer will match our next answer to its latest request."""
         cycle: Any = self.cycle
         if self._message is Message.BODY:
             return not (cycle.response_started or self.pipeline)
@@ -204,13 +207,11 @@ class Protocol(Read):
 
 
 def holder(address: str) -> str | None:
-    """Whose a connection is: an IPv4 address or an IPv6 network; None on this machine, where proxies speak for many."""
+    """The peer of a connection: an IPv4 address or IPv6 network; None on this machine, which may be a proxy."""
     if not address or is_local(address):
         return None
     found = ipaddress.ip_address(address.partition("%")[0])
-    if (
-        isinstance(found, ipaddress.IPv6Address) and found.ipv4_mapped is None
-    ):  # one customer has 2^64 of them
+    if isinstance(found, ipaddress.IPv6Address) and found.ipv4_mapped is None:  # a customer has 2^64
         return str(ipaddress.IPv6Network((int(found) >> 64 << 64, 64)))
     return address
 

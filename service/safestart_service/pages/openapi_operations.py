@@ -1,4 +1,4 @@
-"""The API description taken apart for its page."""
+"""The API description, prepared for its page."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any
 
 
 def api_operations(description: dict[str, Any]) -> dict[str, list[dict[str, Any]]]:
-    """Operations of an OpenAPI document by tag, with what a reader needs of each."""
+    """Operations of an OpenAPI document by tag, with the facts that a reader needs."""
     groups: dict[str, list[dict[str, Any]]] = {}
     for path, methods in description["paths"].items():
         for method, operation in methods.items():

@@ -1,7 +1,8 @@
-"""Pages: shells rendered on the server, drawn by small scripts of ours that use the public API, nothing from elsewhere.
+"""Pages: the server renders shells, and our own small scripts fill them from the public API; nothing comes from
+elsewhere.
 
-A page holds no data of the store, so that it can be given to anyone: what it shows, its script asks for, with a key
-where keys are required.
+A page holds no data of the store, so anyone may get it; its script requests the data, with a key if keys are
+required.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 _HERE = Path(__file__).parents[1]
 _TYPES = {".css": "text/css", ".svg": "image/svg+xml", ".js": "text/javascript"}
 _PLOTLY = "plotly.min.js"
-# The three style attributes that plotly.js writes as text, by hash; everything else it styles through the DOM.
+# Hashes of the three style attributes that plotly.js writes as text; it sets all other styles through the DOM.
 _PLOTLY_STYLES = (
     "'sha256-ji27qzEtxXZW+7dun6UwjHXJ18e6WAin1VvNtkzIE/o='",
     "'sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU='",
@@ -39,7 +40,7 @@ CSP = (
 
 @cache
 def _environment() -> Environment:
-    # Imported with the first page: the API starts without.
+    # Imported with the first page, so that the API starts without it.
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
     return Environment(
@@ -58,7 +59,7 @@ def page(template: str, **values: Any) -> HTMLResponse:
 
 
 def docs(description: dict[str, Any], root: str) -> Response:
-    """The API description as a page."""
+    """The API description as an HTML page."""
     groups = api_operations(description)
     return page("docs.html", root=root, here="/docs", info=description["info"], groups=groups)
 
@@ -85,6 +86,6 @@ def static(request: Request, name: str) -> Response:
     if name not in _names():
         raise HTTPException(404)
     data, media_type, tag = _static_file(name)
-    # Asked for anew each time, answered by 304: after an upgrade no page runs an old script.
+    # Browsers ask each time and get a 304, so that no page runs an old script after an upgrade.
     headers = {"Cache-Control": "no-cache", "ETag": tag}
     return not_modified(request, tag) or Response(data, media_type=media_type, headers=headers)

@@ -1,4 +1,4 @@
-"""The dashboard: its pages and their files. Every figure on them comes from the public API."""
+"""The dashboard: pages and their files. Every figure on a page comes from the public API."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Following a job."""
+"""Follow a job."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ async def events(
     found = services(request)
     after = resume_point(last_event_id)
     job = await run_in_threadpool(known_job, found, jobID)
-    if after:  # what is no event of this job, or one that is gone, says nothing of what was seen
+    if after:  # an id that is no event of this job says nothing about what the client has seen
         known = await run_in_threadpool(found.jobs.events, jobID, after - 1, 1)
         after = after if known and known[0].id == after else 0
     if after and job.status.ended and not await run_in_threadpool(found.jobs.events, jobID, after, 1):

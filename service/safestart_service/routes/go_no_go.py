@@ -9,10 +9,11 @@ from fastapi.responses import Response
 
 from safestart.errors import NotFound
 from safestart.processes.go_no_go import run
-from safestart.processes.go_no_go.method_registry import METHODS, PROVING
+from safestart.processes.go_no_go.method_registry import PROVING, RENAMED, method_of
 from safestart.processes.go_no_go.one_start import ONE_START, GoNoGoAnswer
 from safestart.processes.go_no_go.spec import SPEC, GoNoGoInputs, GoNoGoOutputs
 from safestart.runtime.progress import Context
+from safestart_service.documents.deprecation import RENAMED_METHOD
 from safestart_service.documents.execution import check_states, run_now
 from safestart_service.documents.openapi import answer, content, json_body, refusals
 from safestart_service.http.answers import Json
@@ -32,20 +33,26 @@ def _document(inputs: GoNoGoInputs, context: Context) -> dict[str, Any]:
     return run.answer(inputs, context).document_of_one()
 
 
-def _instant(inputs: GoNoGoInputs) -> dict[str, Any] | None:
-    """The document that takes microseconds; a cone program would hold up every other request."""
-    return _document(inputs, _SILENT) if METHODS[inputs.method].at_once else None
+def _instant(inputs: GoNoGoInputs, query: bytes) -> dict[str, Any] | None:
+    """The document of a question that takes microseconds, else None: a cone program would block other requests."""
+    found = run.at_once(inputs, _SILENT)
+    return None if found is None else _linked(found.document_of_one(), inputs, query)
 
 
 async def _answer(request: Request, inputs: GoNoGoInputs) -> Response:
     document = await computed(request, lambda context: _document(inputs, context))
-    if METHODS[inputs.method].proves and document["verdict"] != "UNDECIDED":
-        document["proof_url"] = f"/go-no-go/proof?{request.url.query}"
-    return Json(document)
+    return Json(_linked(document, inputs, request.scope["query_string"]))
+
+
+def _linked(document: dict[str, Any], inputs: GoNoGoInputs, query: bytes) -> dict[str, Any]:
+    """The answer with the address of a proof of the same question; none for what is undecided or not sound."""
+    if document["verdict"] != "UNDECIDED" and method_of(inputs.method).sound:
+        document["proof_url"] = f"/go-no-go/proof?{query.decode('latin-1')}"
+    return document
 
 
 async def _proof(request: Request, inputs: GoNoGoInputs) -> Response:
-    method = inputs.method if METHODS[inputs.method].proves else PROVING
+    method = inputs.method if method_of(inputs.method).proves else PROVING
     asked = inputs.model_copy(update={"method": method, "proofs": True})
     document = await computed(request, lambda context: _document(asked, context))
     if document["proof"] is None:
@@ -70,8 +77,9 @@ many = APIRouter(tags=["instant answers"])
 async def go_no_go_one(_query: Annotated[GoNoGoQuery, Query()]) -> Response:
     """May a chaser at rest at this point start its approach?
 
-    By the paper's closed form, where NO_GO means not certified and GO is no proof, or with ``method=exact`` by a cone
-    program that proves either. A start outside the corridor is NO_GO; ``violated_faces`` says where.
+    No GO without a proof: a certificate in closed form says GO at once, for ever, or an atlas or a cone program
+    decides; ``decided_by`` says which. ``method=paper`` asks the paper's conditions, which are not sound. A start
+    outside the corridor is NO_GO; ``violated_faces`` says where.
     """
     raise AssertionError("its route class answers")
 
@@ -107,6 +115,9 @@ async def go_no_go_many(request: Request) -> Response:
     def respond(context: Context) -> Response:
         inputs = parse_body(GoNoGoInputs, body)
         check_states(SPEC, inputs, found.settings.max_states)
-        return Json(run_now(SPEC, inputs, context))
+        answered = Json(run_now(SPEC, inputs, context))
+        if inputs.method in RENAMED:
+            answered.raw_headers.extend(RENAMED_METHOD.headers())
+        return answered
 
     return await computed(request, respond)

@@ -54,7 +54,7 @@ class JobQuery(BaseModel):
     )
     limit: int = Field(50, ge=1, le=200, description="Jobs per page.")
     cursor: str | None = Field(
-        None, max_length=200, description="Where to go on: taken from the link `next`."
+        None, max_length=200, description="Where to go on: taken from the link `next` or `prev`."
     )
 
 
@@ -64,7 +64,7 @@ class JobQuery(BaseModel):
     responses={200: answer(JobList, "A page of jobs.", ETag=TAG), **refusals(304, 422, 503)},
 )
 def jobs(request: Request, query: Annotated[JobQuery, Query()]) -> Response:
-    """Jobs, newest first; the link `next` leads to the next page."""
+    """Jobs, newest first; the links `next` and `prev` lead to the pages of older and newer ones."""
     for name in query.processID:
         if name not in PROCESS_IDS:
             raise invalid("processID", f"one of {', '.join(PROCESS_IDS)}", name)
@@ -81,9 +81,13 @@ def jobs(request: Request, query: Annotated[JobQuery, Query()]) -> Response:
     )
     page = found.jobs.list(wanted, limit=query.limit, cursor=query.cursor)
     links = [link(this_url(request), "self", "this list")]
-    if page.next_cursor is not None:
-        again = query.model_dump(mode="json", exclude_defaults=True) | {"cursor": page.next_cursor}
-        links.append(link(f"{base}/jobs?{urlencode(again, doseq=True)}", "next", "next page"))
+    for rel, title, cursor in (
+        ("next", "next page", page.next_cursor),
+        ("prev", "previous page", page.prev_cursor),
+    ):
+        if cursor is not None:
+            again = query.model_dump(mode="json", exclude_defaults=True) | {"cursor": cursor}
+            links.append(link(f"{base}/jobs?{urlencode(again, doseq=True)}", rel, title))
     return tagged(request, {"jobs": status_infos(found, page.jobs, base), "links": links})
 
 
@@ -114,7 +118,7 @@ async def job(
         seen = tagged(request, job_detail(found, now, base))
         return now.status.ended or (until_change and seen.status_code == 200), seen
 
-    # Not in the threads that compute instant answers: whoever follows a job must not wait for those.
+    # Not in the threads for instant answers: a client that follows a job must not wait for those.
     final, seen = await run_in_threadpool(look)
     if final or wait <= 0:
         return seen

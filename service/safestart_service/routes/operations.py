@@ -1,6 +1,8 @@
-"""For whoever operates the service: alive, ready, metrics."""
+"""For operators of the service: alive, ready, metrics."""
 
 from __future__ import annotations
+
+import logging
 
 from fastapi import APIRouter, Request
 from fastapi.responses import Response
@@ -13,6 +15,7 @@ from safestart_service.http.answers import Json
 from safestart_service.state import services
 
 router = APIRouter(tags=["operations"])
+log = logging.getLogger("safestart.service")
 
 
 @router.get("/healthz", summary="Alive", responses={200: answer(Health, "The process lives."), **refusals()})
@@ -32,7 +35,14 @@ def readyz(request: Request) -> Response:
     503 without a worker whose cluster runs: jobs are accepted and wait, and the instant answers go on.
     """
     found = services(request)
-    counts, crew = found.jobs.counts(), found.jobs.crew()
+    try:
+        counts, crew = found.jobs.counts(), found.jobs.crew()
+    except Unavailable as error:
+        # Everybody may ask, so the name of the database goes to the log only.
+        log.warning("not ready: %s", error.detail)
+        raise Unavailable(
+            "the database does not answer; the service's log says why", required="a database that answers"
+        ) from None
     if not crew.places:
         raise Unavailable(
             f"required a worker with a running cluster, found {crew.workers} workers without one",

@@ -1,4 +1,4 @@
-"""What there is to run, and running it."""
+"""List, describe and run the processes."""
 
 from __future__ import annotations
 
@@ -54,12 +54,15 @@ class ProcessQuery(BaseModel):
     responses={200: answer(ProcessList, "A page of processes.", ETag=TAG), **refusals(304, 422)},
 )
 async def processes(request: Request, query: Annotated[ProcessQuery, Query()]) -> Response:
-    """Everything that can be run; the link `next` leads to the next page, where there is one."""
+    """Everything that can be run; the links `next` and `prev` lead to the pages beside it."""
     base, end = base_url(request), query.offset + query.limit
     links = [link(this_url(request), "self", "this list")]
     if end < len(PROCESS_IDS):
         further = f"{base}/processes?limit={query.limit}&offset={end}"
         links.append(link(further, "next", "next page"))
+    if query.offset:
+        before = f"{base}/processes?limit={query.limit}&offset={max(0, query.offset - query.limit)}"
+        links.append(link(before, "prev", "previous page"))
     entries = [summary(process(name), base) for name in PROCESS_IDS[query.offset : end]]
     return tagged(request, {"processes": entries, "links": links})
 
@@ -107,7 +110,7 @@ async def execute(
     """Light processes answer at once (200); with ``Prefer: respond-async`` they are queued, as heavy ones are."""
     spec = known_process(processID)
     body = await read_body(request)
-    # Its lines together are one list, of which ``prefer`` is the last.
+    # The header's lines form one list; ``prefer`` is only the last line.
     wants_async = prefer is not None and prefers_async(request.headers.getlist("prefer"))
     sync = spec.light and not wants_async
     found, base, by = services(request), base_url(request), caller(request)

@@ -22,7 +22,7 @@ router = APIRouter(tags=["results"], route_class=OnceRoute)
 
 
 def _body(form: Format) -> dict[str, Any]:
-    """What the API's description says of a form."""
+    """A format's entry in the API description."""
     if form.model is not None:
         return {"schema": {"$ref": REF + form.model.__name__}}
     return {"schema": {"type": "object"} if form.document else _FILE}
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     FormatName = str
 else:
     FormatName = Literal[tuple(_NAMES)]
-# Types a browser may show; everything else is a download, so that nothing a worker stored can act as a page.
+# Types that a browser may show. Everything else is a download, so that no stored file can act as a page.
 _SHOWN = ("image/png", "image/jpeg", "application/json", "text/csv", "text/plain")
 
 

@@ -7,12 +7,16 @@ from typing import Any
 
 import pytest
 
+from safestart.records.artifact import Artifact
+from safestart.store.database import Database
+from safestart.store.models import ArtifactRow, ResultRow
 from tests.contract.api.service_client import (
     PNG,
     assert_problem,
     digest,
     finish,
     submit,
+    url_of,
 )
 
 OGC = "http://www.opengis.net/def/exceptions/ogcapi-processes-1/1.0/"
@@ -29,6 +33,8 @@ def test_job_list_pages_and_filters(queue):
         seen += [job["jobID"] for job in page["jobs"]]
         url = next((link["href"] for link in page["links"] if link["rel"] == "next"), None)
     assert seen == made[::-1]
+    back = next(link["href"] for link in page["links"] if link["rel"] == "prev")
+    assert [job["jobID"] for job in client.get(back).json()["jobs"]] == made[2:0:-1]
     dismissed = client.get("/jobs", params={"status": "dismissed"}).json()["jobs"]
     assert [job["jobID"] for job in dismissed] == [made[0]]
     assert client.get("/jobs", params={"processID": "coverage"}).json()["jobs"] == []
@@ -149,3 +155,30 @@ def test_events_resume_and_end(queue):
         assert_problem(
             client.get(f"/jobs/{job}/events", headers={"Last-Event-ID": wrong}), 422, "Last-Event-ID"
         )
+
+
+def test_names_of_artifacts_in_links(queue, tmp_path):
+    """Whatever a bundle called its files: the link leads to the file."""
+    client, jobs = queue
+    job = submit(client)
+    claim = jobs.claim("tester", 60.0)
+    names = ("a b?#%&.txt", "é;\n.txt")
+    files = tuple(Artifact(name, "text/plain", name.encode()) for name in names)
+    jobs.succeed(claim, {"inputs": claim.inputs, "outputs": {}, "provenance": {}}, files, {})
+    for file in client.get(f"/jobs/{job}/results").json()["artifacts"]:
+        assert file["href"].isascii()
+        assert not set(file["href"]) & set(" ?#\n")
+        assert client.get(file["href"]).content == file["name"].encode()
+
+
+def test_a_result_that_was_altered_is_not_given_out(queue, tmp_path):
+    client, jobs = queue
+    job = submit(client)
+    finish(jobs)
+    assert client.get(f"/jobs/{job}/results").status_code == 200
+    with Database(url_of(tmp_path)).session(write=True) as session:
+        row = session.get_one(ResultRow, job)
+        row.document = row.document | {"outputs": {"rows": []}}
+        session.get_one(ArtifactRow, (job, "map.png")).data = b"forged"
+    for path in ("results", "artifacts/map.png"):
+        assert assert_problem(client.get(f"/jobs/{job}/{path}"), 500)["type"].endswith(":altered")

@@ -132,6 +132,8 @@ def test_process_list_pages(client):
         assert len(page["processes"]) <= 5
         seen += [entry["id"] for entry in page["processes"]]
         url = links.get("next")
+    before = [entry["id"] for entry in client.get(links["prev"]).json()["processes"]]
+    assert before == seen[-len(page["processes"]) - 5 : -len(page["processes"])]
     assert seen == [entry["id"] for entry in everything["processes"]]
     for wrong in ("limit=0", "limit=x", "offset=-1", "colour=red"):
         assert_problem(client.get(f"/processes?{wrong}"), 422, wrong.partition("=")[0])

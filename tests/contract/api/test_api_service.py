@@ -42,6 +42,21 @@ def test_ready_is_who_can_take_jobs(queue):
     assert (body["status"], body["workers_alive"], body["places"], body["places_taken"]) == ("ready", 2, 2, 1)
 
 
+def test_refusals_count(client):
+    """What is refused before any route looks at it is in the metrics."""
+
+    def count(status):
+        line = rf'safestart_http_requests_total{{method="\*",route="\(none\)",status="{status}"}} (\S+)'
+        found = re.search(line, client.get("/metrics").text)
+        return float(found[1]) if found else 0.0
+
+    before = {status: count(status) for status in (400, 413, 421)}
+    client.get("/healthz", headers={"Host": "elsewhere.example"})
+    client.get("/healthz", headers={"Host": "[::1]:99999"})
+    client.post("/certificates", content=b" " * 9_000_000, headers={"Content-Type": "application/json"})
+    assert {status: count(status) - number for status, number in before.items()} == {400: 1, 413: 1, 421: 1}
+
+
 def test_metrics_of_the_queue(queue):
     client, jobs = queue
     submit(client)
@@ -72,7 +87,9 @@ def test_database_away(tmp_path):
     folder = tmp_path / "gone"
     with service(folder) as client:
         assert client.get("/go-no-go", params={**POINT, "x_m": 5, "y_m": 40}).status_code == 200
-        assert_problem(client.get("/readyz"), 503)
+        asked = client.get("/readyz")
+        assert "the database does not answer" in assert_problem(asked, 503)["detail"]
+        assert str(folder) not in asked.text  # anybody may ask
         assert_problem(client.get("/jobs"), 503)
         assert_problem(client.post("/processes/benchmark/execution", json=HEAVY), 503)
         assert "safestart_store_up 0.0" in client.get("/metrics").text

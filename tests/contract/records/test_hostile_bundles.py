@@ -114,6 +114,10 @@ def test_the_parts_alone_are_a_bundle(database: Database) -> None:
         *(("events", [EVENT | {"kind": wrong}]) for wrong in (None, HALF, "x" * 300)),
         ("events", [EVENT | {"data": {"x": NAN}}]),
         *(("name", wrong) for wrong in ("../../x", "/etc/x", "..", "a/b", "a\\b", "C:x", "", "x" * 256)),
+        *(
+            ("name", f"a{wrong}b")
+            for wrong in ("\n", "\r", "\x1b", "\x7f", "\x85", "\u2028", "\u202e", "\ufeff")
+        ),
         *(("type", wrong) for wrong in (None, 3, HALF, "a\nb", "")),
         ("job", JOB | {"note": "x"}),
         ("events", [EVENT | {"note": "x"}]),

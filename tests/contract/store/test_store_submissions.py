@@ -130,6 +130,14 @@ def test_pages_are_newest_first_and_complete(jobs: JobRepository) -> None:
         seen += [job.id for job in page.jobs]
     assert seen == ids[::-1]
     assert jobs.list(limit=1).jobs[0].id == late
+    back: list[str] = []
+    while page.prev_cursor:
+        page = jobs.list(limit=3, cursor=page.prev_cursor)
+        back = [job.id for job in page.jobs] + back
+    assert back == [late, *ids[:0:-1]]  # the last page, of one job, was where we began
+    onward = jobs.list(limit=3, cursor=page.next_cursor)
+    assert onward.prev_cursor is not None
+    assert jobs.list(limit=3).prev_cursor is None
 
 
 def test_a_last_page_that_is_full_has_no_cursor(jobs: JobRepository) -> None:
@@ -162,10 +170,12 @@ def test_lists_are_filtered(jobs: JobRepository) -> None:
 
 
 @pytest.mark.parametrize(
-    "cursor", ["", "x", "!!!", "YmVmb3JlOg", "YmVmb3JlOi0x", "é", "' OR 1=1", "QQ==", "9" * 40]
+    "cursor", ["", "x", "!!!", "YmVmb3JlOg", "YmVmb3JlOi0x", "é", "' OR 1=1", "QQ==", "9" * 40, "YWZ0ZXI6"]
 )
 def test_a_foreign_cursor_is_refused(jobs: JobRepository, cursor: str) -> None:
-    with pytest.raises(InvalidInput, match="cursor: required the next_cursor of an earlier page"):
+    with pytest.raises(
+        InvalidInput, match="cursor: required the next_cursor or prev_cursor of an earlier page"
+    ):
         jobs.list(cursor=cursor)
 
 

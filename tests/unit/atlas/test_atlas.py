@@ -7,7 +7,8 @@ from safestart.atlas.atlas import Atlas
 from safestart.atlas.sandwich import Support, refine
 from safestart.atlas.survey import build
 from safestart.errors import InvalidInput
-from safestart.exact.decide import Verdict, decide
+from safestart.exact.answer import Verdict
+from safestart.exact.decide import decide
 from safestart.exact.prove import proof_of
 from safestart.exact.question import Question
 from safestart.model.scenario import Floats, Scenario

@@ -12,7 +12,8 @@ from safestart.closed_form.certified_point import certify_point, prepare
 from safestart.closed_form.paper import certify as paper_certify
 from safestart.constraints.corridor import corridor_of
 from safestart.errors import InvalidInput
-from safestart.exact.decide import Verdict, decide
+from safestart.exact.answer import Verdict
+from safestart.exact.decide import decide
 from safestart.exact.question import Question
 from safestart.model.scenario import Chaser, CorridorShape, Grid, Rest, Scenario, Target
 

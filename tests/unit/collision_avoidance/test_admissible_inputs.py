@@ -26,6 +26,7 @@ def exactly(game: Game, inputs: Floats) -> bool:
     return all(sum((Fraction(e) ** 2 for e in row), Fraction(0)) <= left**2 for row in rows)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("shape", "channels"), [("disk", 2), ("ball", 3)])
 @pytest.mark.parametrize("horizon", [600.0, 3600.0])
 def test_witnesses_are_realisable_to_the_last_bit(shape: str, channels: int, horizon: float) -> None:

@@ -27,6 +27,8 @@ from safestart.errors import Cancelled, InvalidInput
 from safestart.levelset import Lattice, Options, Scheme
 from safestart.runtime.progress import Context
 
+pytestmark = pytest.mark.slow
+
 U, D, W, T = 0.1, 0.05, 0.0011, 60.0
 GAME = Game(W, InputSet("box", (U, U)), InputSet("box", (D, D)), 100.0)
 DISKS = Game(W, InputSet("disk", (U,)), InputSet("disk", (D,)), 100.0)

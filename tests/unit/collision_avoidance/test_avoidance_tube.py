@@ -12,6 +12,8 @@ from safestart.constraints.thrust import InputSet
 from safestart.errors import InvalidInput
 from safestart.levelset import optimal_inputs
 
+pytestmark = pytest.mark.slow
+
 GAME = Game(0.0011, InputSet("box", (0.1, 0.1)), InputSet("box", (0.05, 0.05)), 100.0)
 HALF, T = (400.0, 5.0), 40.0
 RNG = np.random.default_rng(8)

@@ -29,6 +29,8 @@ from safestart.simulation.plant import Plant
 from safestart.simulation.record import Record
 from tests.unit.simulation.parts import KeepOut
 
+pytestmark = pytest.mark.slow
+
 GAME = Game(0.0011, InputSet("box", (0.1, 0.1)), InputSet("box", (0.05, 0.05)), 100.0)
 HORIZON = 60.0
 CLOCK, SLOT = Clock(1.0, HORIZON), Slot()

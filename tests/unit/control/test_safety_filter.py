@@ -92,6 +92,7 @@ def by_clarabel(matrix: np.ndarray, upper: np.ndarray, centre: np.ndarray) -> np
     return np.array(answer.x) if "Solved" in str(answer.status) else None
 
 
+@pytest.mark.slow
 def test_ten_thousand_problems_against_osqp() -> None:
     rng = np.random.default_rng(7)
     checked = infeasible = disputed = bound_active = 0
@@ -151,6 +152,7 @@ def test_ten_thousand_problems_against_osqp() -> None:
     assert disputed < 500
 
 
+@pytest.mark.slow
 def test_infeasible_command_is_a_minimiser_by_highs() -> None:
     rng = np.random.default_rng(11)
     found = 0

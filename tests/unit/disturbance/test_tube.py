@@ -11,7 +11,8 @@ from safestart.disturbance.ancillary import _push, reach_of
 from safestart.disturbance.tube import Disturbance, decide_disturbed, tube_of
 from safestart.dynamics.cwh import input_matrix, planar_input, planar_transition, transition_matrix
 from safestart.errors import InvalidInput
-from safestart.exact.decide import Verdict, decide
+from safestart.exact.answer import Verdict
+from safestart.exact.decide import decide
 from safestart.exact.question import Goal, Question
 from safestart.model.scenario import Chaser, CorridorShape, Floats, Scenario, Target
 from safestart.sets.invariant import Invariant, Push

@@ -11,7 +11,8 @@ from benchmarks.peers.dense_lp import DenseLP
 from benchmarks.peers.flown import fly
 from safestart.errors import InvalidInput
 from safestart.exact import search
-from safestart.exact.decide import Answer, Verdict, decide
+from safestart.exact.answer import Answer, Verdict
+from safestart.exact.decide import decide
 from safestart.exact.question import Question
 from safestart.exact.watch import watch_of
 from safestart.model.scenario import Floats, Scenario

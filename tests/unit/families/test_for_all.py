@@ -10,7 +10,8 @@ import pytest
 from safestart.dynamics.cwh import Cwh
 from safestart.errors import InvalidInput
 from safestart.exact import search
-from safestart.exact.decide import Verdict, decide
+from safestart.exact.answer import Verdict
+from safestart.exact.decide import decide
 from safestart.exact.question import Question
 from safestart.families.answer import Witness
 from safestart.families.between import chord_gap, half_angle, nodes, reach, turned

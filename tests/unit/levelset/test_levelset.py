@@ -80,6 +80,7 @@ def test_runge_kutta_against_the_twin(stages: int) -> None:
     assert march.time == pytest.approx(t - dt)
 
 
+@pytest.mark.slow
 def test_threads_change_nothing() -> None:
     lattice = rough_lattice(4, "extrapolate")
     values = wavy(lattice)

@@ -27,6 +27,8 @@ from safestart.passive_safety.reach.reach_set import reach
 from safestart.passive_safety.switching_guard import GAP_GUARD, Guard, depth, gradient
 from safestart.passive_safety.verify import verify
 
+pytestmark = pytest.mark.slow
+
 NONLINEAR = System(Dynamics.NONLINEAR)
 CIRCLE = System(guard=Guard.CIRCLE)
 BRYSON = System(Dynamics.NONLINEAR, PUBLISHED_DESIGN, Guard.CIRCLE)

@@ -14,6 +14,8 @@ from safestart.processes.registry import process
 from safestart.records.comparable import comparable
 from safestart.runtime.progress import Context
 
+pytestmark = pytest.mark.slow
+
 QUICK: dict[str, Any] = {
     "grid": {"nodes_position": 13, "nodes_speed": 9, "kept": 3},
     "encounters": 30,

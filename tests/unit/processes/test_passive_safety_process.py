@@ -15,6 +15,8 @@ from safestart.processes.registry import process
 from safestart.records.comparable import comparable
 from safestart.runtime.progress import Context
 
+pytestmark = pytest.mark.slow
+
 QUICK = {"abort_windows_min": [[120, 125], [260, 260]], "box_half_width_m": 0.2, "critical_abort": False}
 
 

@@ -21,6 +21,8 @@ from safestart.processes.safe_abort_map.study import places, split
 from safestart.processes.sharding import Part
 from safestart.runtime.progress import Context
 
+pytestmark = pytest.mark.slow
+
 QUICK = {
     "arc": {"rings": 1, "angles": 3, "inner_m": 985.0, "outer_m": 985.0, "from_deg": 204.0, "to_deg": 264.0},
     "starts_per_shard": 2,

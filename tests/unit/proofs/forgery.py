@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from safestart.proofs.statement import ProofRejected, digest_of
+from safestart.proofs.statement import digest_of
+from safestart.proofs.strict import ProofRejected
 
 Document = dict[str, Any]
 Change = Callable[[Document], None]

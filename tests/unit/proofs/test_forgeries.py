@@ -21,7 +21,7 @@ from safestart.families.members import Family
 from safestart.families.prove import proof_for_all
 from safestart.model.scenario import Chaser, CorridorShape, Scenario, Target
 from safestart.proofs.checker import check
-from safestart.proofs.statement import ProofRejected
+from safestart.proofs.strict import ProofRejected
 from tests.unit.proofs.forgery import Document, sealed
 
 PAPER = Question(Scenario.of(3.0, 0.1))

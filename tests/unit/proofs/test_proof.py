@@ -10,12 +10,13 @@ from typer.testing import CliRunner
 
 from safestart.cli import build
 from safestart.errors import InvalidInput
-from safestart.exact.decide import Verdict, decide
+from safestart.exact.answer import Verdict
+from safestart.exact.decide import decide
 from safestart.exact.prove import proof_of
 from safestart.exact.question import Question
 from safestart.model.scenario import Chaser, CorridorShape, Scenario, Target
 from safestart.proofs.single import check
-from safestart.proofs.statement import ProofRejected
+from safestart.proofs.strict import ProofRejected
 from tests.unit.proofs.forgery import Change, assert_every_digit_counts, assert_refused, changed
 
 STARTS = {

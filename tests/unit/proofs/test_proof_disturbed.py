@@ -18,7 +18,7 @@ from safestart.exact.prove import proof_of
 from safestart.exact.question import Question
 from safestart.model.scenario import Chaser, CorridorShape, Scenario, Target
 from safestart.proofs.checker import check
-from safestart.proofs.statement import ProofRejected
+from safestart.proofs.strict import ProofRejected
 from tests.unit.proofs.forgery import Document, assert_every_digit_counts, changed, sealed
 
 PLANE = Question(Scenario.of(2.0, 0.05), 2.0, 12)

@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 
 from safestart.cli import build
 from safestart.errors import InvalidInput
-from safestart.exact.decide import Verdict
+from safestart.exact.answer import Verdict
 from safestart.exact.question import Question
 from safestart.families.answer import ForAll, Witness
 from safestart.families.decide import decide_for_all
@@ -17,7 +17,7 @@ from safestart.families.members import Family
 from safestart.families.prove import proof_for_all
 from safestart.model.scenario import Scenario
 from safestart.proofs.checker import check
-from safestart.proofs.statement import ProofRejected
+from safestart.proofs.strict import ProofRejected
 from tests.unit.families.test_for_all import family, start
 from tests.unit.proofs.forgery import Change, assert_every_digit_counts, assert_refused, changed, sealed
 

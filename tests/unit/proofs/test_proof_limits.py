@@ -14,7 +14,8 @@ from safestart.exact.prove import proof_of
 from safestart.exact.question import Goal, Question
 from safestart.model.scenario import Scenario
 from safestart.proofs.single import check
-from safestart.proofs.statement import ProofRejected, digest_of
+from safestart.proofs.statement import digest_of
+from safestart.proofs.strict import ProofRejected
 
 STARTS = {"GO": [6.0, 16.0, 0.1, -0.2], "NO_GO": [8.0, 48.0, 0.0, -0.1]}
 

@@ -69,6 +69,7 @@ def toy(folder: Path, **changed: str) -> tuple[float, int]:
     return float(value), int(hits)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("changed", "value"),
     [
@@ -94,6 +95,7 @@ def test_a_changed_dependency_reaches_the_cache(
     assert toy(tmp_path) == (12.0, 1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("suffix", "damage"),
     [(".nbi", "empty"), (".nbi", "truncated"), (".nbc", "truncated"), (".nbc", "altered")],

@@ -134,6 +134,7 @@ def test_variables_that_are_known_are_not_refused(monkeypatch: pytest.MonkeyPatc
     assert settings().port == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["serve", "worker", "up", "purge"])
 def test_a_misspelt_variable_stops_every_start(command: str) -> None:
     more = ["--older-than", "1d"] if command == "purge" else []

@@ -6,7 +6,7 @@ from base64 import urlsafe_b64decode, urlsafe_b64encode
 from dataclasses import fields
 from typing import Any
 
-from sqlalchemy import Row, func, select
+from sqlalchemy import Row, exists, func, select
 from sqlalchemy.orm import Session
 
 from safestart.errors import InvalidInput, invalid
@@ -24,7 +24,7 @@ from safestart.store.queue.tally import tallies
 from safestart.store.records import Job, JobEntry, JobPage, JobStatus, Vitals
 
 MAX_PAGE = 1000
-_CURSOR = "before:"
+_BEFORE, _AFTER = "before:", "after:"
 _ENTRY = tuple(table(JobRow).c[name] for name in ("seq", *(field.name for field in fields(JobEntry))))
 
 
@@ -50,14 +50,25 @@ class JobRepository(Submissions, Claims, Shards, Queue, EventLog, Presence):
         """
         if not 1 <= limit <= MAX_PAGE:
             raise invalid("limit", f"an integer in [1, {MAX_PAGE}]", limit)
-        query = select(*_ENTRY).where(*conditions(wanted)).order_by(JobRow.seq.desc()).limit(limit + 1)
-        if cursor is not None:
-            query = query.where(JobRow.seq < _decode(cursor))
+        newer, seq = (False, None) if cursor is None else _decode(cursor)
+        query = select(*_ENTRY).where(*conditions(wanted)).limit(limit + 1)
+        if seq is not None:
+            query = query.where(JobRow.seq > seq if newer else JobRow.seq < seq)
         with self._database.session() as session:
-            rows = session.execute(query).all()
-        more = len(rows) > limit
-        entries = tuple(_entry(row) for row in rows[:limit])
-        return JobPage(entries, _encode(rows[limit - 1].seq) if more else None)
+            rows = list(session.execute(query.order_by(JobRow.seq if newer else JobRow.seq.desc())))
+            more = len(rows) > limit
+            rows = rows[:limit][::-1] if newer else rows[:limit]
+            if not rows or seq is None:
+                others = False
+            else:  # on the side that the client came from
+                beyond = JobRow.seq < rows[-1].seq if newer else JobRow.seq > rows[0].seq
+                others = bool(session.scalar(select(exists().where(*conditions(wanted), beyond))))
+        older, later = (others, more) if newer else (more, others)
+        return JobPage(
+            tuple(_entry(row) for row in rows),
+            _encode(_BEFORE, rows[-1].seq) if older else None,
+            _encode(_AFTER, rows[0].seq) if later else None,
+        )
 
     def vitals(self) -> Vitals:
         """The values behind the metrics, read in one transaction."""
@@ -94,17 +105,19 @@ def counts(session: Session) -> dict[str, int]:
     return {status.value: found.get(status.value, 0) for status in JobStatus}
 
 
-def _encode(seq: int) -> str:
-    return urlsafe_b64encode(f"{_CURSOR}{seq}".encode()).decode().rstrip("=")
+def _encode(kind: str, seq: int) -> str:
+    return urlsafe_b64encode(f"{kind}{seq}".encode()).decode().rstrip("=")
 
 
-def _decode(cursor: str) -> int:
-    required = "the next_cursor of an earlier page"
+def _decode(cursor: str) -> tuple[bool, int]:
+    """Direction and start of a page: True for newer jobs, and the number of the job beside the page."""
+    required = "the next_cursor or prev_cursor of an earlier page"
     try:
         text = urlsafe_b64decode(cursor + "=" * (-len(cursor) % 4)).decode("ascii")
     except ValueError:
         raise invalid("cursor", required, cursor) from None
-    number = text.removeprefix(_CURSOR)
+    newer = text.startswith(_AFTER)
+    number = text.removeprefix(_AFTER if newer else _BEFORE)
     if number == text or not (number.isascii() and number.isdigit()) or len(number) > 18:
         raise InvalidInput(
             f"cursor: required {required}, received {cursor!r}",
@@ -112,4 +125,4 @@ def _decode(cursor: str) -> int:
             required=required,
             received=cursor,
         )
-    return int(number)
+    return newer, int(number)

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from hashlib import sha256
+
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from safestart.errors import JobFailed, NotFound, ResultNotReady
+from safestart.errors import Altered, JobFailed, NotFound, ResultNotReady
 from safestart.records.artifact import Artifact
+from safestart.records.comparable import digest
 from safestart.store.database import Database
 from safestart.store.jobs.submissions import find
 from safestart.store.models import ArtifactRow, JobRow, ResultRow
@@ -23,11 +27,12 @@ class ResultRepository:
         """The result document.
 
         Raises ``ResultNotReady`` while the job waits or runs, ``JobFailed`` with the reason when it failed
-        and ``NotFound`` when it was dismissed.
+        and ``NotFound`` when it was dismissed; ``Altered`` when it is not what was stored.
         """
         with self._database.session() as session:
             _require_success(find(session, job_id))
             row = session.get_one(ResultRow, job_id)
+            require_unaltered(job_id, row)
             return StoredResult(row.job_id, row.schema_version, row.document, row.sha256, row.created_at)
 
     def artifact(self, job_id: str, name: str) -> Artifact:
@@ -44,6 +49,7 @@ class ResultRepository:
                     required=f"one of {there_are}",
                     received=name,
                 )
+            require_unaltered(job_id, None, (row,))
             return Artifact(row.name, row.media_type, row.data)
 
     def artifacts(self, job_id: str) -> tuple[ArtifactInfo, ...]:
@@ -51,6 +57,21 @@ class ResultRepository:
         with self._database.session() as session:
             find(session, job_id)
             return _infos(session, job_id)
+
+
+def require_unaltered(job_id: str, stored: ResultRow | None, files: Sequence[ArtifactRow] = ()) -> None:
+    """Raise ``Altered`` unless a result and its files have the SHA-256 that was stored with them."""
+    altered = [] if stored is None or digest(stored.document) == stored.sha256 else ["the result"]
+    altered += [
+        f"artifact {file.name}" for file in files if sha256(bytes(file.data)).hexdigest() != file.sha256
+    ]
+    if altered:
+        raise Altered(
+            f"job {job_id} is not as it was stored: {', '.join(altered)} does not have the SHA-256 on record",
+            field="jobID",
+            required="a result and artifacts with the SHA-256 on record",
+            received=", ".join(altered),
+        )
 
 
 def _infos(session: Session, job_id: str) -> tuple[ArtifactInfo, ...]:

@@ -1,1 +1,1 @@
-"""The forms in which a stored result is given: one per file, listed in ``registry``."""
+"""The formats of a stored result: one per file, listed in ``registry``."""

@@ -1,4 +1,4 @@
-"""What a form of a result is, and which table a form with rows gives."""
+"""The definition of a result format, and the choice of table for a format with rows."""
 
 from __future__ import annotations
 
@@ -20,12 +20,11 @@ Record = dict[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class Format:
-    """A form of a result.
+    """A format of a result.
 
-    ``name`` is what the query parameter ``format`` calls it, and the ending of its file. ``encode`` (record, table)
-    gives its bytes; it raises ``InvalidInput``, ``NotAcceptable`` or ``Unavailable``. ``rows``: it holds one table,
-    the one asked for. ``document``: it is JSON to read, described by ``model`` if there is one, and no file to
-    download.
+    ``name`` is its value of the query parameter ``format`` and its file extension. ``encode`` (record, table) gives
+    its bytes; it raises ``InvalidInput``, ``NotAcceptable`` or ``Unavailable``. ``rows``: it holds one table, the
+    requested one. ``document``: it is JSON to read, described by ``model`` if given, and not a file to download.
     """
 
     name: str
@@ -53,6 +52,6 @@ def rows_of(record: Record, table: str | None) -> Rows:
 
 
 def _declared(record: Record) -> tuple[Table, ...]:
-    """What the process says of its lists; nothing where it is gone."""
+    """The tables that the process declares; none if the process no longer exists."""
     process_id = record.get("process", {}).get("id")
     return process(process_id).tables if process_id in PROCESS_IDS else ()

@@ -1,4 +1,4 @@
-"""CSV (RFC 4180), with a header line; what has no value is empty."""
+"""CSV (RFC 4180), with a header line; missing values are empty."""
 
 from __future__ import annotations
 

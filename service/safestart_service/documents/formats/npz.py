@@ -1,6 +1,6 @@
-"""NPZ: every numeric output as an array; columns of tables as ``table.column``, without value: NaN.
+"""NPZ: every numeric output as an array; columns of tables as ``table.column``, with NaN for missing values.
 
-NumPy is loaded with the first file.
+The first file loads NumPy.
 """
 
 from __future__ import annotations

@@ -10,7 +10,7 @@ from safestart_service.documents.formats.base import Format, Record
 
 
 def ogc_values(outputs: dict[str, Any]) -> dict[str, Any]:
-    """Outputs as the standard has them: objects qualified; those without a value left out, as it knows no null."""
+    """Outputs as the standard defines them: objects are qualified, and null outputs are left out."""
     return {
         name: {"value": value, "mediaType": "application/json"} if isinstance(value, dict) else value
         for name, value in outputs.items()

@@ -1,4 +1,4 @@
-"""Parquet, one row group. pyarrow is loaded with the first file."""
+"""Parquet, one row group. The first file loads pyarrow."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def _encode(record: Record, table: str | None) -> bytes:
 
 
 def _uniform(values: list[Any]) -> list[Any]:
-    """A column of one type: whole numbers among others become floats, and whatever else is mixed, text."""
+    """A column of one type: integers mixed with floats become floats, any other mixture becomes text."""
     kinds = {type(value) for value in values if value is not None}
     if kinds == {int, float}:
         return [None if value is None else float(value) for value in values]

@@ -1,4 +1,4 @@
-"""The forms of a result, one line each, in order of preference: who takes anything gets the first."""
+"""The formats of a result, one line each, in order of preference: a client that accepts any gets the first."""
 
 from __future__ import annotations
 
@@ -23,5 +23,5 @@ BY_TYPE = {form.media_type: form for form in FORMATS}
 
 
 def tag_of(form: Format, table: str | None) -> str:
-    """What tells this form's entity tag from the record's."""
+    """Distinguishes this format's entity tag from the record's."""
     return "" if form is FORMATS[0] else f"-{form.name}-{sha256((table or '').encode()).hexdigest()[:8]}"

@@ -1,0 +1,112 @@
+"""Standard streams whose write errors do not end a command.
+
+The exit code of a command is part of its answer: a rejected proof is rejected even when nobody reads the reason. A
+failed write therefore raises nothing during the work. The command reports a full disk at its end in one sentence, and
+says nothing when the reader closed the pipe.
+"""
+
+from __future__ import annotations
+
+import errno
+import io
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any, cast
+
+NOT_WRITTEN = 2
+
+
+class _Kept(io.FileIO):
+    """A file that keeps its first write error and drops all later data."""
+
+    failure: OSError | None = None
+
+    def write(self, data: Any, /) -> int:
+        """Write the data, or drop it after a failure."""
+        if self.failure is None:
+            try:
+                return super().write(data) or 0
+            except OSError as error:
+                self.failure = error
+        return memoryview(data).nbytes
+
+
+class Streams:
+    """The standard output and error of this process while a command runs."""
+
+    def __init__(self, stdout: _Kept | None, closed: bool) -> None:
+        self._stdout = stdout
+        self._closed = closed
+
+    def code(self, code: int) -> int:
+        """Flush the streams and return the exit code of a command that ended with ``code``."""
+        _flush()
+        reason = "it is closed" if self._closed and _written() else None
+        failure = None if self._stdout is None else self._stdout.failure
+        if (
+            failure is not None and failure.errno != errno.EPIPE
+        ):  # the reader (head, less) left: nothing is wrong
+            reason = failure.strerror
+        if reason is None:
+            return code
+        sys.stderr.write(f"safestart: standard output: required one that takes what is written ({reason})\n")
+        _flush()
+        return code or NOT_WRITTEN
+
+
+@contextmanager
+def patient_streams() -> Iterator[Streams]:
+    """Replace the real standard streams for the block; the streams of a test or a notebook stay."""
+    closed = sys.stdout is None
+    _occupy()
+    before = sys.stdin, sys.stdout, sys.stderr
+    if sys.stdin is None:
+        sys.stdin = io.StringIO()
+    if closed:
+        sys.stdout = _Counted()
+    if sys.stderr is None:
+        sys.stderr = io.StringIO()
+    kept = None
+    if sys.stdout is sys.__stdout__:
+        kept, sys.stdout = _wrapped(cast(io.TextIOWrapper, sys.stdout))
+    if sys.stderr is sys.__stderr__:
+        _, sys.stderr = _wrapped(cast(io.TextIOWrapper, sys.stderr))
+    try:
+        yield Streams(kept, closed)
+    finally:
+        _flush()
+        sys.stdin, sys.stdout, sys.stderr = before
+
+
+class _Counted(io.StringIO):
+    """Standard output of a process that was started without one."""
+
+
+def _written() -> bool:
+    return isinstance(sys.stdout, _Counted) and bool(sys.stdout.tell())
+
+
+def _occupy() -> None:
+    """Open the closed ones of the first three file numbers: output must never go into a database file."""
+    while (number := os.open(os.devnull, os.O_RDWR)) <= 2:
+        os.set_inheritable(number, True)
+    os.close(number)
+
+
+def _wrapped(stream: io.TextIOWrapper) -> tuple[_Kept, io.TextIOWrapper]:
+    stream.flush()
+    raw = _Kept(stream.fileno(), "w", closefd=False)
+    return raw, io.TextIOWrapper(
+        io.BufferedWriter(raw),
+        stream.encoding,
+        stream.errors,
+        line_buffering=stream.line_buffering,
+        write_through=stream.write_through,
+    )
+
+
+def _flush() -> None:
+    for stream in (sys.stdout, sys.stderr):
+        stream.flush()

@@ -1,0 +1,150 @@
+"""Standard streams that are full or closed, and files that cannot be written: one sentence, the right exit code."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from safestart.cli import main
+
+ASKED = ["go-no-go", "--omega-t-deg-s", "3", "--a-max-m-s2", "0.1", "--x-m", "5", "--y-m", "40"]
+NONE = "/dev/full"
+pytestmark = pytest.mark.skipif(not Path(NONE).exists(), reason="needs /dev/full")
+
+
+def ended(arguments: list[str], redirected: str) -> tuple[int, str]:
+    """Exit code and standard error of a command behind a shell's redirection."""
+    line = f'exec "$@" {redirected}'
+    command = ["sh", "-c", line, "sh", sys.executable, "-m", "safestart", *arguments]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    return done.returncode, done.stderr
+
+
+@pytest.fixture(scope="module")
+def proof(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("proof") / "proof.json"
+    subprocess.run(
+        [sys.executable, "-m", "safestart", *ASKED, "--method", "exact", "--proof", str(path)],
+        check=True,
+        capture_output=True,
+    )
+    return path
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ASKED,
+        [*ASKED, "--json"],
+        ["--help"],
+        ["run", "certificate", "--input", "INPUT", "--json"],
+        ["keys", "list", "--database-url", "sqlite:///DATABASE"],
+        ["verify", "PROOF"],
+    ],
+    ids=lambda arguments: " ".join(arguments[:1] + arguments[-1:]),
+)
+def test_a_full_disk_behind_standard_output(arguments: list[str], proof: Path, tmp_path: Path) -> None:
+    asked = tmp_path / "in.json"
+    asked.write_text('{"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "grid": {"nx": 3, "ny": 3}}')
+    places = {"INPUT": str(asked), "PROOF": str(proof), "DATABASE": str(tmp_path / "keys.sqlite3")}
+    for name, place in places.items():
+        arguments = [argument.replace(name, place) for argument in arguments]
+    code, said = ended(arguments, f">{NONE}")
+    lines = [line for line in said.splitlines() if line.startswith("safestart:")]
+    assert (code, len(lines)) == (2, 1), said
+    assert "No space left on device" in lines[0]
+    assert "Traceback" not in said
+    assert "Exception" not in said
+
+
+def test_a_closed_standard_output() -> None:
+    code, said = ended(ASKED, ">&-")
+    assert (code, len(said.splitlines())) == (2, 1)
+    assert ended(ASKED, ">&- 2>&- <&-") == (2, "")
+
+
+@pytest.mark.parametrize(("rejected", "expected"), [(False, 0), (True, 1)])
+def test_a_reader_that_left(rejected: bool, expected: int, proof: Path, tmp_path: Path) -> None:
+    """Silence, and the verdict of the command all the same."""
+    document = json.loads(proof.read_text())
+    if rejected:
+        document["verdict"] = "NO_GO" if document["verdict"] == "GO" else "GO"
+    path = tmp_path / "proof.json"
+    path.write_text(json.dumps(document))
+    reader, writer = os.pipe()
+    os.close(reader)
+    command = [sys.executable, "-m", "safestart", "verify", str(path)]
+    done = subprocess.run(command, stdout=writer, stderr=subprocess.PIPE, text=True, check=False)
+    os.close(writer)
+    assert (done.returncode, done.stderr) == (expected, "")
+
+
+def test_standard_error_that_is_full_does_not_matter() -> None:
+    assert ended(ASKED, f"2>{NONE}") == (0, "")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "option"),
+    [
+        ([*ASKED, "--proof"], "--proof"),
+        (["run", "certificate", "--input", "INPUT", "--output"], "--output"),
+        (["export", "no-such-job", "--output"], "--output"),
+    ],
+)
+def test_a_place_that_cannot_be_written_is_named_before_the_work(
+    arguments: list[str],
+    option: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    asked = tmp_path / "in.json"
+    asked.write_text('{"omega_t_deg_s": 3, "a_max_m_s2": 0.1}')
+
+    def work(*_: object, **__: object) -> None:
+        raise AssertionError("the work has begun")
+
+    for name in ("go_no_go.answer", "run.execute", "records._bundle_of"):
+        monkeypatch.setattr(f"safestart.cli.{name}", work)
+    # A directory: even root cannot write it.
+    monkeypatch.setattr(
+        sys, "argv", ["s", *(a.replace("INPUT", str(asked)) for a in arguments), str(tmp_path)]
+    )
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert ended.value.code == 2
+    said = capsys.readouterr().err
+    assert f"{option}: required a writable path" in said
+    assert len(said.splitlines()) == 1
+
+
+def test_what_was_there_stays_when_the_work_fails(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    there, new = tmp_path / "there.json", tmp_path / "new.json"
+    there.write_text("kept")
+    for path in (there, new):
+        monkeypatch.setattr(
+            sys, "argv", ["s", *ASKED, "--proof", str(path)]
+        )  # the closed form proves nothing
+        with pytest.raises(SystemExit) as ended:
+            main()
+        assert ended.value.code == 2
+        assert "--proof" in capsys.readouterr().err
+    assert there.read_text() == "kept"
+    assert not new.exists()
+
+
+def test_a_shorter_document_replaces_a_longer_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "proof.json"
+    path.write_text("x" * 100_000)
+    monkeypatch.setattr(sys, "argv", ["s", *ASKED, "--method", "exact", "--proof", str(path)])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert ended.value.code == 0
+    assert json.loads(path.read_text())["verdict"] == "GO"
