@@ -28,6 +28,7 @@ def document_of(proof: Proof) -> dict[str, Any]:
                 "first_s": finding.case.first,
                 "last_s": finding.case.last,
                 "cells": finding.cells.tolist(),
+                **({"radii_m": finding.trials.tolist()} if proof.question.radius is not None else {}),
             }
             for finding in proof.findings
         ],
@@ -40,7 +41,8 @@ def asked(question: Question) -> dict[str, Any]:
     """The question as the document has it."""
     plan, errors, failures = question.plan, question.errors, question.failures
     return {
-        "model": "linear",
+        "model": "linear" if question.radius is None else "nonlinear",
+        **({} if question.radius is None else {"semi_major_axis_m": question.radius}),
         "mean_motion_rad_s": plan.mean_motion,
         "start": {"position_m": list(plan.start[:3]), "velocity_m_s": list(plan.start[3:])},
         "burns": [{"time_s": burn.time, "impulse_m_s": list(burn.impulse)} for burn in plan.burns],

@@ -140,8 +140,8 @@ def least_distance(
     rows, q, p = np.empty((3, 6)), np.empty(6), np.empty(6)
     d, member, best = np.empty(3), np.empty(len(columns)), np.zeros(len(columns))
     loss = ROUNDING * _magnitude(n, horizon, centre, columns)
-    parts = len(strays)
-    count, upper, when = 0, np.inf, 0.0
+    # ``goal``: no bound can be better, with what the true motion may stray.
+    count, upper, goal, when = 0, np.inf, np.inf, 0.0
     for k in range(_FIRST):
         cells[k, 0], cells[k, 1] = horizon * k / _FIRST, horizon * (k + 1) / _FIRST
     count = _FIRST
@@ -159,12 +159,12 @@ def least_distance(
             for i in range(3):
                 d[i] = d[i] / size if size > 0.0 else 1.0 if i == 0 else 0.0
             cells[k, 2:] = d
-            bounds[k] = _bound(n, horizon, cells[k], centre, columns, ends, strays, parts, rows, q, p) - loss
+            bounds[k] = _bound(n, horizon, cells[k], centre, columns, ends, strays, rows, q, p) - loss
             sharp[k] = False
         fresh = count
         worst = int(np.argmin(bounds[:count]))
         low = bounds[worst]
-        if low >= enough or low >= upper - tolerance or upper < below:
+        if low >= enough or low >= goal - tolerance or upper < below:
             break
         if not sharp[worst]:
             sharp[worst] = True
@@ -174,9 +174,10 @@ def least_distance(
             if distance < upper:
                 upper, when = distance, middle
                 best[:] = member
+            goal = min(goal, distance - _stray(middle, horizon, d, strays))
             one, two = cells[worst].copy(), 0.0
             one[2:] = d
-            two = _bound(n, horizon, one, centre, columns, ends, strays, parts, rows, q, p) - loss
+            two = _bound(n, horizon, one, centre, columns, ends, strays, rows, q, p) - loss
             if two > low:
                 cells[worst], bounds[worst] = one, two
             continue
@@ -190,7 +191,7 @@ def least_distance(
             bounds[k] = -np.inf
         cells[count, 2:] = cells[worst, 2:]
         for k in (worst, count):
-            bounds[k] = _bound(n, horizon, cells[k], centre, columns, ends, strays, parts, rows, q, p) - loss
+            bounds[k] = _bound(n, horizon, cells[k], centre, columns, ends, strays, rows, q, p) - loss
             sharp[k] = False
         count += 1
         fresh = count
@@ -206,7 +207,6 @@ def _bound(
     columns: Floats,
     ends: Ends,
     strays: Floats,
-    parts: int,
     rows: Floats,
     q: Floats,
     p: Floats,
@@ -218,7 +218,15 @@ def _bound(
         _value(n, cell[1], d, centre, columns, ends, rows, q),
     )
     low -= 0.125 * span * span * _remainder(n, d, centre, columns, ends, p, q)
-    part = min(math.ceil(cell[1] / horizon * parts - 1e-9), parts) - 1
-    part = max(part, 0)
-    low -= abs(d[0]) * strays[part, 0] + abs(d[1]) * strays[part, 1] + abs(d[2]) * strays[part, 2]
+    low -= _stray(cell[1], horizon, d, strays)
     return low
+
+
+@compiled()
+def _stray(t: float, horizon: float, d: Floats, strays: Floats) -> float:
+    """What the true motion may lose in direction d up to t."""
+    parts = len(strays)
+    # Rounding of the quotient must not choose the part before.
+    part = max(min(math.ceil(t / horizon * parts + 1e-9), parts) - 1, 0)
+    lost: float = abs(d[0]) * strays[part, 0] + abs(d[1]) * strays[part, 1] + abs(d[2]) * strays[part, 2]
+    return lost

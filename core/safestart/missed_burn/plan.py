@@ -131,15 +131,28 @@ class Failures:
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """``keep_out`` m around the target must stay empty for ``horizon`` s after the last burn that was made."""
+    """``keep_out`` m around the target must stay empty for ``horizon`` s after the last burn that was made.
+
+    ``radius`` of the circular orbit, m, where the answer is to speak about the nonlinear motion (two point masses,
+    mu = n^2 radius^3); None: about the linear one.
+    """
 
     plan: Plan
     keep_out: float
     horizon: float
     errors: Errors = field(default_factory=Errors)
     failures: Failures = field(default_factory=Failures)
+    radius: float | None = None
 
     def __post_init__(self) -> None:
+        if self.radius is not None:
+            number("semi_major_axis_m", self.radius, 1e3, 1e9)
+            if not self.errors.at_each_burn:
+                raise invalid(
+                    "errors.at_each_burn",
+                    "true where model is nonlinear: errors that add up are linear only",
+                    False,
+                )
         number("keep_out_m", self.keep_out, 0.0, 1e5, open_low=True)
         number("horizon_s", self.horizon, 0.0, 1e6, open_low=True)
         longest = LONGEST_PHASE / self.plan.mean_motion

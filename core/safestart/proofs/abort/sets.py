@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 from flint import arb, arb_mat, fmpq
 
-from safestart.proofs.abort.statement import Asked
+from safestart.proofs.abort.statement import Asked, Event
 
 
 def transition(n: arb, t: arb) -> arb_mat:
@@ -142,6 +142,17 @@ class Sets:
             angle = arb.min(self.angle + arb(self.asked.misdirected), arb.pi())
             return self._burnt(before, impulse, 1 - self.share, angle)
         return (self._late if kind == "late" else self._stuck)(burn, impulse, first, last)
+
+    def detour(self, event: Event) -> arb:
+        """How far a late or lasting burn lets the actual position be from its equivalent state's: less than twice what
+        its velocity covers meanwhile, as |Phi_pv(t)| < 2 t for n t <= 1/2."""
+        if event.kind not in ("late", "stuck"):
+            return arb(0)
+        last, most = arb(event.last), 1 + self.share
+        if event.kind == "stuck":
+            return 2 * last * last * most * arb(self.asked.acceleration)
+        impulse = self.asked.impulses[event.burn]
+        return 2 * last * most * sum((arb(e) ** 2 for e in impulse), arb(0)).sqrt()
 
     def _burnt(
         self, state: Reached, impulse: list[fmpq], least: arb, angle: arb, back: arb_mat | None = None
