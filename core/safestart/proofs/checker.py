@@ -10,6 +10,8 @@ from safestart.proofs import disturbed, disturbed_statement, family_statement
 from safestart.proofs import family as for_all
 from safestart.proofs import single as proof
 from safestart.proofs.single import Verified
+from safestart.proofs.space import check as space
+from safestart.proofs.space import statement as space_statement
 
 
 def check(document: Any) -> Verified:
@@ -19,4 +21,6 @@ def check(document: Any) -> Verified:
         return for_all.check(document)
     if schema == disturbed_statement.SCHEMA:
         return disturbed.check(document)
+    if schema == space_statement.SCHEMA:
+        return space.check(document)
     return proof.check(document)
