@@ -48,7 +48,7 @@ class Certified:
 
 @dataclass(frozen=True, slots=True)
 class CertifiedMap:
-    """The certificate of a grid: ``margin``, ``mask`` (GO) and ``inside`` (in the corridor), all (ny, nx)."""
+    """The certificate of a grid: ``margin``, ``mask`` (GO), ``inside`` (the corridor to :data:`ROUNDING`), (ny, nx)."""
 
     margin: Floats
     mask: Bools
@@ -101,7 +101,7 @@ def certify_grid(scenario: Scenario, grid: Grid, rest: Rest = Rest.LVLH) -> Cert
     rates, faces = rates_of(scenario, rest), Faces.of(scenario.corridor, 2)
     start = faces.room(place)
     margin = start.min(axis=0)
-    inside = margin >= 0.0
+    inside = margin >= -ROUNDING  # the grid's corners lie on faces
     within = np.flatnonzero(margin > ROUNDING)
     place, start = place.take(within, axis=1), start.take(within, axis=1)
     brake, turn_in = offers(rates, faces, place, start)

@@ -11,12 +11,19 @@ from safestart.errors import invalid
 
 _SPECS = (
     EngineSpec(
-        name="analytical",
-        title="certificate (closed form)",
+        name="certified",
+        title="certified (sound)",
         colour="#009E73",
-        engine="safestart.engines.analytical:Analytical",
-        summary="closed-form certificate: directional erosion and synchronization range",
+        engine="safestart.engines.analytical:Certified",
+        summary="certificate in closed form: explicit manoeuvres with a proof, for ever",
         line=None,
+    ),
+    EngineSpec(
+        name="analytical",
+        title="paper's conditions (not sound)",
+        colour="#E69F00",
+        engine="safestart.engines.analytical:Analytical",
+        summary="the closed form of paper 000, not sound: directional erosion and synchronization range",
     ),
     EngineSpec(
         name="exact",

@@ -7,6 +7,7 @@ from typing import Annotated, TypeVar
 
 from pydantic import AfterValidator, Field
 
+from safestart.closed_form.by_name import ClosedForm
 from safestart.model.scenario import (
     MAX_ACCELERATION,
     MAX_MEAN_MOTION,
@@ -49,6 +50,13 @@ def _distinct(values: list[T]) -> list[T]:
 
 DISTINCT = AfterValidator(_distinct)
 """For a list without repeated names."""
+Certificate = Annotated[
+    ClosedForm,
+    Field(
+        description="certified: explicit manoeuvres with a proof, GO is for ever. paper: the conditions of paper 000, "
+        "NOT SOUND, a GO may be impossible to fly."
+    ),
+]
 Seed = Annotated[int, Field(ge=0, le=2**63 - 1, description="Seed of every random draw.")]
 
 

@@ -1,5 +1,5 @@
 """Check any proof document: single starts (``single.py``), families (``family.py``), disturbances
-(``disturbed.py``)."""
+(``disturbed.py``), plans with burns that fail (``abort/``), starts in space (``space/``)."""
 
 from __future__ import annotations
 
@@ -9,6 +9,9 @@ from typing import Any
 from safestart.proofs import disturbed, disturbed_statement, family_statement
 from safestart.proofs import family as for_all
 from safestart.proofs import single as proof
+from safestart.proofs.abort import check as abort
+from safestart.proofs.abort.statement import SCHEMA as ABORT
+from safestart.proofs.abort.wording import lines
 from safestart.proofs.single import Verified
 from safestart.proofs.space import check as space
 from safestart.proofs.space import statement as space_statement
@@ -23,4 +26,7 @@ def check(document: Any) -> Verified:
         return disturbed.check(document)
     if schema == space_statement.SCHEMA:
         return space.check(document)
+    if schema == ABORT:
+        asked, cells = abort.check(document)
+        return Verified("PROVED", float(document["least_distance_m"]), cells, lines(asked))
     return proof.check(document)

@@ -28,8 +28,10 @@ _MOST_PIECES = 100_000
 class Verified:
     """What a document proves: its verdict and the margin (m) that bounds the best one, from below (GO) or above.
 
-    ``pieces`` is the number of time intervals a GO took, 0 for a NO_GO. ``statement`` lists all that is proved, line by
-    line.
+    For a plan with failing burns the verdict is PROVED and the margin its least distance to the target.
+
+    ``pieces`` is the number of time intervals it took, 0 for a NO_GO. ``statement`` lists all that is
+    proved, line by line.
     """
 
     verdict: str

@@ -169,7 +169,7 @@ def near(verdict: str, kind: str) -> Document:
     turn = attitude.rotation(np.zeros(1))[0]
     state = np.concatenate([np.array([1.0, 20.0, 0.5]) @ turn, np.zeros(3)])
     if verdict == "NO_GO":
-        state[3:] = np.array([-0.8, 0.6, 1.0])
+        state[3:] = np.array([-1.6, 1.2, 2.0])
     answer = decide_in_space(question, state)
     assert answer.verdict.value == verdict
     made: Document = json.loads(json.dumps(proof_in_space(question, state, answer)))

@@ -19,8 +19,9 @@ from safestart.processes.wire import finite
 
 _IN = {
     "tube": "a plan keeps {:.2f} m to every face of the tightened corridor",
-    "analytical_tube": "certified in the tightened scenario by {:.2f} m",
-    "analytical": "certified by the closed form with {:.2f} m",
+    "analytical_tube": "meets the paper's conditions in the tightened scenario by {:.2f} m",
+    "certified": "a known manoeuvre stays for ever with {:.2f} m to every face",
+    "analytical": "meets the paper's conditions, which are not sound, by {:.2f} m",
     "synchronize": "a thrust history reaches the hold point co-rotating with {:.2f} m to spare",
     "stay": "a thrust history stays with {:.2f} m to every face",
     "hj_match": "value function {:.2f} m inside",
@@ -29,8 +30,9 @@ _IN = {
 }
 _OUT = {
     "tube": "no plan fits the tube: proved {:.2f} m short",
-    "analytical_tube": "not certified in the tightened scenario: {:.2f} m short",
-    "analytical": "not certified: {:.2f} m short, which proves nothing",
+    "analytical_tube": "misses the paper's conditions in the tightened scenario: {:.2f} m short",
+    "certified": "not certified: {:.2f} m short, which proves nothing",
+    "analytical": "misses the paper's conditions: {:.2f} m short, which proves nothing",
     "synchronize": "no thrust history arrives co-rotating in time: proved {:.2f} m short",
     "stay": "no thrust history stays: proved {:.2f} m outside a face",
     "hj_match": "value function {:.2f} m outside, an error of unknown sign",

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from safestart.atlas.survey import build
-from safestart.closed_form.paper import certify_grid
+from safestart.closed_form.by_name import ClosedForm, map_of
 from safestart.disturbance.tube import Disturbance, Tube, tube_of
 from safestart.engines.base import Engine, Problem, ResultCode
 from safestart.engines.exact import Exact
@@ -70,11 +70,14 @@ def _failed(name: str, shape: tuple[int, ...], code: ResultCode, message: str, *
 
 def _analytical(name: str, inputs: ChainInputs, corridor: Bools, context: Context) -> Region:
     context.step(0, 1)
-    return _closed_form(name, inputs.scenario(), inputs, corridor)
+    form: ClosedForm = "certified" if name == "certified" else "paper"
+    return _closed_form(name, form, inputs.scenario(), inputs, corridor)
 
 
-def _closed_form(name: str, scenario: Scenario, inputs: ChainInputs, corridor: Bools) -> Region:
-    found = certify_grid(scenario, inputs.grid.grid())
+def _closed_form(
+    name: str, form: ClosedForm, scenario: Scenario, inputs: ChainInputs, corridor: Bools
+) -> Region:
+    found = map_of(form, scenario, inputs.grid.grid())
     inside = found.mask & corridor
     return Region(name, inside, corridor & ~inside, found.margin, 0.0)
 
@@ -97,7 +100,7 @@ def _tightened(name: str, inputs: ChainInputs, corridor: Bools, context: Context
         margin = np.full(corridor.shape, np.nan)
         return Region(name, none, corridor, margin, 0.0, ResultCode.OK, tube.reason, None, detail)
     if name == "analytical_tube":
-        found = _closed_form(name, tube.question.scenario, inputs, corridor)
+        found = _closed_form(name, "paper", tube.question.scenario, inputs, corridor)
         return Region(name, found.inside, found.outside, found.margin, 0.0, detail=detail)
     return _by_atlas(name, tube.question, inputs, corridor, context, detail)
 
@@ -187,6 +190,7 @@ def _engine(name: str, inputs: ChainInputs, corridor: Bools, context: Context) -
 _SETS: dict[str, Callable[[str, ChainInputs, Bools, Context], Region]] = {
     "tube": _tightened,
     "analytical_tube": _tightened,
+    "certified": _analytical,
     "analytical": _analytical,
     "synchronize": _synchronize,
     "stay": _stay,

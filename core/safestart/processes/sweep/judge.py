@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from safestart.atlas.survey import build
-from safestart.closed_form.paper import certify
+from safestart.closed_form.by_name import ClosedForm, go_of
 from safestart.exact.answer import GUARD, Verdict
 from safestart.exact.decide import decide
 from safestart.exact.question import Question
@@ -20,9 +20,9 @@ GO, NO_GO, UNDECIDED, UNASKED = 1, 0, -1, -2
 Verdicts = np.ndarray[tuple[int], np.dtype[np.int8]]
 
 
-def closed_form(cases: Cases) -> Verdicts:
-    """GO or NO_GO."""
-    return certify(cases.scenario, cases.points).safe.astype(np.int8)
+def closed_form(name: ClosedForm, cases: Cases) -> Verdicts:
+    """GO, or NO_GO for what is not certified."""
+    return go_of(name, cases.scenario, cases.points).astype(np.int8)
 
 
 def exact(cases: Cases, steps: int, most: int) -> Verdicts:

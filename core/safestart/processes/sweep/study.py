@@ -16,7 +16,7 @@ from safestart.campaign.tally import Flagged, Known, Rows, Tally, Total
 from safestart.processes.sweep.spec import SweepInputs
 from safestart.processes.sweep.split import DRAWN_OWN
 
-# Number of the closed form's false GOs that are kept with their case numbers.
+# Number of the closed forms' false GOs that are kept with their case numbers.
 FALSE_GO_KEPT = 20
 
 
@@ -46,7 +46,7 @@ def study_of(inputs: SweepInputs) -> Study:
 def outcome_of(inputs: SweepInputs) -> list[Column]:
     """The start, one verdict per certificate (unknown: not asked), and the flight of each controller.
 
-    Not recorded: ``cell`` (unknown outside a grid); ``undecided``: the exact answer is UNDECIDED; ``false_go``: the
+    Not recorded: ``cell`` (unknown outside a grid); ``undecided``: the exact answer is UNDECIDED; ``false_go``: a
     closed form certifies a start that exact proves NO_GO; ``watched``: certified by any, or by none asked;
     ``spared_...``: not one of the certified starts that violated.
     """
