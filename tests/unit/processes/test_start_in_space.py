@@ -76,7 +76,7 @@ def test_parts_are_what_they_say() -> None:
     assert isinstance(seen.inertial, TorqueFree)
     np.testing.assert_allclose(seen.angular_velocity(np.zeros(1))[0], [0, 0, math.radians(2)], atol=1e-15)
     axis = question_of(asked(corridor={"axis": [0, 0, -2], "r_h_m": 1.0}))
-    assert [face.name for face in axis.faces][0] == "hold_plane"
+    assert axis.faces[0].name == "hold_plane"
     np.testing.assert_allclose(axis.faces[0].normal, [0, 0, 1], atol=1e-15)
     assert axis.faces[0].offset == -1.0
 
