@@ -13,7 +13,7 @@ SCHEMA = "safestart-abort-proof/1"
 
 
 def document_of(proof: Proof) -> dict[str, Any]:
-    """The document of a plan that is PROVED; raises ``Conflict`` for any other verdict."""
+    """The document of a PROVED plan; raises ``Conflict`` for any other verdict."""
     if proof.verdict is not Verdict.PROVED:
         raise Conflict(f"a proof document needs the verdict PROVED, this one is {proof.verdict.value}")
     document: dict[str, Any] = {
@@ -28,6 +28,7 @@ def document_of(proof: Proof) -> dict[str, Any]:
                 "first_s": finding.case.first,
                 "last_s": finding.case.last,
                 "cells": finding.cells.tolist(),
+                **({"radii_m": finding.trials.tolist()} if proof.question.radius is not None else {}),
             }
             for finding in proof.findings
         ],
@@ -37,10 +38,11 @@ def document_of(proof: Proof) -> dict[str, Any]:
 
 
 def asked(question: Question) -> dict[str, Any]:
-    """The question as the document has it."""
+    """The question in the document's form."""
     plan, errors, failures = question.plan, question.errors, question.failures
     return {
-        "model": "linear",
+        "model": "linear" if question.radius is None else "nonlinear",
+        **({} if question.radius is None else {"semi_major_axis_m": question.radius}),
         "mean_motion_rad_s": plan.mean_motion,
         "start": {"position_m": list(plan.start[:3]), "velocity_m_s": list(plan.start[3:])},
         "burns": [{"time_s": burn.time, "impulse_m_s": list(burn.impulse)} for burn in plan.burns],

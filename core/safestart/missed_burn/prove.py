@@ -1,9 +1,9 @@
-"""The verdict on a plan: the least distance proved for every case, or a flight that comes too near, or a gap."""
+"""The verdict on a plan: a proved least distance for every case, a flight that comes too near, or a gap."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
@@ -12,14 +12,15 @@ from safestart.missed_burn.cases import Case, cases_of
 from safestart.missed_burn.drift_kernel import least_distance
 from safestart.missed_burn.plan import Question
 from safestart.missed_burn.replay import Flown, flown_of
+from safestart.missed_burn.strays import strays_of
 from safestart.model.scenario import Floats
 
 SLACK = 1e-6
-"""Metres by which every claim is lowered: it covers the roundings of the sets themselves."""
+"""Metres subtracted from every claim, which cover the rounding of the sets."""
 _TOLERANCE = 0.02
 _MOST_CELLS = 2048
 _TOUCHES = 0.1
-"""A member nearer than this, m, ends the search: sets that hold the target have no lower bound to wait for."""
+"""A member nearer than this, m, ends the search, as a set that contains the target has no positive lower bound."""
 
 
 class Verdict(StrEnum):
@@ -34,7 +35,8 @@ class Verdict(StrEnum):
 class Finding:
     """One case: its least distance lies between ``least`` (proved) and ``nearest`` (of a member, m), at ``when`` s.
 
-    ``cells`` (N, 5): the intervals of the proof, begin, end (s after the case's time) and direction.
+    ``cells`` (N, 5): the intervals of the proof, begin, end (s after the case's time) and direction. ``trials``: radii
+    of the nonlinear motion, m, over equal parts of the drift; empty where the motion is linear.
     """
 
     case: Case
@@ -43,6 +45,7 @@ class Finding:
     when: float
     cells: Floats
     member: Floats
+    trials: Floats
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +60,7 @@ class Proof:
 
     @property
     def gap(self) -> float:
-        """How much the proved least distance falls short of the keep-out radius, m; 0 where it does not."""
+        """Shortfall of the proved least distance against the keep-out radius, m; 0 without one."""
         return max(self.question.keep_out - self.least, 0.0)
 
 
@@ -65,10 +68,10 @@ _NO_STRAYS = np.zeros((1, 3))
 
 
 def prove(question: Question, *, tick: Callable[[int, int], None] | None = None, sharp: bool = True) -> Proof:
-    """Prove or refute a plan in the linear motion.
+    """Prove or refute a plan.
 
-    ``sharp``: bound every case to 2 cm or 0.1 %, else only as far as the keep-out radius asks. ``tick`` hears how far
-    it is.
+    ``sharp``: bound every case to 2 cm or 0.1 %, otherwise only as tightly as the keep-out radius requires. ``tick``
+    receives the progress.
     """
     cases = cases_of(question)
     findings = []
@@ -83,7 +86,7 @@ def prove(question: Question, *, tick: Callable[[int, int], None] | None = None,
         if finding.nearest >= question.keep_out:
             break
         flown = flown_of(question, finding.case, finding.member, finding.when)
-        if flown.distance() < question.keep_out:
+        if flown.distance(question.radius) < question.keep_out:
             return Proof(question, Verdict.VIOLATED, least, tuple(findings), flown)
     return Proof(question, Verdict.UNKNOWN, least, tuple(findings), None)
 
@@ -93,35 +96,33 @@ def bound(case: Case, question: Question, enough: float) -> Finding:
     n = question.plan.mean_motion
     start = float(np.linalg.norm(case.centre[:3]))
     tolerance = max(_TOLERANCE, 1e-3 * min(start, 100.0))
+    strays, trials = _NO_STRAYS, np.zeros(0)
+    if question.radius is not None:
+        strays, trials = strays_of(case, question, question.radius)
     least, nearest, when, member, cells, _ = least_distance(
         n,
         case.duration,
         case.centre,
         case.columns,
         case.ends,
-        _NO_STRAYS,
+        strays,
         enough,
         _TOUCHES,
         tolerance,
         _MOST_CELLS,
     )
-    return Finding(case, least - SLACK, nearest, when, cells, member)
+    # With unbounded strays the only bound is 0, as no distance is negative.
+    return Finding(case, max(least - SLACK, 0.0), nearest, when, cells, member, trials)
 
 
 def greatest_scale(question: Question, *, most: float = 100.0, accuracy: float = 1e-3) -> float:
-    """lambda: the largest multiple of the errors, up to ``most``, for which every case is proved; 0 where none is.
+    """lambda: the largest multiple of the errors, up to ``most``, for which every case is proved; 0 if none is.
 
-    Larger errors hold the smaller ones, so bisection finds it to a relative ``accuracy``, from below.
+    Larger errors include smaller ones, so bisection finds it to a relative ``accuracy``, from below.
     """
 
     def holds(scale: float) -> bool:
-        scaled = Question(
-            question.plan,
-            question.keep_out,
-            question.horizon,
-            question.errors.scaled(scale),
-            question.failures,
-        )
+        scaled = replace(question, errors=question.errors.scaled(scale))
         enough = question.keep_out + SLACK
         return all(bound(case, scaled, enough).least >= question.keep_out for case in cases_of(scaled))
 

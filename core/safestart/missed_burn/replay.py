@@ -1,4 +1,4 @@
-"""A flight that one member of a case's set stands for: actual states and burns, to be flown again by anyone."""
+"""The flight of one member of a case's set: actual states and burns that anyone can fly again."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.integrate import solve_ivp
 
 from safestart.dynamics.cwh import input_matrix, transition_matrix
 from safestart.missed_burn.cases import Case, frame, shell
@@ -44,15 +45,52 @@ class Flown:
         reached: Floats = transition_matrix(n, self.look - now) @ state
         return reached
 
-    def distance(self) -> float:
-        """Distance to the target at ``look``, m."""
-        return float(np.linalg.norm(self.state()[:3]))
+    def distance(self, radius: float | None = None) -> float:
+        """Distance to the target at ``look``, m; with the ``radius`` (m) of the orbit in the nonlinear motion."""
+        state = self.state() if radius is None else self.nonlinear_state(radius)
+        return float(np.linalg.norm(state[:3]))
+
+    def nonlinear_state(self, radius: float) -> Floats:
+        """State (6,) at ``look`` about a point mass, the target on a circular orbit of ``radius`` m."""
+        state, now = np.array(self.start), self.begin
+        for time, impulse in zip(self.times.tolist(), self.impulses, strict=True):
+            state = self._flown(radius, state, time - now, np.zeros(3))
+            state[3:] += impulse
+            now = time
+        if self.push_for > 0.0:
+            on = min(self.push_for, self.look - now)
+            state = self._flown(radius, state, on, self.push)
+            now += on
+        return self._flown(radius, state, self.look - now, np.zeros(3))
+
+    def _flown(self, r: float, state: Floats, seconds: float, push: Floats) -> Floats:
+        """The full equations of relative motion in LVLH, by DOP853."""
+        n = self.mean_motion
+        mu = n * n * r**3
+
+        def rates(_: float, s: Floats) -> Floats:
+            x, y, z, u, v, w = s
+            pull = mu / ((r + x) ** 2 + y * y + z * z) ** 1.5
+            return np.array(
+                [
+                    *(u, v, w),
+                    2.0 * n * v + n * n * x - pull * (r + x) + mu / r**2 + push[0],
+                    -2.0 * n * u + n * n * y - pull * y + push[1],
+                    -pull * z + push[2],
+                ]
+            )
+
+        if seconds <= 0.0:
+            return np.array(state)
+        done = solve_ivp(rates, (0.0, seconds), state, method="DOP853", rtol=1e-11, atol=1e-9)
+        reached: Floats = done.y[:, -1] if done.success else np.full(6, np.inf)
+        return reached
 
 
 def flown_of(question: Question, case: Case, member: Floats, when: float) -> Flown:
     """The flight of a member (C,) of a case, ``when`` s after the case's time.
 
-    Its burns are taken back into what errors and failures allow, so its distance is to be measured, not believed.
+    Its burns are clipped to the allowed errors and failures, so its distance must be measured, not taken from the set.
     """
     plan, errors, failures = question.plan, question.errors, question.failures
     base = case.burn if errors.at_each_burn else 0

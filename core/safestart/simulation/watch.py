@@ -43,8 +43,7 @@ class Watched(Protocol):
     """Seconds until the first violation, infinite without one."""
 
     def fly(self, thrust: Floats, impulse: Floats | None = None) -> None:
-        """One interval, or to a violation: ``impulse`` (3,), m/s, at its start, ``thrust`` (3,), m/s^2, held in
-        LVLH."""
+        """One interval, or to a violation: ``impulse`` (3,), m/s, at its start; ``thrust`` (3,), m/s^2, in LVLH."""
         ...
 
 

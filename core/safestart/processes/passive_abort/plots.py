@@ -1,4 +1,4 @@
-"""Picture of a missed-burn proof: the drifts in the orbit plane, and what every burn keeps."""
+"""Picture of a missed-burn proof: the drifts in the orbit plane, and the distance that every burn keeps."""
 
 from __future__ import annotations
 
@@ -28,12 +28,13 @@ def picture(proof: Proof) -> Artifact:
     keep_out = proof.question.keep_out
     draw_drifts(plane, proof, range(len(proof.findings)))
     _distances(bars, proof)
+    motion = "linear" if proof.question.radius is None else "nonlinear"
     verdict = {
         Verdict.PROVED: f"proved: at no time nearer than {proof.least:.2f} m",
         Verdict.VIOLATED: f"violated: a flight within the errors comes nearer than {keep_out:g} m",
         Verdict.UNKNOWN: f"unknown: {proof.gap:.2f} m of {keep_out:g} m are not proved",
     }[proof.verdict]
-    drawing.suptitle(f"Burns that fail, linear motion; {verdict}", fontsize=11)
+    drawing.suptitle(f"Burns that fail, {motion} motion; {verdict}", fontsize=11)
     return png("aborts.png", drawing)
 
 

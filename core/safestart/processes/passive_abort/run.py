@@ -18,10 +18,12 @@ from safestart.processes.wire import finite
 from safestart.records.comparable import canonical
 from safestart.runtime.progress import Context
 
-LINEAR = (
-    "model: linear. The proof speaks about the CWH motion, round-off included; what this motion leaves out (the "
-    "nonlinear terms, J2, drag) is not in it."
-)
+NOTES = {
+    "linear": "model: linear. The verdict speaks about the CWH motion, round-off included; what this motion leaves out "
+    "(the nonlinear terms, J2, drag) is not in it.",
+    "nonlinear": "model: nonlinear. The verdict speaks about two point masses, the target on a circular orbit, "
+    "round-off included; J2 and drag are not in it. A gap here may be that of the bound on the nonlinear terms.",
+}
 
 
 def run(inputs: PassiveAbortInputs, context: Context) -> ProcessOutput:
@@ -37,13 +39,13 @@ def run(inputs: PassiveAbortInputs, context: Context) -> ProcessOutput:
     return ProcessOutput(
         {
             "verdict": proof.verdict.value,
-            "model": "linear",
+            "model": inputs.model,
             "least_distance_m": proof.least,
             "gap_m": proof.gap,
             "error_level": level,
             "cases": cases_of(proof),
-            "counter_example": None if flown is None else flown_document(flown),
-            "notes": [LINEAR],
+            "counter_example": None if flown is None else flown_document(flown, question.radius),
+            "notes": [NOTES[inputs.model]],
         },
         tuple(artifacts),
     )
@@ -57,7 +59,9 @@ def question_of(inputs: PassiveAbortInputs) -> Question:
     )
     plan = Plan(n, (*inputs.start.position_m, *inputs.start.velocity_m_s), burns)
     horizon = inputs.abort_orbits * math.tau / n
-    return Question(plan, inputs.keep_out_m, horizon, errors_of(inputs.errors), failures_of(inputs.failures))
+    radius = inputs.semi_major_axis_m if inputs.model == "nonlinear" else None
+    errors, failures = errors_of(inputs.errors), failures_of(inputs.failures)
+    return Question(plan, inputs.keep_out_m, horizon, errors, failures, radius)
 
 
 def errors_of(errors: ErrorsInput) -> Errors:
@@ -79,11 +83,11 @@ def failures_of(failures: FailuresInput) -> Failures:
 
 
 def cases_of(proof: Proof) -> list[dict[str, Any]]:
-    """What every burn keeps with every failure, over all pieces. A burn is missed where the one before was the last."""
+    """Distances of every burn and failure, over all pieces. A burn is missed if the one before was the last."""
     out: dict[tuple[int, str], dict[str, Any]] = {}
     for finding in proof.findings:
         case = finding.case
-        # Drifting on after a burn that was made is missing the one that follows.
+        # Drifting after a completed burn means missing the next one.
         missed = case.kind in ("start", "made")
         key = (case.burn + 1 if missed else case.burn, "missed" if missed else case.kind)
         row = out.setdefault(
@@ -104,7 +108,7 @@ def cases_of(proof: Proof) -> list[dict[str, Any]]:
     return [out[key] for key in sorted(out)]
 
 
-def flown_document(flown: Flown) -> dict[str, Any]:
+def flown_document(flown: Flown, radius: float | None) -> dict[str, Any]:
     """A counter-example on the wire."""
     missed = flown.kind in ("start", "made")
     return {
@@ -120,5 +124,5 @@ def flown_document(flown: Flown) -> dict[str, Any]:
         "push_m_s2": flown.push.tolist(),
         "push_s": flown.push_for,
         "look_s": flown.look,
-        "distance_m": flown.distance(),
+        "distance_m": flown.distance(radius),
     }

@@ -19,6 +19,7 @@ from safestart.processes.passive_abort.wire import (
 from safestart.processes.views import Column, Facts, Findings, Rows
 
 VerdictName = Literal["PROVED", "VIOLATED", "UNKNOWN"]
+ModelName = Literal["linear", "nonlinear"]
 
 
 class PassiveAbortInputs(WireModel):
@@ -31,8 +32,10 @@ class PassiveAbortInputs(WireModel):
     abort_orbits: Orbits = 2.0
     errors: ErrorsInput = Field(default_factory=lambda: ErrorsInput.model_validate({}))
     failures: FailuresInput = Field(default_factory=lambda: FailuresInput.model_validate({}))
-    model: Literal["linear"] = Field(
-        "linear", description="Motion that the proof speaks about: linear (CWH)."
+    model: ModelName = Field(
+        "linear",
+        description="Motion that the proof speaks about: linear (CWH) or nonlinear (two point masses): what CWH "
+        "leaves out is bounded by Lagrange's remainder. Drifts that go many kilometres away are out of its reach.",
     )
     error_level: bool = Field(
         True, description="Also find the greatest multiple of the errors that is proved."
@@ -45,6 +48,8 @@ class PassiveAbortInputs(WireModel):
                 raise ValueError("burns: in the order of their times, no two at once")
         if any(not any(burn.impulse_m_s) for burn in self.burns):
             raise ValueError("burns: impulses that are not zero")
+        if self.model == "nonlinear" and not self.errors.at_each_burn:
+            raise ValueError("errors.at_each_burn: true where model is nonlinear")
         if self.failures.stuck_s > 0.0 and self.failures.acceleration_m_s2 == 0.0:
             raise ValueError("failures.acceleration_m_s2: more than 0 where a burn may be stuck on")
         return self
@@ -55,12 +60,8 @@ class CaseOutput(WireModel):
 
     burn: int = Field(description="Number of the burn, from 0; -1: none is made.")
     failure: Literal["missed", "partial", "misdirected", "late", "stuck"]
-    least_distance_m: float = Field(
-        description="Proved: at no time nearer than this; negative: nothing is proved."
-    )
-    nearest_m: float | None = Field(
-        description="A state within the errors comes this near; null: not looked for."
-    )
+    least_distance_m: float = Field(description="Proved: at no time nearer than this; 0: nothing is proved.")
+    nearest_m: float | None = Field(description="A state within the errors comes this near; null: no search.")
     when_s: float | None = Field(description="When it does, s after the burn.")
 
 
@@ -83,9 +84,9 @@ class PassiveAbortOutputs(WireModel):
     """The verdict on the plan, what every case keeps, and the evidence."""
 
     verdict: VerdictName
-    model: Literal["linear"]
+    model: ModelName
     least_distance_m: float = Field(description="Proved over all cases and all times, m.")
-    gap_m: float = Field(description="How much of keep_out_m is not proved, m.")
+    gap_m: float = Field(description="The part of keep_out_m that is not proved, m.")
     error_level: float | None = Field(
         description="lambda: the greatest multiple of all errors for which every case is proved; null: not asked for."
     )
@@ -100,8 +101,8 @@ SPEC = ProcessSpec(
     description=(
         "Any plan of impulses near a target on a circular orbit: any one burn missed, late, partial, stuck on or "
         "misdirected, with errors of navigation and thrust. The least distance to the target is proved at all times of "
-        "the drift that follows (model linear: the CWH motion), with a document that safestart verify checks; or a "
-        "flight to replay that comes too near; or UNKNOWN with the gap."
+        "the drift that follows, in the linear (CWH) or the nonlinear motion, with a document that safestart "
+        "verify checks; or a flight to replay that comes too near; or UNKNOWN with the gap."
     ),
     inputs=PassiveAbortInputs,
     outputs=PassiveAbortOutputs,

@@ -7,10 +7,13 @@ On a cell [a, b] with direction d, q(t) = Phi_p(t)' d and f = q . centre - sum |
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 from flint import arb, arb_mat, fmpq
 
 from safestart.proofs.abort.sets import Reached, Sets, transition
 from safestart.proofs.abort.statement import Asked, Event, read
+from safestart.proofs.abort.strays import strays
 from safestart.proofs.strict import ProofRejected
 from safestart.runtime.precision import precise
 
@@ -38,7 +41,7 @@ class Checker:
         self.bends = p, q
 
     def check(self) -> int:
-        """All cases are there and all cells hold; how many cells."""
+        """Check that no case is missing and all cells hold; returns the number of cells."""
         self._complete()
         cells = 0
         for event in self.asked.events:
@@ -49,7 +52,7 @@ class Checker:
         return cells
 
     def _complete(self) -> None:
-        """Every event that the statement names has its case, and the pieces of [0, tau] leave no hole."""
+        """Check that every event of the statement has its case, and that the pieces of [0, tau] leave no gap."""
         asked = self.asked
         lasting = {"late": asked.late, "stuck": asked.stuck}
         found: dict[tuple[str, int], list[tuple[fmpq, fmpq]]] = {}
@@ -76,13 +79,8 @@ class Checker:
                     )
 
     def _covered(self, event: Event) -> None:
-        """The cells cover the drift: the horizon, and the wait for the next burn, which may be late."""
-        asked, k = self.asked, event.burn
-        duration = asked.horizon
-        if event.kind == "start":
-            duration = max(duration, asked.late)
-        if event.kind == "made" and k + 1 < len(asked.times):
-            duration = max(duration, asked.times[k + 1] - asked.times[k] + asked.late)
+        """Check that the cells cover the drift."""
+        duration = self._duration(event)
         reached = fmpq(0)
         for cell in sorted(event.cells):
             if cell[0] > reached:
@@ -94,6 +92,25 @@ class Checker:
                 f"{float(duration):.9g} s"
             )
 
+    def _duration(self, event: Event) -> fmpq:
+        """Duration of a drift: the horizon, and the wait for the next burn, which may be late."""
+        asked, k = self.asked, event.burn
+        if event.kind == "start":
+            return max(asked.horizon, asked.late)
+        if event.kind == "made" and k + 1 < len(asked.times):
+            return max(asked.horizon, asked.times[k + 1] - asked.times[k] + asked.late)
+        return asked.horizon
+
+    def _strays(self, event: Event, table: arb_mat, sizes: list[int]) -> list[list[arb]]:
+        """How far each axis may be from the linear motion, up to the end of each part; empty in the linear model."""
+        if self.asked.radius is None:
+            return []
+        h = self._duration(event) / len(event.radii)
+        nodes = [_size(self._rows(h * k) * table, None, sizes) for k in range(len(event.radii) + 1)]
+        between = arb(h * h / 8) * _size(self.bends[0] * table, self.bends[1] * table, sizes)
+        linear = [arb.max(a, b) + between + self.sets.detour(event) for a, b in pairwise(nodes)]
+        return strays(self.n, arb(self.asked.radius), arb(h), linear, [arb(r) for r in event.radii])
+
     def _held(self, event: Event, state: Reached) -> None:
         columns = [state.centre] + [m for block in state.blocks for m in block]
         table = arb_mat(6, len(columns))
@@ -101,7 +118,11 @@ class Checker:
             for k in range(6):
                 table[k, j] = entry[k, 0]
         sizes = [len(block) for block in state.blocks]
-        claim = arb(self.asked.least)
+        claim, strays, duration = (
+            arb(self.asked.least),
+            self._strays(event, table, sizes),
+            self._duration(event),
+        )
         for begin, end, *direction in event.cells:
             d = [arb(e) for e in direction]
             row = arb_mat([d])
@@ -109,6 +130,10 @@ class Checker:
             one, two = (row * bend * table for bend in self.bends)
             span = arb(end - begin)
             rest = span * span / 8 * _swing(one, two, sizes)
+            if strays:
+                # A cell that ends within a part gets the stray up to the end of that part.
+                at = min(max(int((end * len(strays) / duration).ceil()), 1), len(strays))
+                rest = rest + sum((abs(e) * s for e, s in zip(d, strays[at - 1], strict=True)), arb(0))
             room = arb.min(*ends) - rest - claim * sum((e * e for e in d), arb(0)).sqrt()
             if not (begin < end and any(direction) and room >= 0):
                 raise ProofRejected(
@@ -132,6 +157,16 @@ class Checker:
             level = level - _norm([values[0, at + j] for j in range(size)])
             at += size
         return level
+
+
+def _size(one: arb_mat, two: arb_mat | None, sizes: list[int]) -> arb:
+    """Bound on |(one cos + two sin) b| over the set whose centre and columns were multiplied."""
+    total, at = arb(0), 0
+    for size in [1, *sizes]:
+        parts = [one] if two is None else [one, two]
+        total = total + _norm([m[i, at + j] for m in parts for i in range(3) for j in range(size)])
+        at += size
+    return total
 
 
 def _norm(entries: list[arb]) -> arb:

@@ -1,4 +1,4 @@
-"""What a missed-burn proof states, read strictly: every number the double it is, as an exact rational."""
+"""The statement of a missed-burn proof, read strictly: every number is a double, taken as an exact rational."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 from flint import fmpq
 
 from safestart.proofs.statement import check_seal
-from safestart.proofs.strict import ProofRejected, fields, number, part, shown, vector
+from safestart.proofs.strict import ProofRejected, exact, fields, number, part, shown, vector
 
 SCHEMA = "safestart-abort-proof/1"
 KINDS = ("start", "made", "partial", "misdirected", "late", "stuck")
@@ -19,19 +19,20 @@ _QUESTION = (
 _ERRORS = ("position_m", "velocity_m_s", "thrust_share", "thrust_rad", "at_each_burn")
 _FAILURES = ("late_s", "partial", "stuck_s", "acceleration_m_s2", "misdirected_rad")
 _CASE = ("kind", "burn", "first_s", "last_s", "cells")
-_MOST_BURNS, _MOST_CASES, _MOST_CELLS = 200, 40_000, 400_000
+_MOST_BURNS, _MOST_CASES, _MOST_CELLS, _MOST_PARTS = 200, 40_000, 400_000, 1000
 LONGEST_PHASE = fmpq(1, 2)
 
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """One case of the document: its kind, burn (-1: none is made), piece of [0, tau] and its cells."""
+    """One case of the document: its kind, burn (-1: none is made), piece of [0, tau], cells and trial radii."""
 
     kind: str
     burn: int
     first: fmpq
     last: fmpq
     cells: list[list[fmpq]]
+    radii: list[fmpq]
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +40,7 @@ class Asked:
     """The statement in SI, all rational."""
 
     n: fmpq
+    radius: fmpq | None
     start: list[fmpq]
     times: list[fmpq]
     impulses: list[list[fmpq]]
@@ -58,15 +60,16 @@ class Asked:
 
 
 def read(document: Any) -> Asked:
-    """The statement of a document; raise ``ProofRejected`` when it is malformed or its digest is another's."""
+    """The statement of a document; raise ``ProofRejected`` when it is malformed or its digest is wrong."""
     check_seal(document, SCHEMA)
     fields(document, "document", ("schema", "digest", "verdict", "least_distance_m", "question", "cases"))
     if document["verdict"] != "PROVED":
         raise ProofRejected(f"verdict: required PROVED, received {shown(document['verdict'])}")
     question = part(document, "question", dict)
-    fields(question, "question", _QUESTION)
-    if question["model"] != "linear":
-        raise ProofRejected(f"model: required linear, received {shown(question['model'])}")
+    bent = question.get("model") == "nonlinear"
+    fields(question, "question", (*_QUESTION, "semi_major_axis_m") if bent else _QUESTION)
+    if question["model"] not in ("linear", "nonlinear"):
+        raise ProofRejected(f"model: required linear or nonlinear, received {shown(question['model'])}")
     start = part(question, "start", dict)
     fields(start, "start", ("position_m", "velocity_m_s"))
     errors, failures = part(question, "errors", dict), part(question, "failures", dict)
@@ -83,8 +86,12 @@ def read(document: Any) -> Asked:
     late, stuck = number(failures, "late_s", 0.0), number(failures, "stuck_s", 0.0)
     if n * max(late, stuck) > LONGEST_PHASE:
         raise ProofRejected("late_s, stuck_s: required at most half a radian of the orbit")
+    anew = _flag(errors, "at_each_burn")
+    if bent and not anew:
+        raise ProofRejected("at_each_burn: required true for the nonlinear model")
     return Asked(
         n=n,
+        radius=number(question, "semi_major_axis_m", 1e3, 1e9) if bent else None,
         start=vector(start["position_m"], "position_m", 3) + vector(start["velocity_m_s"], "velocity_m_s", 3),
         times=times,
         impulses=impulses,
@@ -93,14 +100,14 @@ def read(document: Any) -> Asked:
         box=box,
         share=number(errors, "thrust_share", 0.0, 0.99),
         angle=number(errors, "thrust_rad", 0.0, 1.5707963267948966),
-        anew=_flag(errors, "at_each_burn"),
+        anew=anew,
         late=late,
         partial=_flag(failures, "partial"),
         stuck=stuck,
         acceleration=number(failures, "acceleration_m_s2", 0.0, 100.0),
         misdirected=number(failures, "misdirected_rad", 0.0, 3.141592653589793),
         least=least,
-        events=_events(part(document, "cases", list), len(times)),
+        events=_events(part(document, "cases", list), len(times), bent),
     )
 
 
@@ -125,12 +132,12 @@ def _burns(burns: list[Any]) -> tuple[list[fmpq], list[list[fmpq]]]:
     return times, impulses
 
 
-def _events(cases: list[Any], burns: int) -> list[Event]:
+def _events(cases: list[Any], burns: int, bent: bool) -> list[Event]:
     if len(cases) > _MOST_CASES:
         raise ProofRejected(f"cases: required at most {_MOST_CASES}, received {len(cases)}")
     out, total = [], 0
     for case in cases:
-        fields(case, "case", _CASE)
+        fields(case, "case", (*_CASE, "radii_m") if bent else _CASE)
         kind, burn, cells = part(case, "kind", str), part(case, "burn", int), part(case, "cells", list)
         if kind not in KINDS or not (burn == -1 if kind == "start" else 0 <= burn < burns):
             raise ProofRejected(
@@ -140,5 +147,17 @@ def _events(cases: list[Any], burns: int) -> list[Event]:
         if total > _MOST_CELLS:
             raise ProofRejected(f"cells: required at most {_MOST_CELLS}")
         first, last = number(case, "first_s", 0.0), number(case, "last_s", 0.0)
-        out.append(Event(kind, burn, first, last, [vector(cell, "cell", 5) for cell in cells]))
+        radii = part(case, "radii_m", list) if bent else []
+        if bent and not 1 <= len(radii) <= _MOST_PARTS:
+            raise ProofRejected(f"radii_m: required 1 to {_MOST_PARTS}")
+        out.append(
+            Event(
+                kind,
+                burn,
+                first,
+                last,
+                [vector(cell, "cell", 5) for cell in cells],
+                [exact(radius, "radii_m", 0.0, 1e9) for radius in radii],
+            )
+        )
     return out

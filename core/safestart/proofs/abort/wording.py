@@ -10,7 +10,7 @@ from safestart.proofs.abort.statement import Asked
 
 
 def lines(asked: Asked) -> tuple[str, ...]:
-    """The statement, a line for each part of it."""
+    """The statement, one line per part."""
     box = [_double(e) for e in asked.box]
     held = "before every burn" if asked.anew else "before the first burn; the errors of the burns add up"
     failures = ["missed, as all after it"]
@@ -27,7 +27,7 @@ def lines(asked: Asked) -> tuple[str, ...]:
     return (
         f"at all times the chaser stays {_double(asked.keep_out)!r} m away from the target, and more: "
         f"{_double(asked.least)!r} m",
-        f"model: linear (CWH) about a circular orbit, mean motion {_double(asked.n)!r} rad/s",
+        _model(asked),
         f"horizon: {_double(asked.horizon):g} s after the last burn that is made",
         f"any burn is {'; or '.join(failures)}; no burn follows a failure",
         f"states: within {box[:3]} m and {box[3:]} m/s of the plan {held}",
@@ -39,6 +39,13 @@ def lines(asked: Asked) -> tuple[str, ...]:
             for k, (time, impulse) in enumerate(zip(asked.times, asked.impulses, strict=True))
         ),
     )
+
+
+def _model(asked: Asked) -> str:
+    n = f"mean motion {_double(asked.n)!r} rad/s"
+    if asked.radius is None:
+        return f"model: linear (CWH) about a circular orbit, {n}"
+    return f"model: nonlinear, two point masses, circular orbit of {_double(asked.radius)!r} m, {n}"
 
 
 def _double(value: fmpq) -> float:
