@@ -100,7 +100,7 @@ async def go_no_go_one(_query: Annotated[GoNoGoQuery, Query()]) -> Response:
 
 @proof.get(
     "/go-no-go/proof",
-    summary="The proof of a go/no-go, alone",
+    summary="Only the proof of a go/no-go",
     responses={
         200: content("application/json", {"type": "object"}, "The document that `safestart verify` checks."),
         **refusals(404, 422),
