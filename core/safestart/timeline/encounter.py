@@ -1,4 +1,4 @@
-"""What is known at an instant: the chaser in the target's LVLH, the orbit there, and how the target turns from then on."""
+"""What is known at an instant: the chaser in the target's LVLH, the orbit, and how the target turns from then on."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from safestart.interchange.epochs import SECOND, Nanoseconds, seconds_since, tex
 from safestart.interchange.frames import rotation_to_gcrf, to_gcrf
 from safestart.interchange.relative import Relative, relative_states
 from safestart.interchange.sampling import quaternions_at
-from safestart.model.orbit import KeplerOrbit
+from safestart.model.orbit import MU, KeplerOrbit
 from safestart.model.scenario import Floats
 
 RATE_GRID = 1e-7
@@ -54,33 +54,28 @@ class Encounter:
                 k = int(np.argmin(cosine))
                 at = text_of(attitude.epochs[k : k + 1], attitude.time_system)[0]
                 raise invalid("attitude", "at most 90 degrees between two entries", f"more after {at}")
+        if (self.chaser.frame == "ITRF") != (self.target.frame == "ITRF"):
+            raise invalid(
+                "REF_FRAME", "both courses in ITRF, or neither", f"{self.chaser.frame}, {self.target.frame}"
+            )
         for name in ("chaser", "target"):
             course: Ephemeris = getattr(self, name)
-            both_itrf = self.chaser.frame == self.target.frame == "ITRF"
-            if not both_itrf and course.frame == "ITRF":
-                raise invalid("REF_FRAME", "both courses in ITRF, or neither", f"{name} in ITRF")
             states = to_gcrf(course.frame, course.epochs, course.states)
             object.__setattr__(self, name, replace(course, frame="GCRF", states=states, covariances=()))
 
     @cached_property
-    def _to_reference(self) -> Floats | None:
-        """Quaternions (K, 4) of the attitude's entries against GCRF axes; None for a spin and for RTN."""
-        attitude = self.attitude
-        if isinstance(attitude, Spin) or attitude.reference == "RTN":
-            return None
-        turns = rotation_to_gcrf(attitude.reference, attitude.epochs)
-        first = np.array([quaternion_of(turn.T) for turn in turns[:1]])
-        if attitude.reference == "TEME":
-            first = np.array([quaternion_of(turn.T) for turn in turns])
-        return product(first, attitude.quaternions)
-
-    @cached_property
     def _course(self) -> AttitudeCourse | None:
-        """The attitude's course against GCRF, or as it is against RTN."""
-        attitude, turned = self.attitude, self._to_reference
+        """The attitude's course against GCRF, or as it is against RTN; None for a spin."""
+        attitude = self.attitude
         if isinstance(attitude, Spin):
             return None
-        return attitude if turned is None else replace(attitude, reference="GCRF", quaternions=turned)
+        if attitude.reference == "RTN":
+            return attitude
+        back = rotation_to_gcrf(attitude.reference, attitude.epochs).swapaxes(1, 2)
+        # Axes that stay are turned once for all entries.
+        steady = attitude.reference != "TEME"
+        first = np.array([quaternion_of(turn) for turn in (back[:1] if steady else back)])
+        return replace(attitude, reference="GCRF", quaternions=product(first, attitude.quaternions))
 
     def seen(self, epochs: Nanoseconds) -> Relative:
         """The chaser in the target's LVLH at TAI ``epochs`` (K,)."""
@@ -95,7 +90,7 @@ class Encounter:
         return np.asarray((epochs >= course.epochs[0]) & (epochs <= last))
 
     def turns(self, seen: Relative) -> Floats:
-        """(K, 3, 3): LVLH coordinates to body coordinates at the epochs of ``seen``, which :meth:`covered` holds for."""
+        """(K, 3, 3): LVLH coordinates to body coordinates at the epochs of ``seen``, all :meth:`covered`."""
         course = self._course
         if course is None:
             assert isinstance(self.attitude, Spin)
@@ -113,9 +108,9 @@ class Encounter:
         position, velocity = seen.target[k, :3], seen.target[k, 3:]
         radial = float(position @ velocity) / float(np.linalg.norm(position))
         momentum = float(np.linalg.norm(np.cross(position, velocity)))
-        # e cos nu = p / r - 1 with p = h nu' r / (nu' ...): from h and the radial speed, e sin nu = p r' / h.
+        # r = p / (1 + e cos nu) and r' = (h / p) e sin nu.
         n = float(seen.mean_motions()[k])
-        parameter = _parameter(n, e)
+        parameter = momentum * momentum / MU
         anomaly = math.atan2(parameter * radial / momentum, parameter / float(np.linalg.norm(position)) - 1.0)
         return KeplerOrbit(n, e, anomaly)
 
@@ -137,14 +132,6 @@ class Encounter:
             return _table(seconds, turns)
         axes = quaternion_of(seen.axes[k])
         return InLvlh(_table(seconds, product(conjugate(axes)[None, :], turns)), orbit)
-
-
-def _parameter(n: float, e: float) -> float:
-    """Semi-latus rectum, m."""
-    from safestart.model.orbit import MU
-
-    out: float = (MU / (n * n)) ** (1.0 / 3.0) * (1.0 - e * e)
-    return out
 
 
 def _table(seconds: Floats, turns: Floats) -> Table:

@@ -71,7 +71,7 @@ class Judge:
         plain = seen.known & covered & ~far
         room = np.full(len(epochs), np.nan)
         if plain.any():
-            room[plain] = self._room(_chosen(seen, plain))
+            room[plain] = self._room(seen.where(plain))
         out = []
         for k, epoch in enumerate(epochs.tolist()):
             if not plain[k]:
@@ -120,7 +120,9 @@ class Judge:
             answer = decide_in_space(question, seen.states[0], verdict_only=True)
         except InvalidInput:
             return None
-        return None if answer.verdict is Verdict.UNDECIDED else proof_in_space(question, seen.states[0], answer)
+        return (
+            None if answer.verdict is Verdict.UNDECIDED else proof_in_space(question, seen.states[0], answer)
+        )
 
     def closed_in(self, left: Instant, right: Instant, bracket: float) -> list[Instant]:
         """Instants between two of different verdicts, until neighbours that differ are ``bracket`` s apart."""
@@ -130,15 +132,14 @@ class Judge:
         return [*self.closed_in(left, middle, bracket), middle, *self.closed_in(middle, right, bracket)]
 
 
-def _chosen(seen: Relative, where: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]) -> Relative:
-    parts = (seen.epochs, seen.states, seen.axes, seen.rates, seen.target, seen.known)
-    return Relative(*(part[where] for part in parts))
-
-
 def _unknown(known: bool, covered: bool) -> str:
     if not known:
         return "the files hold no states here"
-    return "the attitude does not go on to the end of the horizon" if not covered else "the chaser is too far away"
+    return (
+        "the attitude does not go on to the end of the horizon"
+        if not covered
+        else "the chaser is too far away"
+    )
 
 
 def _bound(answer: Answer) -> float:

@@ -26,17 +26,24 @@ def register(app: typer.Typer) -> None:
     def timeline(
         chaser: Annotated[Path, typer.Option(help="States of the chaser: OEM, OCM, CSV, Parquet or MATLAB.")],
         target_file: Annotated[Path, typer.Option("--target", help="States of the target: the same.")],
-        a_max: Annotated[float, typer.Option("--a-max", help="Maximum thrust acceleration of the chaser, m/s^2.")],
+        a_max: Annotated[
+            float, typer.Option("--a-max", help="Maximum thrust acceleration of the chaser, m/s^2.")
+        ],
         attitude: Annotated[
-            Path | None, typer.Option(help="Attitude of the target: AEM, CSV, Parquet or MATLAB; else --spin.")
+            Path | None,
+            typer.Option(help="Attitude of the target: AEM, CSV, Parquet or MATLAB; else --spin."),
         ] = None,
         spin: Annotated[
             float | None, typer.Option(help="Steady spin of the target about LVLH z, deg/s; else --attitude.")
         ] = None,
-        phase: Annotated[float, typer.Option(help="By how much the spin is ahead of LVLH at the start, deg.")] = 0.0,
+        phase: Annotated[
+            float, typer.Option(help="By how much the spin is ahead of LVLH at the start, deg.")
+        ] = 0.0,
         corridor: Annotated[
             list[str] | None,
-            typer.Option(help='JSON of a corridor, such as {"name": "aft", "axis": [0, -1, 0]}; may be repeated.'),
+            typer.Option(
+                help='JSON of a corridor, such as {"name": "aft", "axis": [0, -1, 0]}; may be repeated.'
+            ),
         ] = None,
         start: Annotated[str | None, typer.Option(help="Begin of the span, UTC.")] = None,
         stop: Annotated[str | None, typer.Option(help="End of the span, UTC.")] = None,
@@ -56,8 +63,8 @@ def register(app: typer.Typer) -> None:
     ) -> None:
         """Intervals of GO, NO_GO and UNDECIDED over time, with proofs at their ends."""
         inputs: dict[str, Any] = {
-            "chaser": _states("--chaser", chaser, sense),
-            "target": _states("--target", target_file, sense),
+            "chaser": _text("--chaser", chaser),
+            "target": _text("--target", target_file),
             "a_max_m_s2": a_max,
             "step_s": step,
             "bracket_s": bracket,
@@ -68,7 +75,7 @@ def register(app: typer.Typer) -> None:
             "proofs": proofs is not None or output is not None,
         }
         if attitude is not None:
-            inputs["attitude"] = _attitudes(attitude)
+            inputs["attitude"] = _text("--attitude", attitude)
         if spin is not None:
             inputs["spin"] = {"rate_deg_s": spin, "phase_deg": phase}
         if corridor:
@@ -84,8 +91,8 @@ def register(app: typer.Typer) -> None:
         print_json(result.document) if as_json else _show(result.document["outputs"])
 
 
-def _states(option: str, path: Path, sense: str | None) -> str:
-    """The text of a message, or of the OEM that a table comes to."""
+def _text(option: str, path: Path) -> str:
+    """The text of a message, or of the OEM or AEM that a table comes to."""
     from safestart.interchange import tables
     from safestart.interchange.source import bytes_of, text_of
     from safestart.interchange.write import course_bytes
@@ -93,18 +100,8 @@ def _states(option: str, path: Path, sense: str | None) -> str:
     data = bytes_of(path)
     if not tables.is_table(data, path.name):
         return text_of(data, option)
-    return course_bytes(tables.ephemeris_of(data, path.name), "kvn", "2000-01-01T00:00:00").decode()
-
-
-def _attitudes(path: Path) -> str:
-    from safestart.interchange import tables
-    from safestart.interchange.source import bytes_of, text_of
-    from safestart.interchange.write import course_bytes
-
-    data = bytes_of(path)
-    if not tables.is_table(data, path.name):
-        return text_of(data, "--attitude")
-    return course_bytes(tables.attitude_of(data, path.name), "kvn", "2000-01-01T00:00:00").decode()
+    read = tables.attitude_of if option == "--attitude" else tables.ephemeris_of
+    return course_bytes(read(data, path.name), "kvn", "2000-01-01T00:00:00").decode()
 
 
 def _corridor(text: str) -> Any:

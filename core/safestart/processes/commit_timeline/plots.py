@@ -30,7 +30,9 @@ def picture(document: dict[str, Any]) -> Artifact:
                 if one["verdict"] == verdict
             ]
             hatch, edge = _HATCHES[verdict], "white" if _HATCHES[verdict] else colour
-            axes.broken_barh(bars, (row - 0.35, 0.7), facecolor=colour, edgecolor=edge, linewidth=0.0, hatch=hatch)
+            axes.broken_barh(
+                bars, (row - 0.35, 0.7), facecolor=colour, edgecolor=edge, linewidth=0.0, hatch=hatch
+            )
     axes.set_yticks(range(len(names)), names)
     axes.invert_yaxis()
     axes.set_xlim(0.0, max(longest, 1e-9) / scale)

@@ -42,7 +42,9 @@ def shard(part: dict[str, Any], context: Context) -> Part:
     proofs: dict[str, Any] = {}
     judges = judges_of(inputs, encounter)
     for index, judge in enumerate(judges):
-        instants = _instants(inputs, judge, steps, own, context.part(index, 1.0, len(judges), judge.corridor.name))
+        instants = _instants(
+            inputs, judge, steps, own, context.part(index, 1.0, len(judges), judge.corridor.name)
+        )
         for run in joined(instants):
             ends = []
             for one in (run[0], run[-1]):
@@ -95,7 +97,8 @@ def judges_of(inputs: CommitTimelineInputs, encounter: Encounter) -> list[Judge]
         raise invalid("corridors", "names that differ", names)
     thrust = ThrustLimit("ball", (inputs.a_max_m_s2,))
     corridors = [
-        Corridor(one.name, five_faces(one.shape(), (one.axis[0], one.axis[1], one.axis[2]))) for one in inputs.corridors
+        Corridor(one.name, five_faces(one.shape(), (one.axis[0], one.axis[1], one.axis[2])))
+        for one in inputs.corridors
     ]
     return [Judge(encounter, corridor, thrust) for corridor in corridors]
 
@@ -161,7 +164,10 @@ def merge(inputs: CommitTimelineInputs, parts: Sequence[Part], context: Context)
             ]:
                 bounds = [one["margin_m"] for one in (last, run) if one["margin_m"] is not None]
                 last |= {"end": run["end"], "end_proof": run["end_proof"]}
-                last |= {"instants": last["instants"] + run["instants"], "margin_m": min(bounds, key=abs, default=None)}
+                last |= {
+                    "instants": last["instants"] + run["instants"],
+                    "margin_m": min(bounds, key=abs, default=None),
+                }
             else:
                 runs.append(dict(run))
     begin = int(steps[0])
@@ -208,11 +214,14 @@ def _interval(inputs: CommitTimelineInputs, run: dict[str, Any], begin: int) -> 
 def _reason(run: dict[str, Any], horizon: float) -> str:
     if run["verdict"] == "UNDECIDED":
         return f"undecided: {run['why']}"
+    margin = run["margin_m"]
     if run["verdict"] == "GO":
-        return f"from every instant asked a thrust history stays for {horizon:g} s, with {run['margin_m']:.3g} m or more"
+        return (
+            f"from every instant asked a thrust history stays for {horizon:g} s, with {margin:.3g} m to spare"
+        )
     return (
         f"from no instant asked a thrust history stays for {horizon:g} s: each is at some time at least "
-        f"{-run['margin_m']:.3g} m outside a face"
+        f"{-margin:.3g} m outside a face"
     )
 
 

@@ -27,7 +27,10 @@ class SpinInput(WireModel):
         default_factory=lambda: [0.0, 0.0, 1.0], min_length=3, max_length=3, description="Axis, LVLH."
     )
     phase_deg: float = Field(
-        0.0, ge=-360, le=360, description="By how much the body is ahead of LVLH at the start of the span, deg."
+        0.0,
+        ge=-360,
+        le=360,
+        description="By how much the body is ahead of LVLH at the start of the span, deg.",
     )
 
 
@@ -54,19 +57,30 @@ class CommitTimelineInputs(WireModel):
     spin: SpinInput | None = Field(None, description="Steady spin against LVLH; else give attitude.")
     a_max_m_s2: Thrust
     corridors: list[NamedCorridor] = Field(
-        default_factory=lambda: [NamedCorridor()], min_length=1, max_length=8, description="Each has its own timeline."
+        default_factory=lambda: [NamedCorridor()],
+        min_length=1,
+        max_length=8,
+        description="Each has its own timeline.",
     )
     start: str | None = Field(
-        None, pattern=_EPOCH, max_length=40, description="Begin of the span, UTC; absent: where both courses begin."
+        None,
+        pattern=_EPOCH,
+        max_length=40,
+        description="Begin of the span, UTC; absent: where both courses begin.",
     )
     stop: str | None = Field(
         None, pattern=_EPOCH, max_length=40, description="End of the span, UTC; absent: where a course ends."
     )
     step_s: float = Field(10.0, ge=0.1, le=600, description="Distance of the instants that are asked, s.")
     bracket_s: float = Field(
-        0.1, ge=0.001, le=600, description="A change of verdict between two instants is closed in on to this, s."
+        0.1,
+        ge=0.001,
+        le=600,
+        description="A change of verdict between two instants is closed in on to this, s.",
     )
-    horizon_s: Horizon = Field(60.0, description="How long the approach must be able to stay in the corridor, s.")
+    horizon_s: Horizon = Field(
+        60.0, description="How long the approach must be able to stay in the corridor, s."
+    )
     sense: Literal["rotating", "inertial"] | None = Field(
         None, description="How covariances in RTN or RSW are meant, where the file does not say it."
     )
@@ -115,7 +129,9 @@ SPEC = ProcessSpec(
     ),
     inputs=CommitTimelineInputs,
     outputs=CommitTimelineOutputs,
-    sharding=Sharding(f"{_HERE}.split:split", f"{_HERE}.run:shard", f"{_HERE}.run:merge", f"{_HERE}.split:summary"),
+    sharding=Sharding(
+        f"{_HERE}.split:split", f"{_HERE}.run:shard", f"{_HERE}.run:merge", f"{_HERE}.split:summary"
+    ),
     views=(
         Findings(
             "Intervals",
