@@ -83,6 +83,10 @@ class TorqueFree:
         most: tuple[float, float] = self._course.bounds
         return most
 
+    def polhode_period(self) -> float:
+        """Seconds after which the angular velocity in body axes is the same again; 0 where it never changes."""
+        return float(self._course.period)
+
     @property
     def knots(self) -> Floats:
         """None."""
@@ -106,6 +110,7 @@ class _Steady:
         self.rate, self.first = rate, first
         self.size = math.hypot(*rate)
         self.bounds = (self.size * (1.0 + 1e-15), 0.0)
+        self.period = 0.0
 
     def rotation(self, times: Floats) -> Floats:
         axis = self.rate / self.size if self.size > 0.0 else np.array([0.0, 0.0, 1.0])
@@ -161,6 +166,7 @@ class _Poinsot:
         self.first_theta = self.theta.direction(np.array([self.begin]))[0]
         self.frame = self._angles(np.zeros(1))[..., 0].T @ first
         self.bounds = self._bounds()
+        self.period = 4.0 * self.jacobi.quarter / abs(self.pace)
 
     def _bounds(self) -> tuple[float, float]:
         jacobi, (a, b, c) = self.jacobi, (self.size_a, self.size_b, self.size_c)

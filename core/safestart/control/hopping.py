@@ -94,7 +94,7 @@ class Hopping:
     ) -> Command:
         """The impulse itself where its drift keeps out; else the best of two searches.
 
-        The first begins at the impulse. Where it finds none, its drift passes the target on both sides of the sphere, and
+        The first begins at the impulse. Where it finds none, its drift passes the target on both sides of it, and
         linearised rows contradict each other; the second begins at the guidance's own hop, whose drift closes.
         """
         values, _ = barrier.rows(state, impulse)

@@ -64,4 +64,4 @@ def require_once(body: bytes) -> None:
     try:
         require_unique_names(body)
     except NameTwice as error:
-        raise invalid(error.name, "every name once in an object", "one that comes twice") from None
+        raise invalid(error.name, "every name once in an object", "a repeated one") from None

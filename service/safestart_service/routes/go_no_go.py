@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import TYPE_CHECKING, Annotated, Any
 
 from fastapi import APIRouter, Query, Request
@@ -12,10 +13,12 @@ from safestart.processes.go_no_go import run
 from safestart.processes.go_no_go.method_registry import PROVING, RENAMED, method_of
 from safestart.processes.go_no_go.one_start import ONE_START, GoNoGoAnswer
 from safestart.processes.go_no_go.spec import SPEC, GoNoGoInputs, GoNoGoOutputs
+from safestart.processes.start_in_space.spec import SPEC as SPACE
+from safestart.processes.start_in_space.spec import SpaceInputs, SpaceOutputs
 from safestart.runtime.progress import Context
 from safestart_service.documents.deprecation import RENAMED_METHOD
 from safestart_service.documents.execution import check_states, run_now
-from safestart_service.documents.openapi import answer, content, json_body, refusals
+from safestart_service.documents.openapi import REF, answer, content, json_body, refusals
 from safestart_service.http.answers import Json
 from safestart_service.http.body import parse_body, read_body
 from safestart_service.http.computing import computed
@@ -64,6 +67,17 @@ async def _proof(request: Request, inputs: GoNoGoInputs) -> Response:
     return Json(document["proof"], headers={"Content-Disposition": 'attachment; filename="proof.json"'})
 
 
+def in_space(body: bytes) -> bool:
+    """Whether a body asks about ``starts``, the question in space."""
+    if b'"starts"' not in body:
+        return False
+    try:
+        found = json.loads(body)
+    except (ValueError, RecursionError):
+        return False
+    return isinstance(found, dict) and "starts" in found
+
+
 one = APIRouter(tags=["instant answers"], route_class=query_route(ONE_START.parse, _answer, _instant))
 proof = APIRouter(tags=["instant answers"], route_class=query_route(ONE_START.parse, _proof))
 many = APIRouter(tags=["instant answers"])
@@ -86,7 +100,7 @@ async def go_no_go_one(_query: Annotated[GoNoGoQuery, Query()]) -> Response:
 
 @proof.get(
     "/go-no-go/proof",
-    summary="The proof of a go/no-go, alone",
+    summary="Only the proof of a go/no-go",
     responses={
         200: content("application/json", {"type": "object"}, "The document that `safestart verify` checks."),
         **refusals(404, 422),
@@ -104,15 +118,32 @@ async def go_no_go_proof(_query: Annotated[GoNoGoQuery, Query()]) -> Response:
 @many.post(
     "/go-no-go",
     summary="Go/no-go for many starts",
-    openapi_extra=json_body({SPEC.id: GoNoGoInputs}, {SPEC.id: SPEC.example}),
-    responses={200: answer(GoNoGoOutputs, "Arrays over the states."), **refusals(400, 413, 415, 422)},
+    openapi_extra=json_body(
+        {SPEC.id: GoNoGoInputs, SPACE.id: SpaceInputs}, {SPEC.id: SPEC.example, SPACE.id: SPACE.example}
+    ),
+    responses={
+        200: content(
+            "application/json",
+            {"anyOf": [{"$ref": REF + GoNoGoOutputs.__name__}, {"$ref": REF + SpaceOutputs.__name__}]},
+            "Arrays over the states, or over the starts.",
+        ),
+        **refusals(400, 413, 415, 422),
+    },
 )
 async def go_no_go_many(request: Request) -> Response:
-    """The same question for up to 100 000 starts of one operating point."""
+    """The same question for up to 100 000 starts of one operating point.
+
+    With ``starts`` in place of ``states`` it is the question of process ``start-in-space``: states with velocities, any
+    attitude, orbit, corridor and set of thrusts.
+    """
     body = await read_body(request)
     found = services(request)
 
     def respond(context: Context) -> Response:
+        if in_space(body):
+            asked = parse_body(SpaceInputs, body)
+            check_states(SPACE, asked, found.settings.max_states)
+            return Json(run_now(SPACE, asked, context))
         inputs = parse_body(GoNoGoInputs, body)
         check_states(SPEC, inputs, found.settings.max_states)
         answered = Json(run_now(SPEC, inputs, context))

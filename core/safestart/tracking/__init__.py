@@ -1,0 +1,1 @@
+"""Answers about the tracking MPC of paper 002: possible impulse histories, regions, flights, certificates."""
