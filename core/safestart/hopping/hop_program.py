@@ -115,7 +115,7 @@ class HopProgram:
     def solve(
         self, barrier: tuple[Floats, Floats] | None = None, near: tuple[Floats, float] | None = None
     ) -> Solved:
-        """Solve it. ``barrier``: (G (B, 3), g (B,)), soft rows G u_0 + g >= 0, m; ``near``: u_0 in a box about a point."""
+        """Solve. ``barrier``: (G (B, 3), g (B,)), soft rows G u_0 + g >= 0, m; ``near``: u_0 in a box about a point."""
         from clarabel import DefaultSettings, DefaultSolver, NonnegativeConeT
         from scipy.sparse import csc_matrix
 
