@@ -23,7 +23,7 @@ Touched = tuple[list[str], list[str]]
 
 @pytest.fixture(scope="module")
 def extended(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[Touched], dict[str, Any]]:
-    """What was touched after each part that was added, and what the house with all of them answers."""
+    """The touched files after each added part, and the answers of the copy with all parts."""
     house = House(tmp_path_factory.mktemp("house"))
     touched = [house.touched()]
     house.add("drift", f"{PROCESSES}/drift")
