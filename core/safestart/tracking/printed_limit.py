@@ -1,7 +1,7 @@
 """Where the printed limit on theta is not safe: an equilibrium inside it that the input cannot hold.
 
-Paper 002 lets theta lie in the corridor up to y_max of (42). A chaser that stays there must give u_e(k; theta); near spins
-about a principal axis that is more than the limit, because (35) leaves out the centripetal term.
+Paper 002 lets theta lie in the corridor up to y_max of (42). A chaser that stays there must give u_e(k; theta); near
+spins about a principal axis that is more than the limit, because (35) leaves out the centripetal term.
 """
 
 from __future__ import annotations

@@ -29,8 +29,8 @@ NOTES = (
     "The paper prints theta_max, y_max and the horizon; times and impulses are ours for its case, by weights.",
     "With theta = 0 the paper needs N_c = 35 from Table I's start. The start itself needs fewer; 35 is what the region "
     "needs to come close to the exact one.",
-    "The printed theta_max leaves out the centripetal term of (35): near spins about a principal axis it lets theta where "
-    "the input cannot hold it. The flight that shows it is counter_example.npz of process tracking-mpc.",
+    "The printed theta_max leaves out the centripetal term of (35): near spins about a principal axis it lets theta be "
+    "where the input cannot hold it. The flight that shows it is counter_example.npz of process tracking-mpc.",
 )
 
 _FLIGHTS: tuple[tuple[str, Justify], ...] = (
