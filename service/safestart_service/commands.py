@@ -71,7 +71,7 @@ def _serve(overrides: dict[str, object]) -> None:
         configure(chosen.log_format)
         with suppress(Away):  # the application waits for it and reports that
             database.migrate()
-        app = create_app(chosen, database)
+        app = create_app(chosen, database, warm=True)
         refused = app.state.services.metrics.refused
         config = uvicorn.Config(
             app,

@@ -44,6 +44,7 @@ class ProcessSpec:
     ``replay_tolerance`` is how far a replay on another machine or with other versions may be off, relative to
     max(1, |value|); on the same ones it is the same bit for bit.
     ``instant`` names a function (inputs) -> document that the service answers with at submission.
+    ``cost`` gives the seconds of one core that an answer takes, roughly, for inputs of a ``light`` process; 0 without.
     ``states`` names the list among the inputs, if there is one, that a service may limit further (``max_states``).
     ``tables`` are those of the outputs that are no lists of objects; these are tables by themselves.
     ``views`` say how a page shows the outputs, the most important first.
@@ -58,6 +59,7 @@ class ProcessSpec:
     run: str = ""
     sharding: Sharding | None = None
     light: bool = False
+    cost: Callable[[Any], float] = lambda _: 0.0
     instant: str | None = None
     version: str = "1.0.0"
     replay_tolerance: float = 1e-9

@@ -13,13 +13,10 @@ from safestart.processes.go_no_go.method_registry import METHODS, PROVING
 from safestart.processes.go_no_go.one_start import ONE_START, GoNoGoAnswer
 from safestart.processes.go_no_go.spec import SPEC, GoNoGoInputs, GoNoGoOutputs
 from safestart.runtime.progress import Context
-from safestart_service.documents.execution import check_states, run_now
+from safestart_service.computing.dispatch import one_document, posted
 from safestart_service.documents.openapi import answer, content, json_body, refusals
 from safestart_service.http.answers import Json
-from safestart_service.http.body import parse_body, read_body
-from safestart_service.http.computing import computed
 from safestart_service.http.lean import query_route
-from safestart_service.state import services
 
 if TYPE_CHECKING:
     from pydantic import BaseModel as GoNoGoQuery
@@ -28,18 +25,14 @@ else:
 _SILENT = Context()
 
 
-def _document(inputs: GoNoGoInputs, context: Context) -> dict[str, Any]:
-    return run.answer(inputs, context).document_of_one()
-
-
 def _instant(inputs: GoNoGoInputs) -> dict[str, Any] | None:
     """The document of a question that takes microseconds, else None: a cone program would block every other
     request."""
-    return _document(inputs, _SILENT) if METHODS[inputs.method].at_once else None
+    return run.answer(inputs, _SILENT).document_of_one() if METHODS[inputs.method].at_once else None
 
 
 async def _answer(request: Request, inputs: GoNoGoInputs) -> Response:
-    document = await computed(request, lambda context: _document(inputs, context))
+    document = await one_document(request, inputs)
     if METHODS[inputs.method].proves and document["verdict"] != "UNDECIDED":
         document["proof_url"] = f"/go-no-go/proof?{request.url.query}"
     return Json(document)
@@ -48,7 +41,7 @@ async def _answer(request: Request, inputs: GoNoGoInputs) -> Response:
 async def _proof(request: Request, inputs: GoNoGoInputs) -> Response:
     method = inputs.method if METHODS[inputs.method].proves else PROVING
     asked = inputs.model_copy(update={"method": method, "proofs": True})
-    document = await computed(request, lambda context: _document(asked, context))
+    document = await one_document(request, asked)
     if document["proof"] is None:
         raise NotFound(
             f"there is no proof: {document['reason']}",
@@ -66,7 +59,10 @@ many = APIRouter(tags=["instant answers"])
 @one.get(
     "/go-no-go",
     summary="Go/no-go for one start",
-    responses={200: answer(GoNoGoAnswer, "The verdict and every margin it rests on."), **refusals(422)},
+    responses={
+        200: answer(GoNoGoAnswer, "The verdict and every margin it rests on."),
+        **refusals(422, 429, 503, 504),
+    },
 )
 async def go_no_go_one(_query: Annotated[GoNoGoQuery, Query()]) -> Response:
     """May a chaser at rest at this point start its approach?
@@ -82,7 +78,7 @@ async def go_no_go_one(_query: Annotated[GoNoGoQuery, Query()]) -> Response:
     summary="The proof of a go/no-go, alone",
     responses={
         200: content("application/json", {"type": "object"}, "The document that `safestart verify` checks."),
-        **refusals(404, 422),
+        **refusals(404, 422, 429, 503, 504),
     },
 )
 async def go_no_go_proof(_query: Annotated[GoNoGoQuery, Query()]) -> Response:
@@ -98,16 +94,11 @@ async def go_no_go_proof(_query: Annotated[GoNoGoQuery, Query()]) -> Response:
     "/go-no-go",
     summary="Go/no-go for many starts",
     openapi_extra=json_body({SPEC.id: GoNoGoInputs}, {SPEC.id: SPEC.example}),
-    responses={200: answer(GoNoGoOutputs, "Arrays over the states."), **refusals(400, 413, 415, 422)},
+    responses={
+        200: answer(GoNoGoOutputs, "Arrays over the states."),
+        **refusals(400, 413, 415, 422, 429, 503, 504),
+    },
 )
 async def go_no_go_many(request: Request) -> Response:
     """The same question for up to 100 000 starts of one operating point."""
-    body = await read_body(request)
-    found = services(request)
-
-    def respond(context: Context) -> Response:
-        inputs = parse_body(GoNoGoInputs, body)
-        check_states(SPEC, inputs, found.settings.max_states)
-        return Json(run_now(SPEC, inputs, context))
-
-    return await computed(request, respond)
+    return await posted(request, SPEC.id, bare=True)

@@ -26,7 +26,7 @@ def test_process_list_and_description(client):
         assert described["outputs"]
         assert "$ref" not in json.dumps(described), "each schema stands alone"
         assert ("sync-execute" in described["jobControlOptions"]) == (
-            entry["id"] in ("go-no-go", "certificate", "safe-region", "flight", "thrust-map")
+            entry["id"] in ("go-no-go", "certificate", "safe-region", "flight", "thrust-map", "hop-time")
         )
     required = client.get("/processes/certificate").json()["inputs"]
     assert required["omega_t_deg_s"]["minOccurs"] == 1

@@ -9,6 +9,8 @@ from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.views import Column, Facts
 from safestart.processes.wire import GridInput, ScenarioInput
 
+_CELL_S = 1.5e-7
+
 
 class CertificateInputs(ScenarioInput):
     """One operating point, a grid and the frame in which starts are at rest."""
@@ -40,6 +42,7 @@ SPEC = ProcessSpec(
     outputs=CertificateOutputs,
     run="safestart.processes.certificate.run:run",
     light=True,
+    cost=lambda inputs: _CELL_S * inputs.grid.nx * inputs.grid.ny,
     tables=(Table("cells", ("mask", "margin_m"), axes=("y_m", "x_m")),),
     views=(
         Facts(

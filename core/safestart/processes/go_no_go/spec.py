@@ -8,6 +8,7 @@ from pydantic import Field
 
 from safestart.model.scenario import MAX_RANGE, Rest
 from safestart.processes.base import ProcessSpec, Table, WireModel
+from safestart.processes.go_no_go.cost import cost
 from safestart.processes.go_no_go.method_registry import MethodName
 from safestart.processes.go_no_go.question_fields import QuestionFields, QuestionKind
 from safestart.processes.go_no_go.uncertainty import Member
@@ -85,6 +86,7 @@ SPEC = ProcessSpec(
     outputs=GoNoGoOutputs,
     run="safestart.processes.go_no_go.run:run",
     light=True,
+    cost=lambda inputs: cost(inputs, len(inputs.states)),
     states="states",
     tables=(
         Table(

@@ -6,12 +6,16 @@ from pydantic import Field, model_validator
 
 from safestart.model.scenario import MAX_MEAN_MOTION, Rest
 from safestart.processes.base import ProcessSpec, Table, WireModel
+from safestart.processes.costs import FIRST_S
 from safestart.processes.coverage.spec import Rates, Thrusts
 from safestart.processes.views import Column, Rows
 from safestart.processes.wire import CorridorInput
 
 PROVED_FOR_S = 60.0
 """How long a start that the required thrust is named for is proved to stay, s."""
+
+
+_RATE_S, _SHARE_S = 4e-3, 2e-4
 
 
 class ThrustMapInputs(WireModel):
@@ -59,6 +63,11 @@ SPEC = ProcessSpec(
     outputs=ThrustMapOutputs,
     run="safestart.processes.thrust_map.run:run",
     light=True,
+    cost=lambda inputs: (
+        FIRST_S
+        + _RATE_S * len(inputs.omega_t_deg_s)
+        + _SHARE_S * len(inputs.a_max_m_s2) * len(inputs.omega_t_deg_s)
+    ),
     tables=(
         Table("safe_percent", ("safe_percent",), axes=("omega_t_deg_s", "a_max_m_s2")),
         Table("required_a_max_m_s2", ("omega_t_deg_s", "required_a_max_m_s2")),

@@ -10,12 +10,12 @@ from safestart.model.scenario import Floats, Rest
 from safestart.processes.go_no_go.answer import Verdicts
 from safestart.processes.go_no_go.atlases import atlas_for
 from safestart.processes.go_no_go.conditions import Conditions
+from safestart.processes.go_no_go.cost import MANY
 from safestart.processes.go_no_go.methods.exact import one_by_one
 from safestart.processes.go_no_go.methods.proofs import MOST_PROGRAMS, prove
 from safestart.processes.go_no_go.spec import GoNoGoInputs
 from safestart.runtime.progress import Context
 
-_MANY = 100
 """Starts from which on building an atlas (some tens of cone programs) pays."""
 
 
@@ -39,7 +39,7 @@ def _by_atlas(question: Question, starts: Floats, context: Context) -> list[Answ
 
     Few starts ask an atlas that is there and are solved otherwise; many have one built.
     """
-    many = len(starts) >= _MANY
+    many = len(starts) >= MANY
     atlas = atlas_for(question, float(starts[:, 1].max()), context, make=many)
     if atlas is None:
         return one_by_one(question, starts, context)
