@@ -61,7 +61,7 @@ class Helpers:
         if cost_s > limit_s:
             raise too_long(limit_s, cost_s)
         with self.callers.place(request):
-            stop = None if self._folder is None else self._folder / str(next(self._numbers))
+            stop = self.place()
             name = caller(request).key_id
             work = asyncio.ensure_future(self._work(name, cost_s, function, stop, arguments))
             left = asyncio.ensure_future(leaves(request))
@@ -108,6 +108,10 @@ class Helpers:
                     "the process that computed the answer ended; required a smaller question, or a job",
                     required="a smaller question, or a job",
                 ) from None
+
+    def place(self) -> Path | None:
+        """A name for a file of this request's; None where nothing can be written."""
+        return None if self._folder is None else self._folder / str(next(self._numbers))
 
     async def warm(self) -> None:
         """Start a helper before it is needed; the first heavy answer would wait a second for it."""

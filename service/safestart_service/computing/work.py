@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Any
 from uuid import uuid4
 
@@ -30,6 +32,8 @@ from safestart_service.http.body import MOST_PARTS, PARTS_PER_STATE, parse_body
 
 LIGHT_S = 0.03
 """An answer that costs more than this is heavy."""
+LONG_BYTES = 1_000_000
+"""A body longer than this goes through a file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +60,8 @@ class Made:
     body: bytes
     status: int = 200
     headers: dict[str, str] = field(default_factory=dict)
+    file: Path | None = None
+    """Where the body is instead."""
 
 
 def one_start(store: Store, context: Context, inputs: GoNoGoInputs) -> dict[str, Any]:
@@ -74,8 +80,20 @@ def at_once(store: Store, context: Context, asked: Asked) -> Made | float:
     return cost if cost > LIGHT_S else _answer(spec, request, context, asked)
 
 
-def in_full(store: Store, context: Context, asked: Asked) -> Made:
-    """The answer, whatever it costs; raises ``AnswerTimeout`` for one that would take too long."""
+def in_full(store: Store, context: Context, asked: Asked, place: Path | None = None) -> Made:
+    """The answer, whatever it costs; raises ``AnswerTimeout`` for one that would take too long.
+
+    A long body goes into a file at ``place``: on its way through a pipe it would be in memory four times.
+    """
+    made = _in_full(store, context, asked)
+    if place is not None and len(made.body) > LONG_BYTES:
+        with suppress(OSError):  # a full disk: then it takes the long way
+            place.write_bytes(made.body)
+            return replace(made, body=b"", file=place)
+    return made
+
+
+def _in_full(store: Store, context: Context, asked: Asked) -> Made:
     request = _parsed(store, asked)
     spec = process(asked.process_id)
     if asked.queued:
