@@ -16,6 +16,7 @@ _SHORT = 40
 _REQUIRED = {
     "missing": "a value",
     "extra_forbidden": "no field of this name",
+    "unexpected_keyword_argument": "no field of this name",
     "greater_than": "a number > {gt}",
     "greater_than_equal": "a number >= {ge}",
     "less_than": "a number < {lt}",
@@ -37,6 +38,7 @@ _REQUIRED = {
     "list_type": "an array",
     "dict_type": "an object",
     "model_type": "an object",
+    "dataclass_type": "an object",
     "model_attributes_type": "an object",
     "value_error": "{error}",
 }

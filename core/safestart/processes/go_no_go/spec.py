@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-from pydantic import Field
+from pydantic import ConfigDict, Field
+from pydantic.dataclasses import dataclass
 
 from safestart.model.scenario import MAX_RANGE, Rest
 from safestart.processes.base import ProcessSpec, Table, WireModel
@@ -18,7 +19,9 @@ from safestart.processes.wire import ScenarioInput
 MAX_STATES = 100_000
 
 
-class StateInput(WireModel):
+# A dataclass with slots: 100 000 of them take a quarter of the memory of models.
+@dataclass(config=ConfigDict(extra="forbid", allow_inf_nan=False), frozen=True, slots=True, kw_only=True)
+class StateInput:
     """A start at rest: body-frame position in metres."""
 
     x_m: float = Field(ge=-MAX_RANGE, le=MAX_RANGE, description="Body-frame x, m.", examples=[5.0])
