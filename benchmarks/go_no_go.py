@@ -20,16 +20,28 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
+import numpy as np
+
 from benchmarks.load import requests_per_second
+from safestart.closed_form.certified import certify
+from safestart.model.scenario import Scenario
 
 QUESTION = "/go-no-go?omega_t_deg_s=3&a_max_m_s2=0.1&x_m=5&y_m=40"
 # A start moves from call to call, the operating point seldom: 8 operating points, 50 starts each.
-QUESTIONS = tuple(
-    f"/go-no-go?omega_t_deg_s={omega}&a_max_m_s2={thrust}&x_m={x}&y_m=40"
-    for omega in (1, 2, 3, 4)
-    for thrust in (0.1, 0.2)
-    for x in range(-25, 25)
-)
+STARTS = tuple((omega, thrust, x) for omega in (1, 2, 3, 4) for thrust in (0.1, 0.2) for x in range(-25, 25))
+
+
+def _path(omega: float, thrust: float, x: float) -> str:
+    return f"/go-no-go?omega_t_deg_s={omega}&a_max_m_s2={thrust}&x_m={x}&y_m=40"
+
+
+def _certified(omega: float, thrust: float, x: float) -> bool:
+    return bool(certify(Scenario.of(omega, thrust), np.array([x, 40.0])).go)
+
+
+# Those that the certificate decides, and those for which a cone program must be solved.
+QUESTIONS = tuple(_path(*start) for start in STARTS if _certified(*start))
+OPEN = tuple(_path(*start) for start in STARTS if not _certified(*start))
 # Never the same operating point twice within what the service remembers.
 FRESH = tuple(
     f"/go-no-go?omega_t_deg_s={1 + k * 1e-4:.4f}&a_max_m_s2=0.1&x_m=5&y_m=40" for k in range(20_000)
@@ -43,7 +55,8 @@ def measure(seconds: float = 2.0, repeats: int = 5) -> dict[str, Any]:
 
     ``ratio`` is against FastAPI's ordinary endpoint, ``ratio_encoded`` against one that sends prepared bytes;
     ``ratio_fresh`` is against the ordinary one when every question has another operating point; ``ratio_keyed`` when
-    API keys are in use and each request brings one.
+    API keys are in use and each request brings one. All these are decided by the certificate; ``rps_exact`` are the
+    requests per second of starts that it leaves to a cone program.
     """
     with tempfile.TemporaryDirectory() as folder:
         url = f"sqlite:///{Path(folder) / 'bench.sqlite3'}"
@@ -83,6 +96,7 @@ def _key(url: str) -> str:
 def _compare(ours: int, bare: int, keyed: int, key: str, seconds: float, repeats: int) -> dict[str, Any]:
     calls: dict[str, tuple[int, tuple[str, ...], str]] = {
         "service": (ours, QUESTIONS, ""),
+        "exact": (ours, OPEN, ""),
         "bare": (bare, ("/constant",), ""),
         "encoded": (bare, ("/encoded",), ""),
         "fresh": (ours, FRESH, ""),
@@ -104,6 +118,7 @@ def _compare(ours: int, bare: int, keyed: int, key: str, seconds: float, repeats
         "ratio_fresh": ratio("bare", "fresh"),
         "ratio_keyed": ratio("bare", "keyed"),
         "rps_service": median(rates["service"]),
+        "rps_exact": median(rates["exact"]),
         "rps_bare": median(rates["bare"]),
         "rps_encoded": median(rates["encoded"]),
         "repeats": repeats,

@@ -21,7 +21,7 @@ def render() -> str:
 
 
 def main(arguments: list[str]) -> int:
-    """Write the file, or return 1 when it is not what the code says."""
+    """Write the file, or return 1 when it differs from the code."""
     if arguments == ["write"]:
         FILE.parent.mkdir(exist_ok=True)
         FILE.write_text(render(), encoding="utf-8")

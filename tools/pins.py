@@ -1,8 +1,7 @@
 """Exact versions without a lock file: ``pins.py write`` resolves anew, ``pins.py check`` fails on drift.
 
-A lock file would hold download addresses. The resolution is kept instead as ``[tool.uv]
-constraint-dependencies`` in the root pyproject.toml, so that ``uv run`` on a fresh clone gives the same
-versions everywhere.
+A lock file would hold download addresses. Instead ``[tool.uv] constraint-dependencies`` in the root pyproject.toml
+holds the resolution, so that ``uv run`` on a fresh clone gives the same versions everywhere.
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ def resolved() -> list[str]:
 
 
 def pinned(text: str) -> list[str]:
-    """The requirements that stand in pyproject.toml now."""
+    """The requirements in pyproject.toml now."""
     block = text.split(BEGIN, 1)[1].split(END, 1)[0]
     return sorted(re.findall(r'^\s+"(.+)",$', block, flags=re.MULTILINE))
 
@@ -40,7 +39,7 @@ def with_pins(text: str, pins: list[str]) -> str:
 
 
 def write() -> int:
-    """Resolve with nothing pinned, newest versions that fit, and write them down."""
+    """Resolve the newest fitting versions without pins, and write them."""
     text = PROJECT.read_text()
     PROJECT.write_text(with_pins(text, []))
     try:
@@ -55,7 +54,7 @@ def write() -> int:
 
 
 def check() -> int:
-    """Fail when the resolution holds a version that is not pinned, or a pin that nothing needs."""
+    """Fail when the resolution has an unpinned version or a needless pin."""
     subprocess.run(["uv", "lock", "--quiet"], cwd=ROOT, check=True)
     now, wanted = set(resolved()), set(pinned(PROJECT.read_text()))
     for line in sorted(now - wanted):

@@ -16,11 +16,11 @@ def page() -> str:
     lines = [
         "# Settings",
         "",
-        "Each is read from the environment, else from the TOML file that `SAFESTART_CONFIG` names (default: "
-        "`safestart.toml` in the user's configuration directory). In the file the names are those below in small "
-        "letters, without `SAFESTART_` and without sections. An unknown name in the file, an unknown variable "
-        "`SAFESTART_...`, a named file that is not "
-        "there and a value that cannot be end every command with code 2 and say what was required.",
+        "Each setting is read from the environment, else from the TOML file that `SAFESTART_CONFIG` names (default: "
+        "`safestart.toml` in the user's configuration directory). The file uses the names below in lower case, "
+        "without `SAFESTART_` and without sections. An unknown name in the file, an unknown variable "
+        "`SAFESTART_...`, a named file that is missing and an invalid value end every command with code 2; the message "
+        "says what was required.",
         "",
         "| variable | default | meaning |",
         "|---|---|---|",

@@ -37,7 +37,8 @@ if TYPE_CHECKING:
 
 TITLE = "safestart"
 DESCRIPTION = (
-    "May a chaser start its approach to a tumbling target? Instant closed-form certificates, and a queue of "
+    "May a chaser start its approach to a tumbling target? No GO without a proof, in microseconds where a "
+    "certificate in closed form decides, and a queue of "
     "reachability engines that check them. OGC API - Processes 1.0; every error is an RFC 9457 problem document."
 )
 

@@ -37,7 +37,7 @@ _SEEN = """() => {
   }
   const map = document.getElementById("map"), shown = !map.hidden && !map.classList.contains("old");
   const trace = (name) => shown ? (map.data ?? []).find((one) => one.name === name) ?? null : null;
-  const region = trace("exact: proved GO"), certified = trace("closed form: certified");
+  const region = trace("exact: proved GO"), certified = trace("certified, for ever");
   const card = document.querySelector("#verdict .answer:not(.old)");
   const aside = document.querySelector("#verdict .aside:not(.old) .closed-word");
   return {
@@ -115,12 +115,12 @@ class Truth:
         self._client = httpx.Client(base_url=url, timeout=PATIENCE_S)
         self._kept: dict[str, Any] = {}
 
-    def verdict(self, fields: dict[str, str], method: str = "exact") -> dict[str, Any] | None:
+    def verdict(self, fields: dict[str, str], method: str = "auto") -> dict[str, Any] | None:
         """The answer to the question in the fields; None where they hold none that the service takes."""
         if not self._readable(fields, start=True):
             return None
         names = [*POINT, *SHAPE, "rest", "x_m", "y_m"]
-        if method == "exact":
+        if method == "auto":
             names += ["question", "horizon_s", *SPREADS]
             names += ["within_s"] if fields["question"] == "synchronize" else []
         return self._get("/go-no-go", {name: fields[name] for name in names} | {"method": method})
@@ -197,9 +197,9 @@ def faults_in(found: Seen, truth: Truth) -> list[str]:
         if true is None or told != (true["verdict"], _plain(true["reason"])):
             wrong.append(f"verdict {told}; true: {true and (true['verdict'], true['reason'])}")
     if found["closed"] is not None:
-        true = truth.verdict(fields, "closed_form")
+        true = truth.verdict(fields, "paper")
         if true is None or true["verdict"] != found["closed"].replace(" ", "_"):
-            wrong.append(f"closed form {found['closed']}; true: {true and true['verdict']}")
+            wrong.append(f"the paper's conditions {found['closed']}; true: {true and true['verdict']}")
     if found["region"] is not None and truth.region(fields) != found["region"]:
         wrong.append("the exact region on the map is another one")
     if found["certified"] is not None:

@@ -32,7 +32,12 @@ AVOIDANCE = {
 @pytest.fixture(scope="module")
 def jobs(up: Running) -> dict[str, str]:
     """A finished job of every process, on its example or a quicker one."""
-    quick: dict[str, dict[str, Any]] = {"benchmark": SMALL, "sweep": SWEEP, "collision-avoidance": AVOIDANCE}
+    quick: dict[str, dict[str, Any]] = {
+        "go-no-go": process("go-no-go").example | {"method": "paper"},
+        "benchmark": SMALL,
+        "sweep": SWEEP,
+        "collision-avoidance": AVOIDANCE,
+    }
     examples = {name: quick.get(name, process(name).example) for name in PROCESS_IDS}
     headers = {"Prefer": "respond-async"}
     found = {}
@@ -90,7 +95,7 @@ def _rgb(colour: str) -> str:
 
 def test_a_go_without_proof_is_shown_as_a_claim(visit: Visit, jobs: dict[str, str]) -> None:
     page = opened(visit, jobs["go-no-go"])
-    expect(page.locator("h1 .badge.verdict .open")).to_have_text("GO, closed form, no proof")
+    expect(page.locator("h1 .badge.verdict .open")).to_have_text("GO, paper, no proof")
 
 
 def test_a_lost_flight_is_the_controllers(visit: Visit, jobs: dict[str, str]) -> None:

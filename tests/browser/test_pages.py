@@ -20,7 +20,7 @@ from tests.browser.conftest import SHOTS, Visit
 from tests.waiting import until
 
 SLIVER = "omega_t_deg_s=2&a_max_m_s2=0.05&x_m=9.364&y_m=81.044"
-"""Certified by the closed form; no thrust history stays."""
+"""Certified by the paper's conditions; no thrust history stays."""
 SMALL = {"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "grid": {"nx": 21, "ny": 21, "y_max_m": 150}}
 QUICK = ["analytical", "exact", "backward", "monte_carlo"]
 SLOW = SMALL | {"engines": ["hamilton_jacobi"], "hamilton_jacobi": {"frame": "body", "accuracy": "very_high"}}
@@ -74,7 +74,7 @@ def test_a_new_user_flies_a_start(visit: Visit) -> None:
     visit.shot("explore-lvlh")
 
 
-def test_explore_shows_where_the_closed_form_is_wrong(visit: Visit, tmp_path: Path) -> None:
+def test_explore_shows_where_the_paper_is_wrong(visit: Visit, tmp_path: Path) -> None:
     page = explore(visit, SLIVER)
     words = page.locator(".answer .word")
     expect(words.nth(0)).to_have_text("NO GO")
@@ -158,12 +158,16 @@ def test_a_benchmark_from_form_to_result(visit: Visit) -> None:
     expect(page.locator(".matrix")).to_have_count(4)
     expect(page.locator(".masks .nsewdrag").first).to_be_visible()
     expect(page.locator(".agreement")).to_contain_text("cells")
+    expect(page.locator(".masks .legendtext")).to_have_count(4)
     expect(page.locator("text=paper: IoU with HJ")).to_be_visible()
     with page.expect_download() as download:
         page.click("a[download='maps.npz']")
     assert Path(download.value.path()).read_bytes()[:2] == b"PK"
     visit.shot("benchmark")
     page.emulate_media(media="print")
+    pictures = "[...document.querySelectorAll('.masks, .masks .main-svg')]"
+    heights = page.evaluate(f"{pictures}.map((e) => Math.round(e.getBoundingClientRect().height))")
+    assert len(set(heights)) == 1, "a picture has the size of its place on paper"
     report = until(lambda: one_page(page), "a report of one page")
     (SHOTS / "report.pdf").write_bytes(report)
     page.emulate_media(media="screen")

@@ -193,7 +193,7 @@ def test_the_map_says_what_it_does_not_ask(disturbed: Visit) -> None:
     expect(page.locator("#map-lacks")).to_contain_text("start position ± 0.5 m")
     expect(page.locator("#map-lacks")).to_contain_text("disturbance up to 0.001 m/s²")
     edit(page, position_half_width_m="0", disturbance_m_s2="0", rest="body")
-    expect(page.locator("#map .gtitle")).to_contain_text("Map: closed form, nominal")
+    expect(page.locator("#map .gtitle")).to_contain_text("Map: certified for ever, nominal")
     expect(page.locator("#map-lacks")).to_contain_text("the exact answer")
 
 

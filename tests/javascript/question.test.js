@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import {
-  FIELDS, FIRST, certificate, closedForm, exact, flight, flightWords, flownWords, fromAddress, isAbout, mapLacks, mapWords, proved, read, region, start,
+  FIELDS, FIRST, certificate, flight, flightWords, flownWords, fromAddress, isAbout, mapLacks, mapWords, paper, proved, proven, read, region, start,
   textsOf, toAddress, verdictWords,
 } from "../../service/safestart_service/static/logic/question.js";
 
@@ -45,19 +45,20 @@ test("each question holds what it depends on", () => {
   });
   assert.equal(region(asked).horizon_s, 80);
   assert.equal(region(values({ rest: "body" })), null);
-  assert.deepEqual(closedForm(asked, AT), { omega_t_deg_s: 3, a_max_m_s2: 0.1, mean_motion_rad_s: 0.0011, c_x: 1, x0_m: 2.5, r_h_m: 0.5, rest: "lvlh", x_m: 5, y_m: 40 });
+  assert.deepEqual(paper(asked, AT), { omega_t_deg_s: 3, a_max_m_s2: 0.1, mean_motion_rad_s: 0.0011, c_x: 1, x0_m: 2.5, r_h_m: 0.5, rest: "lvlh", x_m: 5, y_m: 40, method: "paper" });
+  assert.equal("method" in proven(asked, AT), false, "the service's own choice");
   assert.equal(flight(asked, AT).horizon_s, 80);
 });
 
 test("a spread that is not 0 is asked, a negative one too, so that it is refused", () => {
-  assert.equal("position_half_width_m" in exact(values(), AT), false);
-  assert.equal(exact(values({ position_half_width_m: "-30" }), AT).position_half_width_m, -30);
-  assert.equal(exact(values({ disturbance_m_s2: "0.001" }), AT).disturbance_m_s2, 0.001);
+  assert.equal("position_half_width_m" in proven(values(), AT), false);
+  assert.equal(proven(values({ position_half_width_m: "-30" }), AT).position_half_width_m, -30);
+  assert.equal(proven(values({ disturbance_m_s2: "0.001" }), AT).disturbance_m_s2, 0.001);
 });
 
 test("the latest end belongs to the question that has one", () => {
-  assert.equal("within_s" in exact(values(), AT), false);
-  assert.equal(exact(values({ question: "synchronize" }), AT).within_s, 200);
+  assert.equal("within_s" in proven(values(), AT), false);
+  assert.equal(proven(values({ question: "synchronize" }), AT).within_s, 200);
   assert.equal(flight(values({ question: "synchronize" }), AT).within_s, 200);
 });
 
@@ -73,7 +74,7 @@ test("the map says what it asks, and what the verdict asks besides", () => {
   assert.equal(mapWords(values()), "Map: stay 60 s, nominal · 3 deg/s · 0.1 m/s² · at rest in LVLH");
   assert.deepEqual(mapLacks(values()), []);
   assert.deepEqual(mapLacks(values({ question: "synchronize", disturbance_m_s2: "0.001" })), ["come to rest at the hold point within 200 s", "disturbance up to 0.001 m/s²"]);
-  assert.match(mapWords(values({ rest: "body" })), /closed form/);
+  assert.match(mapWords(values({ rest: "body" })), /certified for ever/);
 });
 
 test("only a verdict that is one is proved for all", () => {

@@ -46,9 +46,9 @@ test("the worst finding is the result's verdict", () => {
 });
 
 test("what rests on no proof is shown as a claim, and the worst of it still first", () => {
-  const view = { ...FINDINGS, table: "states", word: "verdict", good: ["GO"], bad: ["NO_GO"], basis: "method", unproved: ["closed_form"] };
+  const view = { ...FINDINGS, table: "states", word: "verdict", good: ["GO"], bad: ["NO_GO"], basis: "method", unproved: ["paper"] };
   const of = (method) => outcome([view], tablesOf({ method, verdict: ["GO", "NO_GO"] }, [{ name: "states", columns: ["verdict"], axes: [] }]));
-  assert.deepEqual(of("closed_form"), { word: "NO_GO", sense: "open", basis: "closed_form", count: 1, of: 2 });
+  assert.deepEqual(of("paper"), { word: "NO_GO", sense: "open", basis: "paper", count: 1, of: 2 });
   assert.deepEqual(of("exact"), { word: "NO_GO", sense: "bad", basis: null, count: 1, of: 2 });
 });
 

@@ -26,7 +26,7 @@ def test_the_closing_speed_alone_explains_the_false_positives() -> None:
         inputs = {**asked, "cases_per_cell": 18, "worst": 0, "records": 0, **change}
         parsed = process("sweep").parse(inputs)
         documents = [SHARDING.run_part(part, Context()).document for part in SHARDING.parts(parsed)]
-        found = SHARDING.so_far(parsed, documents)["confusion"]["closed_form"]
+        found = SHARDING.so_far(parsed, documents)["confusion"]["paper"]
         precision[name] = next(iter(found.values()))["precision"]
     assert len(precision) == 3
     assert precision["none switched off"] < 0.88

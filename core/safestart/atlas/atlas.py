@@ -2,7 +2,7 @@
 
 The starts that can stay form a convex set: convex combinations of witnesses are witnesses, and every dual bounds the
 margin of every start. So a few dozen cone programs give an inner polygon of proved GO and ceilings that prove NO_GO;
-what lies between is UNDECIDED and at most ``relative_gap`` of the outer area.
+starts between are UNDECIDED and cover at most ``relative_gap`` of the outer area.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class Atlas:
         return (self.outer_area - self.inner_area) / self.outer_area if self.outer_area > 0.0 else 0.0
 
     def bounds(self, points: Floats) -> tuple[Floats, Floats]:
-        """Proved lower and upper bound (m) on the margin of starts (..., 2); -inf below, +inf above where unknown."""
+        """Proved lower and upper bound (m) on the margin of starts (..., 2); -inf or +inf when unknown."""
         points = np.asarray(points, dtype=np.float64)
         if points.ndim == 0 or points.shape[-1] != 2 or not np.isfinite(points).all():
             raise invalid("points", "finite, last axis of length 2 (metres)", points.shape)

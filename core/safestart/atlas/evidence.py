@@ -1,4 +1,4 @@
-"""Whether an atlas that came from elsewhere is borne out by what it holds: flights flown and bounds computed again."""
+"""Check an atlas from elsewhere against its own evidence: fly its flights and compute its bounds again."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from safestart.model.scenario import Floats
 from safestart.optim.thrust_ball import bound
 
 _ROUNDING_M = 1e-10
-"""What another processor may make of the same sums, in metres: a tenth of what a verdict keeps away from 0."""
+"""Rounding difference (m) allowed for another processor: a tenth of a verdict's distance from 0."""
 _AREA = 1e-6
 _LARGEST = 1e6
 
 
 def require_borne_out(atlas: Atlas) -> None:
-    """Raise ``InvalidInput`` where the atlas states more than its thrusts and multipliers show, or what it cannot."""
+    """Raise ``InvalidInput`` if the atlas claims more than its thrusts and multipliers prove, or is inconsistent."""
     question = atlas.question
     _require(
         "question",
@@ -51,7 +51,7 @@ def require_borne_out(atlas: Atlas) -> None:
 
 def _require_witness(watch: Watch, witness: Witness, k: int) -> None:
     most = Fraction(watch.question.scenario.chaser.max_acceleration) ** 2
-    # Exactly: a thrust a hair too large is one that the chaser does not have.
+    # No tolerance: the chaser cannot exceed its thrust, however little.
     fits = all(Fraction(x) ** 2 + Fraction(y) ** 2 <= most for x, y in witness.thrust.tolist())
     _require(f"thrust[{k}]", fits, "thrusts within a_max", "more")
     _require(
@@ -85,7 +85,7 @@ def _require_ceilings(atlas: Atlas, watch: Watch) -> None:
 
 
 def _require_areas(atlas: Atlas) -> None:
-    """The inner area is that of the rim, the outer one no smaller than what the ceilings leave."""
+    """The inner area must be that of the rim, the outer area no smaller than the one that the ceilings leave."""
     inner, outer = atlas.inner_area, atlas.outer_area
     numbers = isinstance(inner, float) and isinstance(outer, float) and 0.0 <= inner <= outer <= _LARGEST**2
     _require("inner_area, outer_area", numbers, "square metres, the outer no smaller", (inner, outer))

@@ -1,7 +1,7 @@
-"""How far the set of starts that can stay extends in a direction: a cone program over start and thrust together.
+"""How far the set of starts that can stay extends in a direction: a cone program over start and thrust.
 
 Starts are at rest in LVLH, planar, p = (x, y). Maximise g . p subject to offset_j + start_j . p + thrust_j . u >= e at
-the rows so far, |u_k| <= a_max and y <= y_max; rows are added where the proposed flight comes closer (as in `exact`).
+the rows so far, |u_k| <= a_max and y <= y_max; rows are added where the proposed flight comes closer, as in `exact`.
 The dual weights lambda >= 0 prove, for EVERY start, the affine bound on its margin in metres
 
     margin(p) <= sum_j lambda_j (offset_j + start_j . p) + a_max sum_k |sum_j lambda_j thrust_jk|,  sum lambda = 1.
@@ -20,7 +20,7 @@ from safestart.optim.cone_program import ConeProgram
 from safestart.optim.thrust_ball import bound, into_balls, keep_in_balls
 
 CLEARANCE = 1e-3
-"""Distance (m) that the witness of a farthest start keeps, so that its proof does not hang on the last digit."""
+"""Distance (m) that the witness of a farthest start keeps, so that its proof does not depend on the last digit."""
 _ROUNDS = 40
 _FIRST_TIMES = 7
 
@@ -46,7 +46,7 @@ class Ceiling:
 
 
 class NotSolved(Exception):
-    """The cone program gave nothing usable; the message is the solver's word."""
+    """The cone program gave nothing usable; the message is the solver's status."""
 
 
 class Extent:
@@ -58,14 +58,14 @@ class Extent:
         faces = len(watch.names)
         times = np.repeat(np.linspace(0.0, watch.question.horizon, _FIRST_TIMES), faces)
         self._base: tuple[Floats, Any] = (times, np.tile(np.arange(faces), _FIRST_TIMES))
-        # Rows that bound the last answer: a neighbouring direction touches the corridor at nearly the same times.
+        # Rows that bound the last answer; the next direction will touch the corridor at nearly the same times.
         self._active: tuple[Floats, Any] = (np.empty(0), np.empty(0, dtype=np.int64))
 
     def farthest(self, direction: Floats) -> tuple[Witness, Ceiling | None, float]:
         """Start that keeps ``CLEARANCE`` and lies farthest along the unit ``direction`` (2,), its ceiling, and how far
         any start can lie.
 
-        No ceiling where y_max alone limits. Raises :class:`NotSolved`.
+        No ceiling when only y_max limits. Raises :class:`NotSolved`.
         """
         return self._search(direction)
 

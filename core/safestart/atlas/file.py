@@ -1,4 +1,4 @@
-"""An atlas as bytes (NPZ) and back, bit for bit, and the content key under which it is found again."""
+"""An atlas as bytes (NPZ) and back, bit for bit, and its content key in the cache."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ _ARRAYS = (
 
 
 def key_of(question: Question, y_max: float, tolerance: float) -> str:
-    """Content key: SHA-256 over the format, our source, the question, the cut (m) and the relative gap asked for.
+    """Content key: SHA-256 over the format, our source, the question, the cut (m) and the requested relative gap.
 
-    What other code has built is built again: answers rest on the code that their provenance names.
+    The key includes the source, because answers must come from the code that their provenance names.
     """
     stated = {
         "format": FORMAT,
@@ -70,8 +70,8 @@ def pack(atlas: Atlas) -> bytes:
 def unpack(data: bytes) -> Atlas:
     """The atlas that :func:`pack` wrote; raises ``InvalidInput`` for anything else.
 
-    What the file says of its evidence is computed again (:mod:`~safestart.atlas.evidence`): a margin, a
-    ceiling or an area that its thrusts and multipliers do not bear out is refused.
+    :mod:`~safestart.atlas.evidence` computes the file's claims again and refuses a margin, a ceiling or an area that
+    its thrusts and multipliers do not prove.
     """
     try:
         with np.load(io.BytesIO(data), allow_pickle=False) as found:

@@ -1,6 +1,6 @@
-"""Inner and outer polygon of a planar convex set that is known by its support only.
+"""Inner and outer polygon of a planar convex set that is known only by its support.
 
-The oracle answers a direction g with a point of the set that is farthest along g and a valid half-plane g . p <= h.
+For a direction g the oracle gives a point of the set farthest along g and a valid half-plane g . p <= h.
 Points span the inner polygon, half-planes the outer one; between an edge of the inner polygon and the two half-planes
 of its ends lies a triangle, and the next direction is the normal of the edge whose triangle is the largest. The area
 between the polygons falls as 1 / n^2.
@@ -24,7 +24,7 @@ _START = tuple(2.0 * math.pi * k / 4 for k in range(4))
 
 @dataclass(frozen=True, slots=True)
 class Support(Generic[Evidence]):
-    """What the oracle found: unit ``direction`` (2,), ``point`` (2,) of the set, ``bound`` h, and what proves both."""
+    """The oracle's answer: unit ``direction`` (2,), ``point`` (2,) of the set, ``bound`` h, and the proof of both."""
 
     direction: Floats
     point: Floats
@@ -47,7 +47,7 @@ class Sandwich(Generic[Evidence]):
 
 
 def refine(oracle: Callable[[Floats], Support[Evidence]], tolerance: float, most: int) -> Sandwich[Evidence]:
-    """Ask until the relative gap is at most ``tolerance`` or ``most`` directions were asked."""
+    """Ask directions until the relative gap is at most ``tolerance`` or ``most`` were asked."""
     known: list[tuple[float, Support[Evidence]]] = [(angle, oracle(_unit(angle))) for angle in _START]
     while True:
         triangles = [_triangle(known, k) for k in range(len(known))]
@@ -62,7 +62,7 @@ def refine(oracle: Callable[[Floats], Support[Evidence]], tolerance: float, most
 
 
 def _outer(supports: Sequence[Support[Evidence]]) -> Floats:
-    """Corners (n, 2) of the polygon that all half-planes leave of a square around them."""
+    """Corners (n, 2) of the intersection of all half-planes with a square around them."""
     half = 4.0 * max(1.0, *(abs(support.bound) for support in supports))
     polygon = half * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
     for support in supports:
@@ -105,7 +105,7 @@ def _triangle(known: Sequence[tuple[float, Support[Evidence]]], k: int) -> tuple
     normal = math.atan2(-edge[0], edge[1])
     while normal < low:
         normal += 2.0 * math.pi
-    # The normal of the edge separates best; where rounding puts it outside the sector, the middle does.
+    # The edge's normal separates best; if rounding puts it outside the sector, take the middle.
     inside = low + 1e-9 < normal < high - 1e-9
     return area, normal if inside else middle
 

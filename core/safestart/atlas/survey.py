@@ -1,4 +1,4 @@
-"""Building an atlas: the deepest start, then farthest starts in the directions that close the gap best."""
+"""Build an atlas: the deepest start, then farthest starts in the directions that close the gap best."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def _assemble(
     names: tuple[str, ...],
     message: str,
 ) -> Atlas:
-    # Directions that end in one corner find it again, up to rounding: one witness of it is enough.
+    # Several directions find the same corner, up to rounding; keep one witness of it.
     rim = {tuple(np.round(s.point, 4)): s.evidence[0] for s in found if s.evidence[0].margin > GUARD}
     centre = _mean(deepest, tuple(rim.values()))
     ahead = [(math.atan2(*(w.start - centre.start)[::-1]), w) for w in rim.values()]

@@ -1,4 +1,4 @@
-"""How the target turns: ``attitude`` is the interface; ``spin``, ``torque_free`` and ``table`` the ways to turn.
+"""How the target turns: ``attitude`` is the interface; ``spin``, ``torque_free`` and ``table`` implement it.
 
-``in_lvlh`` takes an attitude from inertial axes to LVLH, ``body_frame`` holds the planar formulas.
+``in_lvlh`` converts an attitude from inertial axes to LVLH, ``body_frame`` holds the planar formulas.
 """

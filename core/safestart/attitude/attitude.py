@@ -1,6 +1,6 @@
-"""How the target turns: the interface that every attitude offers, and states seen from the body with it.
+"""How the target turns: the interface of every attitude, and the conversion of states to the body frame.
 
-The body frame has its origin in the target, as LVLH has. Times are seconds since the flight's start.
+The body frame has its origin in the target, like LVLH. Times are seconds since the flight's start.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class Attitude(Protocol):
 
 
 def to_body(attitude: Attitude, times: Floats, states: Floats) -> Floats:
-    """LVLH states (T, 6) at ``times`` (T,) as the body sees them: R p and R v - omega x R p, (T, 6)."""
+    """LVLH states (T, 6) at ``times`` (T,) in the body frame: R p and R v - omega x R p, (T, 6)."""
     turn, omega = attitude.rotation(times), attitude.angular_velocity(times)
     position = _applied(turn, states[:, :3])
     velocity = _applied(turn, states[:, 3:]) - np.cross(omega, position)
@@ -45,6 +45,6 @@ def to_lvlh(attitude: Attitude, times: Floats, states: Floats) -> Floats:
 
 
 def _applied(matrices: Floats, vectors: Floats) -> Floats:
-    """Matrices (T, 3, 3) times vectors (T, 3). Written out, so that a spin about z rounds as the planar formulas do."""
+    """Matrices (T, 3, 3) times vectors (T, 3), written out so that a spin about z rounds like the planar formulas."""
     out: Floats = matrices[:, :, 0] * vectors[:, 0, None]
     return out + matrices[:, :, 1] * vectors[:, 1, None] + matrices[:, :, 2] * vectors[:, 2, None]

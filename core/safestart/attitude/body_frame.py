@@ -21,12 +21,12 @@ def rotation(theta: float) -> Floats:
 
 
 def into_body(cos: Any, sin: Any, x: Any, y: Any) -> tuple[Any, Any]:
-    """R_z(-theta) (x, y): LVLH coordinates as the body has them; numbers or arrays that broadcast."""
+    """R_z(-theta) (x, y): LVLH coordinates to body coordinates; numbers or arrays that broadcast."""
     return cos * x + sin * y, cos * y - sin * x
 
 
 def out_of_body(cos: Any, sin: Any, x: Any, y: Any) -> tuple[Any, Any]:
-    """R_z(theta) (x, y): body coordinates as LVLH has them; numbers or arrays that broadcast."""
+    """R_z(theta) (x, y): body coordinates to LVLH coordinates; numbers or arrays that broadcast."""
     return cos * x - sin * y, sin * x + cos * y
 
 
@@ -61,7 +61,7 @@ def lvlh_to_body(
 
 def _cos_sin(tumble_rate: float, time: float | Floats) -> tuple[Any, Any]:
     theta = tumble_rate * np.asarray(time, dtype=np.float64)
-    # Not NumPy's: its cosines of arrays differ in the last bit between processors, and documents show these figures.
+    # Not NumPy's: its array cosines differ in the last bit between processors, and documents show these figures.
     cos = np.array([math.cos(angle) for angle in theta.ravel().tolist()])
     sin = np.array([math.sin(angle) for angle in theta.ravel().tolist()])
     return cos.reshape(theta.shape), sin.reshape(theta.shape)

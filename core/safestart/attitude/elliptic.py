@@ -1,10 +1,11 @@
 """Jacobi's elliptic functions, and the argument of a theta function, given the complement m1 = 1 - m of the parameter.
 
-With m1 instead of m nothing is lost near the separatrix, where m1 is tiny and a quarter period K as long as -log(m1).
+Using m1 instead of m keeps accuracy near the separatrix, where m1 is tiny and a quarter period K is as long as
+-log(m1).
 
-sn, cn and dn come from Gauss's descending transformation (DLMF 22.7(i)): a sine at a modulus that is 0, and rational
-steps back in which no terms cancel. Theta(v + i b) = theta_4, b > 0, comes from its infinite product (DLMF 20.5), for
-m > 1/2 after Jacobi's imaginary transformation (DLMF 20.7(viii)), so that a handful of factors always do.
+sn, cn and dn come from Gauss's descending transformation (DLMF 22.7(i)): a sine at modulus 0, and rational steps back
+in which no terms cancel. Theta(v + i b) = theta_4, b > 0, comes from its infinite product (DLMF 20.5), for m > 1/2
+after Jacobi's imaginary transformation (DLMF 20.7(viii)), so that a handful of factors is always enough.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from safestart.model.scenario import Floats
 
 Complexes = np.ndarray[tuple[int, ...], np.dtype[np.complex128]]
 _LEAST_COMPLEMENT = 1e-300
-"""Smaller complements, 0 among them, are taken for this: K is 346 then, and no flight lasts so long."""
+"""Smaller complements, including 0, are replaced by this one: K is then 346, and no flight lasts so long."""
 _FACTORS = 7
 """Factors of a product: with a nome of at most exp(-pi) the next one differs from 1 by less than 1e-18."""
 
@@ -47,7 +48,7 @@ def quarter_period(complement: float) -> float:
 
 
 class Jacobi:
-    """The functions for one complement m1 in [0, 1] and, with m given beside it, without loss at both ends."""
+    """The functions for one complement m1 in [0, 1]; giving m as well keeps accuracy at both ends."""
 
     def __init__(self, parameter: float, complement: float) -> None:
         self.parameter, self.complement = parameter, max(complement, _LEAST_COMPLEMENT)

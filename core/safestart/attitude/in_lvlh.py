@@ -1,6 +1,6 @@
-"""An attitude from inertial axes as one from LVLH, which itself turns: C(t) = C_inertial(t) R(t)^T, on any orbit.
+"""An attitude relative to LVLH from one relative to inertial axes, on any orbit: C(t) = C_inertial(t) R(t)^T.
 
-Inertial axes are those that LVLH has at t = 0 (:mod:`safestart.model.orbit`), so both attitudes agree at t = 0.
+The inertial axes are those of LVLH at t = 0 (:mod:`safestart.model.orbit`), so both attitudes agree at t = 0.
 """
 
 from __future__ import annotations
@@ -10,9 +10,9 @@ from typing import Literal
 
 import numpy as np
 
-from safestart.attitude.attitude import Attitude
 from safestart.attitude.quaternion import matrix_of, unit_quaternion
 from safestart.attitude.torque_free import Inertia, TorqueFree
+from safestart.attitude.turning import Bounds, SmoothAttitude, of_rates, product
 from safestart.model.orbit import KeplerOrbit
 from safestart.model.scenario import Floats
 
@@ -21,14 +21,14 @@ Reference = Literal["inertial", "lvlh"]
 
 @dataclass(frozen=True)
 class InLvlh:
-    """``inertial``, an attitude from inertial axes, seen from LVLH on ``orbit``."""
+    """``inertial``, an attitude relative to inertial axes, expressed relative to LVLH on ``orbit``."""
 
-    inertial: Attitude
+    inertial: SmoothAttitude
     orbit: KeplerOrbit
 
     def rotation(self, times: Floats) -> Floats:
         """(..., 3, 3): LVLH coordinates to body coordinates."""
-        # Times last, as they lie in memory.
+        # Times last, the memory order.
         seen, angle = np.moveaxis(self.inertial.rotation(times), (-2, -1), (0, 1)), self.orbit.turned(times)
         cosine, sine = np.cos(angle), np.sin(angle)
         out = np.empty(seen.shape)
@@ -45,10 +45,19 @@ class InLvlh:
         return out
 
     def rate_bounds(self) -> tuple[float, float]:
-        """Bounds on |omega| (rad/s) and |omega dot| (rad/s^2): those of the body and of LVLH together."""
+        """Bounds on |omega| (rad/s) and |omega dot| (rad/s^2): the sums of those of the body and of LVLH."""
         fast, changing = self.inertial.rate_bounds()
         turning, bending = self.orbit.rate_bounds()
         return fast + turning, changing + bending + fast * turning
+
+    @property
+    def knots(self) -> Floats:
+        """Those of the inertial attitude."""
+        return self.inertial.knots
+
+    def turn_bounds(self) -> Bounds:
+        """Those of the body and of LVLH together."""
+        return product(of_rates(*self.orbit.turn_bounds()), self.inertial.turn_bounds())
 
 
 def torque_free(
@@ -58,7 +67,7 @@ def torque_free(
     reference: Reference,
     orbit: KeplerOrbit,
 ) -> InLvlh:
-    """A torque-free body as LVLH sees it.
+    """A torque-free body relative to LVLH.
 
     ``attitude`` (scalar first) leads from LVLH to the body at t = 0, where the inertial axes agree with LVLH.
     ``body_rate`` (rad/s, body axes) is against ``reference``: inertial axes or LVLH at t = 0; the motion is torque-free

@@ -63,13 +63,13 @@ def product(first: Floats, then: Floats) -> Floats:
 
 
 def conjugate(quaternions: Floats) -> Floats:
-    """The turn back, (..., 4)."""
+    """The inverse turn, (..., 4)."""
     out: Floats = np.asarray(quaternions) * np.array([1.0, -1.0, -1.0, -1.0])
     return out
 
 
 def rotation_vector(quaternions: Floats) -> Floats:
-    """Axis times angle (..., 3) of the shorter turn, rad, in axes that reference and body share."""
+    """Axis times angle (..., 3) of the shorter turn, rad; reference and body share the axis."""
     q = np.asarray(quaternions, dtype=np.float64)
     q = np.where(q[..., :1] < 0.0, -q, q)
     size = np.sqrt(np.square(q[..., 1:]).sum(axis=-1, keepdims=True))

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from safestart.attitude.turning import Bounds, of_rates
 from safestart.errors import invalid
 from safestart.model.scenario import MAX_TUMBLE_RATE, Floats, Target, number
 
@@ -15,8 +16,8 @@ from safestart.model.scenario import MAX_TUMBLE_RATE, Floats, Target, number
 class Spin:
     """``rate`` rad/s (either sign) about ``axis``, a direction that LVLH and body share; ``phase`` rad at t = 0.
 
-    The axis is scaled to unit length. Raises ``InvalidInput`` for numbers that are not finite, a rate out of range, an
-    axis without length.
+    The axis is scaled to unit length. Raises ``InvalidInput`` for non-finite numbers, a rate out of range, and an axis
+    of length 0.
     """
 
     rate: float
@@ -33,11 +34,11 @@ class Spin:
 
     @property
     def planar(self) -> bool:
-        """Whether the orbit plane turns in itself: the axis is +z or -z."""
+        """Whether the axis is +z or -z, so that the orbit plane turns within itself."""
         return self.axis[:2] == (0.0, 0.0)
 
     def angle(self, times: Floats) -> Floats:
-        """By how much the body is ahead of LVLH about the axis, rad, at ``times`` (...)."""
+        """Angle by which the body is ahead of LVLH about the axis, rad, at ``times`` (...)."""
         out: Floats = self.phase + self.rate * np.asarray(times, dtype=np.float64)
         return out
 
@@ -48,7 +49,7 @@ class Spin:
     def turned_by(self, angles: Floats) -> Floats:
         """The rotation after ``angles`` (...), rad: a a' + cos (I - a a') - sin [a x].
 
-        Every entry is 0, 1 or a plain cosine or sine where the axis is one of the frame's.
+        For an axis of the frame every entry is 0, 1 or a plain cosine or sine.
         """
         angle = np.asarray(angles, dtype=np.float64)[..., None, None]
         x, y, z = self.axis
@@ -64,6 +65,15 @@ class Spin:
     def rate_bounds(self) -> tuple[float, float]:
         """|rate| and 0."""
         return abs(self.rate), 0.0
+
+    @property
+    def knots(self) -> Floats:
+        """None."""
+        return np.empty(0)
+
+    def turn_bounds(self) -> Bounds:
+        """Powers of the rate."""
+        return of_rates(abs(self.rate), 0.0, 0.0, 0.0)
 
 
 def spin_of(target: Target) -> Spin:

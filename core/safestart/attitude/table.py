@@ -1,7 +1,7 @@
 """An attitude from times and quaternions, by slerp: between two times the body turns steadily about a fixed axis.
 
-The interpolated course is what every answer is about. What the true body does between the times is for the caller to
-know: a body whose angular velocity changes by at most c rad/s^2 is within c h^2 / 8 rad of it, h the times' distance.
+Every answer is about the interpolated attitude. The caller must judge the true body's motion between the times: if its
+angular velocity changes by at most c rad/s^2, it stays within c h^2 / 8 rad of the interpolation, with h the time step.
 """
 
 from __future__ import annotations
@@ -12,21 +12,22 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from safestart.attitude.quaternion import conjugate, matrix_of, product, rotation_vector, unit_quaternion
+from safestart.attitude.turning import Bounds, of_rates
 from safestart.errors import invalid
 from safestart.model.scenario import MAX_TUMBLE_RATE, Floats
 
 MOST_ENTRIES = 20_000
 LARGEST_STEP = math.radians(90.0)
-"""Largest turn between two entries: beyond it nobody knows which way round the body went."""
+"""Largest turn between two entries; beyond it the direction of the turn is ambiguous."""
 
 
 @dataclass(frozen=True)
 class Table:
     """``times`` (K,) s, rising from 0 or before, and ``quaternions`` (K, 4), scalar first, scaled to unit length.
 
-    A quaternion and its negative are the same attitude. The reference is whatever they lead from: LVLH, or inertial
-    axes (:mod:`safestart.attitude.in_lvlh`). Raises ``InvalidInput`` for times that do not rise or begin after 0, a
-    zero quaternion, and a jump: more than 90 degrees or 60 deg/s between two entries.
+    A quaternion and its negative are the same attitude. The caller chooses the reference: LVLH, or inertial axes
+    (:mod:`safestart.attitude.in_lvlh`). Raises ``InvalidInput`` for times that do not rise or begin after 0, a zero
+    quaternion, and a jump: more than 90 degrees or 60 deg/s between two entries.
     """
 
     times: tuple[float, ...]
@@ -65,13 +66,17 @@ class Table:
         """Times (K,), s, at which the angular velocity jumps."""
         return self._at
 
+    def turn_bounds(self) -> Bounds:
+        """Powers of the largest rate: between two entries the body turns steadily."""
+        return of_rates(self.rate_bounds()[0], 0.0, 0.0, 0.0)
+
     def reaches(self, end: float) -> None:
-        """Raise ``InvalidInput`` unless the table goes on to ``end`` seconds."""
+        """Raise ``InvalidInput`` unless the table reaches ``end`` seconds."""
         if self._at[-1] < end:
             raise invalid("times", f"entries up to the end, {end:g} s", f"the last at {self._at[-1]:g} s")
 
     def rotation(self, times: Floats) -> Floats:
-        """(..., 3, 3): reference coordinates to body coordinates; after the last entry the body turns on."""
+        """(..., 3, 3): reference coordinates to body coordinates; after the last entry the body keeps turning."""
         times = np.asarray(times, dtype=np.float64)
         index = self._index(times)
         vector = self._rates[index] * (times - self._at[index])[..., None]
@@ -88,7 +93,7 @@ class Table:
         return out
 
     def rate_bounds(self) -> tuple[float, float]:
-        """The largest rate, and 0: between two entries the rate stays; see :attr:`knots`."""
+        """The largest rate, and 0: the rate is constant between entries; see :attr:`knots`."""
         return float(np.sqrt(np.square(self._rates).sum(axis=1)).max()) * (1.0 + 1e-14), 0.0
 
     def _index(self, times: Floats) -> np.ndarray[tuple[int, ...], np.dtype[np.int64]]:

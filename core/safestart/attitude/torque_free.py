@@ -1,11 +1,11 @@
-"""Euler-Poinsot motion in closed form: a rigid body that no torque acts on, in inertial axes.
+"""Euler-Poinsot motion in closed form: a rigid body without torque, in inertial axes.
 
 In principal axes (a, b, c), c the axis that the angular velocity circles, moments I, angular momentum H and energy T,
 
     w = (A cn u, +-B sn u, C dn u),  u = rate t + u(0),  rate^2 = C^2 (Ic - Ib) (Ic - Ia) / (Ia Ib)
     m = Ia |Ia - Ib| A^2 / (Ic |Ib - Ic| C^2),  1 - m = |Ic - Ia| |H^2 - 2 T Ib| / (|Ic - Ib| (|H^2 - 2 T Ia|)).
 
-H^2 - 2 T I is written as a sum without cancellation. The angular momentum is fixed in inertial axes and seen from the
+H^2 - 2 T I is written as a sum without cancellation. The angular momentum is fixed in inertial axes and known in the
 body, so two of the attitude's angles follow from w; the third, the precession psi about it, has the rate
 
     psi' = H (Ia wa^2 + Ib wb^2) / (Ia^2 wa^2 + Ib^2 wb^2) = H / Ic + H (1/Ia - 1/Ic) / (1 + y sn^2),
@@ -26,6 +26,7 @@ import numpy as np
 
 from safestart.attitude.elliptic import Jacobi, ThetaArgument, first_kind
 from safestart.attitude.quaternion import matrix_of, unit_quaternion
+from safestart.attitude.turning import Bounds, of_rates
 from safestart.errors import invalid
 from safestart.model.scenario import MAX_TUMBLE_RATE, Floats
 
@@ -37,9 +38,9 @@ _TRIANGLE = 1e-9
 class TorqueFree:
     """``inertia`` kg m^2 (body axes), ``attitude`` scalar first and ``body_rate`` rad/s (body axes) at t = 0.
 
-    An attitude from inertial axes; :mod:`safestart.attitude.in_lvlh` makes it one from LVLH. Raises ``InvalidInput``
-    for an inertia that is not symmetric, or no body's (a moment above the sum of the others), a zero quaternion, a
-    rate out of range.
+    An attitude relative to inertial axes; :mod:`safestart.attitude.in_lvlh` converts it to LVLH. Raises
+    ``InvalidInput`` for an inertia that is not symmetric or not physical (a moment above the sum of the others), a zero
+    quaternion, and a rate out of range.
     """
 
     inertia: Inertia
@@ -82,14 +83,34 @@ class TorqueFree:
         most: tuple[float, float] = self._course.bounds
         return most
 
+    def polhode_period(self) -> float:
+        """Seconds after which the angular velocity in body axes is the same again; 0 where it never changes."""
+        return float(self._course.period)
+
+    @property
+    def knots(self) -> Floats:
+        """None."""
+        return np.empty(0)
+
+    def turn_bounds(self) -> Bounds:
+        """From the largest angular velocity: Euler's equations are w' = Q(w, w) with |Q(a, b)| <= |a| |b| / sqrt 2.
+
+        No moment exceeds the sum of the others, so no coefficient of the bilinear Q exceeds 1.
+        """
+        most, changing = self.rate_bounds()
+        first = min(changing, most**2 / math.sqrt(2.0))
+        second = math.sqrt(2.0) * first * most
+        return of_rates(most, first, second, math.sqrt(2.0) * (second * most + first * first))
+
 
 class _Steady:
-    """A turn about an axis at which the body keeps turning: a principal one, or any of a ball."""
+    """A steady turn, about a principal axis or any axis of a ball."""
 
     def __init__(self, rate: Floats, first: Floats) -> None:
         self.rate, self.first = rate, first
         self.size = math.hypot(*rate)
         self.bounds = (self.size * (1.0 + 1e-15), 0.0)
+        self.period = 0.0
 
     def rotation(self, times: Floats) -> Floats:
         axis = self.rate / self.size if self.size > 0.0 else np.array([0.0, 0.0, 1.0])
@@ -140,11 +161,12 @@ class _Poinsot:
         )
         self.way = math.copysign(1.0, c - a)
         self.precession = self.momentum / a - self.way * self.pace * self.theta.slope
-        # The shape of (sin, cos) of the third angle, which stays when the circle shrinks to a point.
+        # (sin, cos) of the third angle up to a factor; it stays defined when the circle shrinks to a point.
         self.third = np.array([math.sqrt(a * abs(b - c)), self.side * math.sqrt(b * abs(a - c))])
         self.first_theta = self.theta.direction(np.array([self.begin]))[0]
         self.frame = self._angles(np.zeros(1))[..., 0].T @ first
         self.bounds = self._bounds()
+        self.period = 4.0 * self.jacobi.quarter / abs(self.pace)
 
     def _bounds(self) -> tuple[float, float]:
         jacobi, (a, b, c) = self.jacobi, (self.size_a, self.size_b, self.size_c)
@@ -200,7 +222,7 @@ class _Poinsot:
 
 
 def _size(x: Floats, y: Floats) -> Floats:
-    """Quicker than NumPy's, which minds overflow."""
+    """Faster than NumPy's, which guards against overflow."""
     out: Floats = np.sqrt(x * x + y * y)
     return out
 
@@ -219,7 +241,7 @@ def _circled(moments: Floats, spin: Floats) -> tuple[list[int], Floats]:
     turn = np.zeros((3, 3))
     sign = -1.0 if spin[order[2]] < 0.0 else 1.0
     turn[2, order[2]], turn[1, order[1]], turn[0, order[0]] = sign, 1.0, 1.0
-    # Odd orders and flipped axes are made right-handed by a.
+    # The sign of a makes odd orders and flipped axes right-handed.
     turn[0, order[0]] = round(float(np.linalg.det(turn)))
     return order, turn
 
@@ -227,7 +249,7 @@ def _circled(moments: Floats, spin: Floats) -> tuple[list[int], Floats]:
 def _principal(inertia: Floats) -> tuple[Floats, Floats]:
     """Principal moments, rising, and the rows (3, 3), right-handed, that lead from body axes to principal axes."""
     if not (inertia - np.diag(np.diagonal(inertia))).any():
-        # To the letter, so that a spin about an axis of the body is one about a principal axis.
+        # Exact test, so that a spin about an axis of the body is one about a principal axis.
         order = np.argsort(np.diagonal(inertia), kind="stable")
         moments, rows = np.diagonal(inertia)[order], np.eye(3)[order]
     else:

@@ -73,8 +73,7 @@ class Study:
         return self.part(first, Table.of_rows(self.columns, rows), time.perf_counter() - begin)
 
     def part(self, number: int, table: Table, run_s: float) -> Part:
-        """One shard from its table, for studies that simulate many cases at once; ``number`` grows with the
-        shards."""
+        """One shard from its table, for studies that simulate many cases at once; ``number`` grows with the shards."""
         recorded = math.ceil(self.records * len(table) / len(self.design))
         data = b""
         if recorded:

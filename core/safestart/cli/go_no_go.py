@@ -15,6 +15,15 @@ from safestart.processes.go_no_go.one_start import ONE_START
 from safestart.processes.go_no_go.run import answer
 from safestart.runtime.progress import Context
 
+_BY = {
+    "certified": "the certificate in closed form (docs/theory/certified.md)",
+    "exact": "a cone program",
+    "atlas": "an atlas of cone programs",
+    "families": "cone programs for all members",
+    "tube": "a cone program in the tightened corridor",
+    "paper": "the paper's conditions; this proves nothing",
+}
+
 
 def register(app: typer.Typer) -> None:
     """Add the command."""
@@ -30,7 +39,7 @@ def register(app: typer.Typer) -> None:
         as_json: Json = False,
         **asked: Any,
     ) -> None:
-        """May a chaser at rest at this point start its approach? By the closed form at once, or proved (exact)."""
+        """May a chaser at rest at this point start its approach? No GO without a proof, but by method paper."""
         given = {name: value for name, value in asked.items() if value is not None}
         inputs = ONE_START.parse(given | {"proofs": proof is not None})
         with target("--proof", proof) as file:
@@ -41,16 +50,19 @@ def register(app: typer.Typer) -> None:
 
 
 def _show(document: dict[str, Any]) -> None:
-    """Print the verdict on the start, the reason, and the closed form's verdict."""
+    """Print the verdict on the one start, why, what decided, and what the paper's conditions say of it."""
     verdict = document["verdict"]
     out.print(f"[bold {'green' if verdict == 'GO' else 'red'}]{verdict}[/]: {document['reason']}")
     for member in document["examples"] or ():
         out.print(f"  {_told(member)}", soft_wrap=True)
+    if document["decided_by"] is not None:
+        out.print(f"  decided by: {_BY.get(document['decided_by'], document['decided_by'])}")
     r_sync = document["r_sync_m"]
     shown = f"{r_sync:.2f} m" if r_sync is not None else f"none ({document['r_sync_reason']})"
+    out.print("  beside it the paper's conditions, which are not sound:")
     out.print(f"  synchronization range limit: {shown}")
     for face, margin in document["face_margins_m"].items():
-        out.print(f"  closed-form margin {face:<11} {margin:9.2f} m")
+        out.print(f"  margin after erosion {face:<11} {margin:9.2f} m")
 
 
 def _told(member: dict[str, Any]) -> str:

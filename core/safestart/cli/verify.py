@@ -23,7 +23,7 @@ def register(app: typer.Typer) -> None:
         proof: Annotated[Path, typer.Argument(help="Proof document, JSON; - for standard input.")],
         as_json: Json = False,
     ) -> None:
-        """Check a GO or NO_GO proof. Exit code 0: valid, 1: rejected, 2: unreadable."""
+        """Check a proof: GO, NO_GO, or a plan with burns that fail. Exit code 0: valid, 1: rejected, 2: unreadable."""
         # Imported here, so that other commands do not load ball arithmetic.
         from safestart.proofs.checker import check
         from safestart.proofs.strict import ProofRejected
@@ -49,9 +49,11 @@ def register(app: typer.Typer) -> None:
                 }
             )
             return
-        colour = "green" if verified.verdict == "GO" else "red"
-        bound = "at least" if verified.verdict == "GO" else "at most"
-        out.print(f"[bold {colour}]{verified.verdict}[/] proved: margin {bound} {verified.margin_m!r} m")
+        colour = "red" if verified.verdict == "NO_GO" else "green"
+        bound = "at most" if verified.verdict == "NO_GO" else "at least"
+        what = "distance to the target" if verified.verdict == "PROVED" else "margin"
+        claim = "proved" if verified.verdict != "PROVED" else "and checked"
+        out.print(f"[bold {colour}]{verified.verdict}[/] {claim}: {what} {bound} {verified.margin_m!r} m")
         for line in verified.statement:
             out.print(f"  {line}", soft_wrap=True, markup=False)
 

@@ -1,9 +1,9 @@
 """`certified`: the sound closed-form certificate of starts at rest (docs/theory/certified.md). NumPy only.
 
 A start is certified when a manoeuvre of a fixed family keeps it in the corridor for ever within its thrust: it brakes
-in the body frame, or turns in towards the target, then stands in the body frame. All of it lies in the hull of a few
-control points, so its distance to each face is known without flying. A start that is not certified is undecided, not
-refused: other thrust histories may keep it.
+in the body frame, or turns in towards the target, then stands in the body frame. The whole path lies in the hull of a
+few control points, so its distance to each face is known without simulation. An uncertified start is undecided, not
+refused: another thrust history may keep it in the corridor.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from safestart.errors import invalid
 from safestart.model.scenario import Bools, Floats, Grid, Rest, Scenario
 
 ROUNDING = 1e-6
-"""Metres taken off every clearance: floats carry it to better than 1e-8 m within :data:`FARTHEST`."""
+"""Metres subtracted from every clearance, which floats give to better than 1e-8 m within :data:`FARTHEST`."""
 
 FARTHEST = 1e6
 """Largest coordinate in metres."""
 
 OUT_OF_REACH = "range"
-"""Name of what binds a start for which no manoeuvre has the thrust."""
+"""The binding constraint's name for a start for which no manoeuvre has the thrust."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,9 +33,9 @@ class Certified:
     """The certificate of an array of starts (...).
 
     ``margin`` (...) in metres: where ``go``, the manoeuvre's distance to every face is at least this at all times;
-    elsewhere it is <= 0 and says what the start (outside the corridor) or the nearest manoeuvre lacks, of room or of
-    range. ``binding`` (...) is the index in ``names`` of the face that is nearest, or of :data:`OUT_OF_REACH`, the
-    last. ``member`` and ``drop`` (...) name the manoeuvre, :func:`safestart.closed_form.manoeuvre.manoeuvre_of`.
+    elsewhere it is <= 0: the room or range that the start (outside the corridor) or the nearest manoeuvre lacks.
+    ``binding`` (...) is the index in ``names`` of the face that is nearest, or of :data:`OUT_OF_REACH`, the last.
+    ``member`` and ``drop`` (...) name the manoeuvre, :func:`safestart.closed_form.manoeuvre.manoeuvre_of`.
     """
 
     names: tuple[str, ...]
@@ -48,7 +48,7 @@ class Certified:
 
 @dataclass(frozen=True, slots=True)
 class CertifiedMap:
-    """The certificate of a grid: ``margin``, ``mask`` (GO) and ``inside`` (in the corridor), all (ny, nx)."""
+    """The certificate of a grid: ``margin``, ``mask`` (GO), ``inside`` (the corridor to :data:`ROUNDING`), (ny, nx)."""
 
     margin: Floats
     mask: Bools
@@ -71,7 +71,7 @@ def certify(scenario: Scenario, points: Floats, rest: Rest = Rest.LVLH) -> Certi
     place = np.ascontiguousarray(points.reshape(-1, dimensions).T)
     rates, faces = rates_of(scenario, rest), Faces.of(scenario.corridor, dimensions)
     start = faces.room(place)
-    # Outside the corridor no manoeuvre helps: the margin is the start's own.
+    # Outside the corridor no manoeuvre helps, so the margin is the start's own.
     margin, binding = start.min(axis=0), start.argmin(axis=0)
     member, drop = np.full(len(margin), BRAKE), np.zeros(len(margin))
     inside = np.flatnonzero(margin > ROUNDING)
@@ -101,7 +101,7 @@ def certify_grid(scenario: Scenario, grid: Grid, rest: Rest = Rest.LVLH) -> Cert
     rates, faces = rates_of(scenario, rest), Faces.of(scenario.corridor, 2)
     start = faces.room(place)
     margin = start.min(axis=0)
-    inside = margin >= 0.0
+    inside = margin >= -ROUNDING  # the grid's corners lie on faces
     within = np.flatnonzero(margin > ROUNDING)
     place, start = place.take(within, axis=1), start.take(within, axis=1)
     brake, turn_in = offers(rates, faces, place, start)
@@ -120,7 +120,7 @@ def certify_grid(scenario: Scenario, grid: Grid, rest: Rest = Rest.LVLH) -> Cert
 
 @dataclass(frozen=True, slots=True)
 class _Best:
-    """The best offer for each start; ``binding`` is -1 where there is none."""
+    """The best manoeuvre for each start; ``binding`` is -1 when there is none."""
 
     margin: Floats
     binding: Ints
@@ -142,7 +142,7 @@ class _Best:
 
 
 def longest_range(rates: Rates) -> float:
-    """The farthest range in metres from which any manoeuvre can be flown; inf where none costs thrust."""
+    """The farthest range in metres from which any manoeuvre can be flown; inf when no manoeuvre needs thrust."""
     limit = max(rates.brake_limit, float(rates.family.reach[-1]))
     return limit / rates.scale if rates.scale > 0.0 else math.inf
 

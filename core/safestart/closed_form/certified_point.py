@@ -1,6 +1,6 @@
 """`certified` for one start in plain floats: NumPy's fixed cost per call is several times the arithmetic of one start.
 
-What depends on the scenario alone is taken from the core once and kept. The arithmetic is that of
+Values that depend only on the scenario are computed once and cached. The arithmetic is that of
 :func:`safestart.closed_form.certified.certify`; it may round differently, by less than 1e-9 m, and
 :data:`~safestart.closed_form.certified.ROUNDING` covers both.
 """
@@ -24,7 +24,7 @@ _STEP: list[float] = SMOOTH_STEP[1:DEGREE].tolist()
 
 
 class PointCertificate(NamedTuple):
-    """One start's verdict, margin in metres, name of what binds, and the manoeuvre's parameters, as in `Certified`."""
+    """One start's verdict, margin in metres, binding constraint, and the manoeuvre's parameters, as in `Certified`."""
 
     go: bool
     margin: float
@@ -49,7 +49,7 @@ class Prepared:
 def prepare(
     omega: float, mean_motion: float, a_max: float, shape: CorridorShape, rest: Rest, spatial: bool
 ) -> Prepared:
-    """What the certificate of a start needs to know of its scenario, rates in rad/s, thrust in m/s^2.
+    """The scenario's values that a start's certificate needs, rates in rad/s, thrust in m/s^2.
 
     Raises ``InvalidInput`` outside the scenario's bounds.
     """
@@ -139,7 +139,7 @@ def _stop(given: Prepared, room: list[float], x: float, y: float, z: float, rho:
 def _turned(
     given: Prepared, room: list[float], turned: list[complex], heights: list[float], floor: float
 ) -> tuple[float, int] | None:
-    """Least room and its face over the control points; None where it is no more than ``floor``."""
+    """Least room and its face over the control points; None if it is at most ``floor``."""
     best, binding = math.inf, 0
     # Written out: a loop over the five points takes twice as long.
     p, q, r, s, t = turned

@@ -1,4 +1,4 @@
-"""A certificate in words: what binds, which faces the start is outside of, and one sentence."""
+"""A certificate in words: the binding constraint, the violated faces, and one sentence."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Sequence
 def binding_of(
     faces: Sequence[str], slack: Sequence[float], face_margin: Sequence[float], range_margin: float
 ) -> tuple[str, list[str]]:
-    """Binding constraint (a face or ``range``) of one start, and the faces that it is outside of.
+    """Binding constraint (a face or ``range``) of one start, and the faces that it violates.
 
     ``slack`` and ``face_margin`` go face by face; margins in metres. Outside the corridor a violated face binds.
     """

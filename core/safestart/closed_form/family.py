@@ -1,4 +1,4 @@
-"""The manoeuvres that `certified` knows, without units, and how far each reaches (docs/theory/certified.md).
+"""The manoeuvres of `certified` in dimensionless form, and the reach of each (docs/theory/certified.md).
 
 In the plane of the spin the position in the body frame is a complex number q = x + i y. With the body's inertial rate
 W = omega_t + n and time counted in 1/W, a chaser that follows q needs the thrust
@@ -24,10 +24,11 @@ Complexes = np.ndarray[tuple[int, ...], np.dtype[np.complex128]]
 
 DEGREE = 6
 SPANS = np.linspace(0.3, 3.6, 34)
-"""S of every member, in 1/W: the angle in radians by which the body turns meanwhile."""
+"""S of every member, in 1/W: the angle in radians by which the body turns during it."""
 
 # Control points 2 to 5 (the last two coincide), each 1 + c S + c' S^2 + c'' S^3: found by a cone program that maximises
-# the reach in a cone of slope 1.5. Nothing rests on where they come from: the reach of each curve is bounded anew.
+# the reach in a cone of slope 1.5. The certificate does not depend on that program: the reach of each curve is bounded
+# anew.
 FROM_LVLH = np.array(
     [
         [-0.0079 - 0.2868j, -0.0434 - 0.0059j, 0.0012 - 0.0011j],
@@ -45,7 +46,7 @@ FROM_BODY = np.array(
         [-0.0161 - 0.1741j, 0.0358 + 0.1408j, -0.0189 - 0.0360j],
     ]
 )
-"""For lambda = 0: a start at rest in the body frame. In between the two are mixed in proportion."""
+"""For lambda = 0: a start at rest in the body frame. Values between mix the two linearly."""
 
 PIECES = 5
 # Cross-track: z = z0 (1 - drop (3 s^2 - 2 s^3)), its control points and the largest |z''| at drop 1.
@@ -136,7 +137,7 @@ def family_of(speed: float, nu: float) -> Family:
     moving = (np.abs(pushed - turning * hull) + gradient * np.abs(hull)).max(axis=0)
     standing = (turning + gradient) * np.abs(shape[DEGREE])
     reach = 1.0 / np.maximum(moving, standing)
-    # A start takes the first member that reaches it, so a member's reach is cut to that of every later one.
+    # A start takes the first member that reaches it, so no member's reach may exceed that of a later one.
     reach = np.minimum.accumulate(reach[::-1])[::-1]
     drop = np.minimum(1.0, SPANS**2 / (STEEPEST * reach))
     inner = np.ascontiguousarray(shape[1:DEGREE])

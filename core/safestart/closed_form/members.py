@@ -1,4 +1,4 @@
-"""The manoeuvres for arrays of starts: is there thrust for each, and how much room does it leave to each face."""
+"""The manoeuvres for arrays of starts: whether thrust suffices for each, and the room it leaves to each face."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Faces:
 
 @dataclass(frozen=True, slots=True)
 class Offer:
-    """One manoeuvre for each start: is there thrust for it (M,), its clearance (F, M), the parameters that name it."""
+    """One manoeuvre for each start: whether thrust suffices (M,), its clearance (F, M), and its parameters."""
 
     flyable: Bools
     clearance: Floats
@@ -73,7 +73,7 @@ def offers(rates: Rates, faces: Faces, place: Floats, start: Floats) -> list[Off
         return [_brake(rates, faces, start, place, held), _turn_in(rates, faces, start, place, held)]
     height = place[2] * place[2]
     sway = np.sqrt(height) * rates.sway
-    # What is left of the thrust's disk when n^2 z of it holds z; nothing can be flown where all of it goes.
+    # The rest of the thrust disk after n^2 z of it holds z; without a rest nothing can be flown.
     left = np.sqrt(np.maximum(1.0 - sway * sway, 1e-300))
     held = np.sqrt(square) * rates.scale / left
     drawn = np.sqrt(square + height) * rates.scale / np.maximum(1.0 - sway, 1e-300)
@@ -85,9 +85,9 @@ def offers(rates: Rates, faces: Faces, place: Floats, start: Floats) -> list[Off
 
 
 def _brake(rates: Rates, faces: Faces, start: Floats, place: Floats, rho: Floats) -> Offer:
-    """Straight on in the body frame, ever slower, to p (1 - i beta); stands at once where there is no speed."""
+    """Straight on in the body frame, slowing down to a stop at p (1 - i beta); stands at once without speed."""
     if rates.omega == 0.0:
-        # The gravity gradient stands still in the body frame: what it takes is known, not only bounded.
+        # The gravity gradient is constant in the body frame, so its thrust is known, not only bounded.
         pull = 3.0 * place[0] * rates.sway
         push = place[2] * rates.sway if len(place) == 3 else 0.0
         return Offer(pull * pull + push * push <= 1.0, start, BRAKE, 0.0)

@@ -4,9 +4,9 @@ A start is certified when, on every face of the corridor, the slack exceeds what
 full thrust has arrested it, and when it lies inside the synchronization range. NumPy only, so that the
 service answers it without loading an engine.
 
-Starts at rest in the body frame are an extension of the paper: there no slack is consumed, and the bound on
-the range is the one inside which thrust can hold station against the centripetal, Coriolis and
-gravity-gradient terms, r < a_max / (omega_t^2 + 2 n omega_t + 3 n^2).
+Starts at rest in the body frame are an extension of the paper: they consume no slack, and the range limit is the one
+within which thrust can hold station against the centripetal, Coriolis and gravity-gradient terms, r < a_max /
+(omega_t^2 + 2 n omega_t + 3 n^2).
 """
 
 from __future__ import annotations
@@ -86,10 +86,10 @@ def certify(scenario: Scenario, points: Floats, rest: Rest = Rest.LVLH) -> Certi
 
 
 def rowwise(points: Floats, matrix: Floats) -> Floats:
-    """``points @ matrix`` with the same bits for a start alone (..., d) as for one among many.
+    """``points @ matrix`` with the same bits for a single start (..., d) as for one among many.
 
-    BLAS multiplies a matrix of many rows with fused multiply-adds and a single row by another routine, without them:
-    the last bit differs, and next to zero the verdict. A single row is therefore multiplied as one of two.
+    BLAS multiplies a matrix of many rows with fused multiply-adds, and a single row by another routine without them.
+    The last bit differs, and near zero the verdict. So a single row is multiplied as one of two.
     """
     rows = points.reshape(-1, points.shape[-1])
     product = np.repeat(rows, 2, axis=0) @ matrix if len(rows) == 1 else rows @ matrix

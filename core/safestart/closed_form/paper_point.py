@@ -1,8 +1,8 @@
 """The closed-form certificate of one start in plain floats: the bits of ``certify`` in a tenth of its time.
 
-NumPy's fixed cost per call is several times that of the few dozen operations one start needs. What depends on the
-scenario alone is taken from the core once and kept. The products are NumPy's own, since BLAS fuses them; the rest
-rounds alike in Python and NumPy.
+NumPy's fixed cost per call is several times that of the few dozen operations one start needs. Values that depend only
+on the scenario are computed once and cached. NumPy computes the products, since BLAS fuses them; the rest rounds the
+same in Python and NumPy.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ Shape = tuple[float, float, float, float, float]
 class Prepared:
     """A scenario's faces (their names, offsets and lengths of the normals), its range limit, and one matrix (d, 2 k).
 
-    A start times the matrix is what its slacks lose to it, then its slack rates.
+    A start times the matrix gives the part of each slack that depends on it, then its slack rates.
     """
 
     faces: tuple[str, ...]
@@ -49,7 +49,7 @@ class PointCertificate(NamedTuple):
 def prepare(
     omega_t_deg_s: float, a_max: float, mean_motion: float, shape: Shape, rest: Rest, dimensions: int
 ) -> Prepared:
-    """What the certificate of a planar (2) or spatial (3) start needs to know of its scenario."""
+    """The scenario's values that the certificate of a planar (2) or spatial (3) start needs."""
     scenario = Scenario(
         Target(math.radians(omega_t_deg_s), mean_motion), Chaser(a_max), CorridorShape(*shape)
     )
@@ -76,7 +76,7 @@ def certify_point(prepared: Prepared, point: tuple[float, ...]) -> PointCertific
             left / length if rate >= 0.0 else (left - rate * rate / prepared.twice_thrust) / length
         )
     squares = 0.0
-    for value in point:  # not ``sum``, which from Python 3.12 on rounds otherwise
+    for value in point:  # not ``sum``, which rounds differently from Python 3.12 on
         squares += value * value
     range_margin = prepared.limit - math.sqrt(squares)
     return PointCertificate(slack, face_margin, range_margin, min(*face_margin, range_margin))

@@ -1,4 +1,4 @@
-"""What one spin, orbit, thrust and kind of rest mean for the certificate: the numbers that every start shares."""
+"""Numbers of the certificate that all starts share, from spin, orbit, thrust and kind of rest."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from safestart.closed_form.family import Family, family_of
 from safestart.model.scenario import Rest, Scenario
 
 GUARD = 1e-9
-"""Share of the thrust kept back: far above the rounding of every sum that decides whether thrust suffices."""
+"""Reserved share of the thrust, far above the rounding of every sum that decides whether thrust suffices."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +37,7 @@ class Rates:
 
 
 def rates_of(scenario: Scenario, rest: Rest) -> Rates:
-    """The shared numbers of a scenario; its corridor plays no part."""
+    """The shared numbers of a scenario, which do not depend on its corridor."""
     target = scenario.target
     return _rates(target.tumble_rate, target.mean_motion, scenario.chaser.max_acceleration, rest)
 
@@ -46,7 +46,7 @@ def rates_of(scenario: Scenario, rest: Rest) -> Rates:
 def _rates(omega: float, mean_motion: float, a_max: float, rest: Rest) -> Rates:
     rate = omega + mean_motion
     thrust = a_max * (1.0 - GUARD)
-    # Without any rotation no thrust is needed, and W = 0 divides nothing: scale is 0.
+    # Without any rotation no thrust is needed: scale is 0, which avoids a division by W = 0.
     nu = mean_motion / rate if rate > 0.0 else 0.0
     speed = omega / rate if rest is Rest.LVLH and rate > 0.0 else 0.0
     turning = 1.0 + 0.5 * nu * nu

@@ -1,7 +1,7 @@
 """Capture set of the recovery box under the saturated PD law (paper 001, eqs. 8, 9, 16, 19, Figs. 3 and 4).
 
-The law is a function of the state, so nothing is left to decide: whether a state comes into the box within the horizon
-is found by flying it, without a grid. The level set that the paper computes is here too, to be counted against it.
+The law is a function of the state and leaves no decisions, so a simulated flight, without a grid, shows whether a state
+reaches the box within the horizon. The paper's level set is here too, for comparison.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from safestart.model.scenario import Floats
 from safestart.runtime.progress import Context
 
 STEP = 0.5
-"""Seconds between two looks at a flight; the law's fastest time constant is tens of seconds."""
+"""Seconds between two checks of a flight; the law's fastest time constant is tens of seconds."""
 
-# Speeds count as distances covered in this many seconds, so that the level set is as steep along every axis.
+# Speeds count as distances covered in this many seconds, so that the level set is equally steep along every axis.
 _TIME = 100.0
 
 
 def arrival_times(game: Game, slot: Slot, gains: PdGains, states: Floats, horizon_s: float) -> Floats:
-    """First time (...) in s at which states (..., 4) are in the slot's box; inf where not within the horizon.
+    """First time (...) in s at which states (..., 4) are in the slot's box; inf if not within the horizon.
 
     No disturbance acts. Raises ``InvalidInput`` for a game that is not planar.
     """
@@ -47,7 +47,7 @@ def arrival_times(game: Game, slot: Slot, gains: PdGains, states: Floats, horizo
 
 @dataclass(frozen=True)
 class ClosedLoop:
-    """Motion of the level-set solver: eq. (5) with the PD law in the place of u, and no input left."""
+    """Motion for the level-set solver: eq. (5) with the PD law in the place of u, without inputs."""
 
     game: Game
     slot: Slot
@@ -69,7 +69,7 @@ class ClosedLoop:
         u = pd_thrust(states, np.array(self.slot.centre), self.gains, self.game.control)
         for channel in range(2):
             pushed = u[..., channel]
-            # Of a box every channel depends on its own position and speed alone.
+            # For a box every channel depends only on its own position and speed.
             if len(self.game.control.parts) == 2:
                 pushed = pushed.take([0], axis=1 - channel).take([0], axis=3 - channel)
             drift[2 + channel].append(pushed)
@@ -90,9 +90,9 @@ def level_set(
     options: Options,
     context: Context | None = None,
 ) -> Solution:
-    """The capture set as a level set, captured where V <= 0: the largest excess over the box, least on the way.
+    """The capture set as a level set {V <= 0}: V is the least, over time, of the largest excess over the box.
 
-    Speeds are weighed by 100 s. ``lattice`` should have a node in the middle of the box, or it may miss it.
+    Speeds are weighted by 100 s. ``lattice`` should have a node in the middle of the box, or it may miss the box.
     """
     pairs = zip(lattice.coordinates(), slot.centre, slot.half, (1.0, 1.0, _TIME, _TIME), strict=True)
     excess = np.broadcast_arrays(*[(np.abs(x - c) - h) * scale for x, c, h, scale in pairs])
@@ -102,7 +102,7 @@ def level_set(
 
 @dataclass(frozen=True, slots=True)
 class Agreement:
-    """Nodes by what flight and level set say of them; the flight is right."""
+    """Numbers of nodes by flight and level set; the flight is the truth."""
 
     both: int
     flown_only: int
@@ -111,7 +111,7 @@ class Agreement:
 
 
 def compare(solution: Solution, flown: Floats, states: Floats) -> Agreement | None:
-    """Count ``flown`` arrival times (N,) of ``states`` (N, 4) against a level set; None where that has failed."""
+    """Compare ``flown`` arrival times (N,) of ``states`` (N, 4) with a level set; None if the level set failed."""
     if solution.field is None:
         return None
     claimed, arrived = solution.field.value_at(states) <= 0.0, np.isfinite(flown)

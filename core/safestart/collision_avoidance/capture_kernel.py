@@ -1,4 +1,4 @@
-"""Compiled kernel: when does the saturated PD law bring a state into the recovery box?"""
+"""Compiled kernel: the time at which the saturated PD law brings a state into the recovery box."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def _rates(x, y, vx, vy, law):  # type: ignore[no-untyped-def]
 
 @compiled(error_model="numpy")
 def arrivals(states: Floats, law: Floats, half: Floats, step: float, horizon: float, out: Floats) -> None:
-    """``out`` (N,): first time (s) at which a state (N, 4) is in the box, looked at every ``step``; inf if never.
+    """``out`` (N,): first time (s) at which a state (N, 4) is in the box, checked every ``step``; inf if never.
 
     ``law`` (12,): mean motion, position gains, speed gains, 1 for a disk and 0 for a box, limits by channel, centre of
     the box; ``half`` (4,) its half widths. Runge-Kutta of order 4.

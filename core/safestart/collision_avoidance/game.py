@@ -1,17 +1,16 @@
-"""The avoid game of paper 001: a chaser that keeps its distance, and one that wants to end it.
+"""The avoid game of paper 001: one satellite keeps its distance, the other tries to close it.
 
 Axes are the paper's: x tangential (along-track), y radial, z normal to the orbit, then their rates. Controllers and
-records are in LVLH; ``Game.to_lvlh`` and its kin are the only place where one becomes the other. Eqs. (4) and (5):
+records are in LVLH; only ``Game.to_lvlh`` and its relatives convert between the two. Eqs. (4) and (5):
 
     x'' = -2 w y' + u_x + d_x,   y'' = 2 w x' + 3 w^2 y + u_y + d_y,   z'' = -w^2 z + u_z + d_z.
 
 Player 1 chooses u and keeps |p| above the keep-out distance on [0, T]; Player 2 chooses d and wants it below once.
 The value of a start X is V(X, T) = sup over u, inf over d of the least |p| - d_FCC on the way: unsafe where V <= 0.
-The paper's eq. (12) has infimum and supremum the other way round, which is Player 1 seeking the collision.
+The paper's eq. (12) swaps infimum and supremum, which makes Player 1 seek the collision.
 
-Both players push the same channels, so that Player 1 can realise every sum in W = U - D (Pontryagin difference),
-and Player 2 can hold the sum to W: the game is the problem of one player with inputs in W. See
-docs/theory/collision-avoidance.md.
+Both players push the same channels, so Player 1 can realise every sum in W = U - D (Pontryagin difference), and Player
+2 can hold the sum to W: the game is the problem of one player with inputs in W. See docs/theory/collision-avoidance.md.
 """
 
 from __future__ import annotations
@@ -36,7 +35,7 @@ _AXES = {1: (2,), 2: (1, 0), 3: (1, 0, 2)}
 
 
 class Players(StrEnum):
-    """What the two want. ``PAPER`` is eq. (12) as printed, where Player 1 seeks the disk and Player 2 prevents it."""
+    """The players' aims. ``PAPER`` is eq. (12) as printed, where Player 1 seeks the disk and Player 2 prevents it."""
 
     AVOID = "avoid"
     PAPER = "paper"
@@ -46,7 +45,7 @@ class Players(StrEnum):
 class Game:
     """Mean motion w (rad/s), inputs of Player 1 and Player 2, keep-out distance (m).
 
-    The inputs' channels say which motion is meant: 2 the orbit plane, state (x, y, vx, vy); 3 space, state
+    The number of channels selects the motion: 2 the orbit plane, state (x, y, vx, vy); 3 space, state
     (x, y, z, vx, vy, vz); 1 the motion normal to the plane alone, state (z, vz). Raises ``InvalidInput``.
     """
 
@@ -72,7 +71,7 @@ class Game:
 
     @property
     def realisable(self) -> InputSet | None:
-        """Sums u + d that Player 1 can bring about against every d; None when the disturbance is stronger."""
+        """Sums u + d that Player 1 can realise against every d; None when the disturbance is stronger."""
         return left_over(self.control, self.disturbance)
 
     @property
@@ -82,7 +81,7 @@ class Game:
 
     @property
     def one_player(self) -> InputSet | None:
-        """The sums to which the game comes down exactly, None where the two bounds differ."""
+        """The sums to which the game reduces exactly; None if the two bounds differ."""
         return self.enforceable if self.realisable == self.enforceable else None
 
     @property
@@ -91,14 +90,14 @@ class Game:
         return _AXES[self.channels]
 
     def to_lvlh(self, states: Floats) -> Floats:
-        """States (..., 2 m) as LVLH has them, (..., 6): what the game does not know is 0."""
+        """States (..., 2 m) in LVLH, (..., 6); components outside the game are 0."""
         out = np.zeros((*states.shape[:-1], 6))
         out[..., self._rows] = states
         return out
 
     def from_lvlh(self, states: Floats) -> Floats:
-        """LVLH states (..., 6) as the game has them, (..., 2 m)."""
-        # In C order: the order of the numbers in memory must not reach the products made of them.
+        """LVLH states (..., 6) in the game's axes, (..., 2 m)."""
+        # In C order, so that the memory layout does not affect the rounding of products.
         return np.ascontiguousarray(states[..., self._rows])
 
     def thrust_to_lvlh(self, inputs: Floats) -> Floats:
@@ -124,7 +123,7 @@ class Game:
         return self._cut(transition_matrix(self.mean_motion, tau))
 
     def held_input(self, tau: float) -> Floats:
-        """What one unit of a constant input adds to the state after ``tau`` seconds, (2 m, m)."""
+        """Effect of one unit of a constant input on the state after ``tau`` seconds, (2 m, m)."""
         held: Floats = input_matrix(self.mean_motion, tau)[np.ix_(self._rows, self.axes)]
         return held
 
@@ -134,8 +133,8 @@ class Game:
         """The game for the level-set solver.
 
         ``fuel_price`` (m per m/s) makes Player 1 pay for the size of u (sum of the channels' for a box).
-        ``together`` puts the two into one input where that is the same Hamiltonian (same shape, no price): the solver
-        then dissipates by the difference of the bounds and not by their sum.
+        ``together`` merges the two into one input if the Hamiltonian stays the same (same shape, no price): the
+        solver's dissipation then depends on the difference of the bounds and not on their sum.
         """
         players = Players(players)
         own: Aim = "max" if players is Players.AVOID else "min"
@@ -155,8 +154,8 @@ class Game:
     def restricted(self, begin: int, end: int) -> Game:
         """The game of channels ``begin`` to ``end`` alone: of a game in space, (0, 2) the plane, (2, 3) normal to it.
 
-        Both are games of their own, since the two motions are decoupled. Player 1 is left the section of its set
-        and Player 2 the projection, which are the same for these shapes.
+        The two motions are decoupled, so each is a separate game. Player 1 keeps the section of its set and Player 2
+        the projection, which are equal for these shapes.
         """
         if self.channels != 3 or (begin, end) not in ((0, 2), (2, 3)):
             raise invalid("channels", "(0, 2) or (2, 3) of a game in space", (begin, end))

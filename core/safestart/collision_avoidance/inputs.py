@@ -1,4 +1,4 @@
-"""What one of the two players can make of the sum of both: differences and sums of their sets, by the radii."""
+"""Sums of both inputs that one player can enforce: differences and sums of their sets, by the radii."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ def meeting(part: Part, others: tuple[Part, ...]) -> list[Part]:
 def left_over(own: InputSet, other: InputSet) -> InputSet | None:
     """Sums that the owner can realise whatever the other does: W with W + (-other) inside ``own``; None if empty.
 
-    It is the Pontryagin difference where both have the same shape, or ``own`` is a box; inside it otherwise.
+    It is the Pontryagin difference if both have the same shape or ``own`` is a box; otherwise a subset of it.
     """
     bound = tuple(
         part.radius - math.hypot(*(met.radius for met in meeting(part, other.parts))) for part in own.parts
     )
-    # Equal players leave a single point; rounding must not make that empty.
+    # Equal players leave a single point, which rounding must not turn into an empty set.
     slack = 1e-12 * max(own.radius, other.radius)
     if min(bound) < -slack:
         return None
@@ -28,7 +28,7 @@ def left_over(own: InputSet, other: InputSet) -> InputSet | None:
 
 
 def held_down(own: InputSet, other: InputSet) -> InputSet:
-    """Sums that ``own`` is held to by an ``other`` that answers u with -k u, k the largest share by part."""
+    """Sums to which ``other`` can hold ``own`` by answering u with -k u, k the largest share by part."""
     shares = []
     for part in own.parts:
         share = 1.0

@@ -1,4 +1,4 @@
-"""A grid's value cut off at the certified bounds, and its own error counted against them."""
+"""Cut a grid's value off at the certified bounds, and measure its error against them."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from safestart.model.scenario import Floats
 from safestart.runtime.progress import Context
 
 BAND = 0.2
-"""Share of the keep-out distance: nearer than this to the boundary the lower bound is computed in full."""
+"""Share of the keep-out distance; closer to the boundary than this the lower bound is computed in full."""
 PROVED_M = 1e-6
 
 
 @dataclass(slots=True)
 class Check:
-    """Nodes by what is proved of them, and how many of those the grid alone, or after joining, calls otherwise.
+    """Numbers of proved nodes, and how many of them the grid alone, or after joining, judges differently.
 
     ``too_high_m`` and ``too_low_m`` are the largest distances of the grid's own values above the upper and below the
     lower bound, among nodes near the boundary (``BAND``) and those on its wrong side; ``read_high_m`` and
-    ``read_low_m`` the same of the joined values read at the middles of cells, where they are farthest from any node.
+    ``read_low_m`` are the same for the joined values at the middles of cells, farthest from any node.
     """
 
     nodes: int = 0
@@ -50,8 +50,8 @@ def join(
 ) -> tuple[Floats, Check]:
     """Compare ``values`` (kept, nodes...) at ``times`` to go with the bounds on every node, and cut them off there.
 
-    Returns the new values and the check. ``only_upper`` leaves values that are below V on purpose (a price of fuel)
-    uncut from below.
+    Returns the new values and the check. ``only_upper`` skips the lower cut, for values that are below V on purpose (a
+    price of fuel).
     """
     horizon, band = float(times[-1]), BAND * game.keep_out_m
     check, joined = Check(), np.array(values)
@@ -62,7 +62,7 @@ def join(
         states = np.stack(mesh, axis=-1)[0]
         above = upper(game, states, times)
         found = values[-1, row]
-        # Signs first, by constant inputs; the search only where they do not decide.
+        # First the signs, by constant inputs; the search only for undecided nodes.
         below = lower(game, states, horizon, goal_m=PROVED_M, effort=0)
         safe, unsafe = below > 0.0, above[-1] <= 0.0
         near = np.minimum(np.abs(found), np.abs(above[-1])) < band
@@ -78,7 +78,7 @@ def join(
             check.too_low_m = max(check.too_low_m, float((below - found)[looked].max()))
         new = np.minimum(values[:, row], above)
         if not only_upper:
-            # A longer horizon is worth no more: its lower bound holds for all shorter ones.
+            # A longer horizon never raises the value, so its lower bound holds for all shorter ones.
             new = np.maximum(new, below)
         joined[:, row] = new
         check.nodes += found.size
@@ -97,7 +97,7 @@ def reading_errors(
 ) -> tuple[float, float]:
     """How far ``values`` (nodes...) read at the middles of cells lie above the upper and below the lower bound (m).
 
-    Looked at are cells with a value near the boundary (``BAND``), or a sign that is refuted.
+    Checks cells with a value near the boundary (``BAND``) or a refuted sign.
     """
     middles = values
     for axis in range(lattice.ndim):

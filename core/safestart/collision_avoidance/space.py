@@ -1,8 +1,8 @@
 """The avoid game in space: the value of the plane's game and of the normal motion's, whichever is larger.
 
-The keep-out ball lies in the cylinder {|(x, y)| <= d, |z| <= d}, and motion normal to the plane is decoupled. To lose,
-Player 1 must be in the disk and in the slab at the same time; keeping out of either is enough:
-V >= max(V_plane, V_normal). Two small grids, of 4 and 2 axes, take the place of one of 6.
+The keep-out ball lies in the cylinder {|(x, y)| <= d, |z| <= d}, and motion normal to the plane is decoupled. Player 1
+loses only if it is in the disk and in the slab at the same time; keeping out of either is enough: V >= max(V_plane,
+V_normal). Two small grids, with 4 and 2 axes, replace one with 6.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class SpaceTube:
 
     @property
     def grid_error_m(self) -> float:
-        """Largest by which :meth:`value` may exceed the bound it stands for, as measured in both games."""
+        """Largest excess of :meth:`value` over the bound that it represents, as measured in both games."""
         return max(self.plane.grid_error_m, self.normal.grid_error_m)
 
     def covers(self, states: Floats) -> Bools:
@@ -51,7 +51,7 @@ class SpaceTube:
         )
 
     def gradient(self, states: Floats, time_to_go: float | None = None) -> Floats:
-        """Gradient (..., 6) of :meth:`value`: of the game that is the better way out there."""
+        """Gradient (..., 6) of :meth:`value`, that of the game with the larger value."""
         plane, normal = self._parts(states)
         across = self.plane.value(plane, time_to_go) < self.normal.value(normal, time_to_go)
         found = np.zeros(np.shape(states))
@@ -60,7 +60,7 @@ class SpaceTube:
         return found
 
     def answer(self, states: Floats, time_to_go: float | None = None) -> Floats:
-        """:class:`Answer` (...): the bounds of the game in space first; the value can only say SAFE, or nothing."""
+        """:class:`Answer` (...): first by the bounds of the game in space; the value can only add SAFE."""
         states = np.asarray(states, dtype=np.float64)
         time = self.horizon_s if time_to_go is None else time_to_go
         found = np.where(self.value(states, time) > self.grid_error_m, Answer.SAFE, Answer.UNDECIDED)

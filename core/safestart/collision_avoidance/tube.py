@@ -1,4 +1,4 @@
-"""The avoid game's value on a grid at several times to go, joined with the certified bounds, and read at any state."""
+"""The avoid game's value on a grid at several times to go, joined with the certified bounds, readable at any state."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from safestart.runtime.progress import Context
 
 
 class Answer(IntEnum):
-    """What is known of a state: proved, called by the grid beyond its measured error, or undecided."""
+    """The answer for a state: proved, judged by the grid beyond its measured error, or undecided."""
 
     PROVED_UNSAFE = -2
     UNSAFE = -1
@@ -35,8 +35,8 @@ class Tube:
     """Values (m) on ``lattice`` at ``times`` to go (s, ascending from 0): ``raw`` the grid's own, ``values`` joined.
 
     {V <= 0} is unsafe. Arrays are (kept, nodes...), states (..., 2 m) in the game's order. ``check`` counts the grid's
-    errors (None if it was not compared). ``failure`` is empty unless the computation cannot be trusted; all values are
-    then -inf, so that nothing is called safe.
+    errors (None without a comparison). If the computation cannot be trusted, ``failure`` gives the reason and all
+    values are -inf, so that nothing counts as safe.
     """
 
     game: Game
@@ -61,7 +61,7 @@ class Tube:
     def grid_error_m(self) -> float:
         """Largest distance of :meth:`value` from the certified bounds near the boundary or across it, at the horizon.
 
-        Measured at the middles of all cells (on the nodes it is zero). Infinite where nothing was compared.
+        Measured at the middles of all cells (on the nodes it is zero). Infinite without a comparison.
         """
         return math.inf if self.check is None else max(self.check.read_high_m, self.check.read_low_m)
 
@@ -83,10 +83,10 @@ class Tube:
         return self.read(states, time_to_go)[1]
 
     def answer(self, states: Floats, time_to_go: float | None = None) -> Floats:
-        """:class:`Answer` (...) of states (..., 2 m): the bounds at the very state first, then the grid.
+        """:class:`Answer` (...) of states (..., 2 m): first by the bounds at the state itself, then by the grid.
 
-        Where neither bound decides, the value must exceed the grid's measured error to be believed. Of the
-        paper's variant nothing is proved.
+        If neither bound decides, the value must exceed the grid's measured error to count. The paper's variant has no
+        proofs.
         """
         states = np.asarray(states, dtype=np.float64)
         time = self.horizon_s if time_to_go is None else time_to_go
@@ -101,7 +101,7 @@ class Tube:
         return np.asarray(found, dtype=np.int8)
 
     def slice(self, velocity: tuple[float, ...]) -> tuple[list[Floats], Floats]:
-        """Position axes and joined values over them at one velocity (m/s), at the horizon: for pictures."""
+        """Position axes and joined values over them at one velocity (m/s), at the horizon, for pictures."""
         m = self.game.channels
         if len(velocity) != m:
             raise invalid("velocity", f"{m} components", velocity)
@@ -128,10 +128,10 @@ class Tube:
 def solve_tube(
     game: Game, horizon_s: float, settings: TubeSettings | None = None, context: Context | None = None
 ) -> Tube:
-    """Solve the game back from the horizon, piece by piece, and join what was found with the certified bounds.
+    """Solve the game back from the horizon, piece by piece, and join the values with the certified bounds.
 
-    With a price of fuel the value is sup over u, inf over d of the least l - price * (fuel until then), which is no
-    more than V. Raises ``InvalidInput`` for bad input and ``Cancelled`` when dismissed.
+    With a price of fuel the value is sup over u, inf over d of the least l - price * (fuel until then), which is at
+    most V. Raises ``InvalidInput`` for bad input and ``Cancelled`` when dismissed.
     """
     settings, context = settings or TubeSettings(), context or Context()
     horizon = number("horizon_s", horizon_s, 0.0, MAX_HORIZON_S, open_low=True)
@@ -151,7 +151,8 @@ def solve_tube(
             motion,
             raw[k - 1],
             float(times[k] - times[k - 1]),
-            # With a price, stopping is free and waiting is not: the least over stopping times is a cap, not min(0, H).
+            # With a price, stopping is free and waiting is not, so the least over stopping times is a cap, not min(0,
+            # H).
             kind=Kind.FIXED if settings.fuel_price > 0.0 else Kind.TUBE,
             cap=target if settings.fuel_price > 0.0 else None,
             options=options,

@@ -1,4 +1,4 @@
-"""How an avoid tube is computed, and on which box of states."""
+"""Settings of an avoid tube, and its box of states."""
 
 from __future__ import annotations
 
@@ -62,11 +62,11 @@ class TubeSettings:
 
 
 def make_lattice(game: Game, horizon: float, settings: TubeSettings) -> tuple[Lattice, list[str]]:
-    """The lattice, axes as in the game's state, and warnings where it is too small or too coarse to mean much.
+    """The lattice, axes as in the game's state, and warnings if it is too small or too coarse to be meaningful.
 
-    Sized from the problem it holds, per axis, every position from which the disk is reached within the horizon at
-    the largest speed under both players' thrust. That speed is, if not given, one that crosses the keep-out distance
-    in the horizon, plus what both thrusts add to it.
+    Without explicit half widths it holds, per axis, every position from which the disk is reached within the horizon at
+    the largest speed under both players' thrust. The default speed crosses the keep-out distance in the horizon, plus
+    the effect of both thrusts.
     """
     m = game.channels
     thrust = game.control.radius + game.disturbance.radius

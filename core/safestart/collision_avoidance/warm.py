@@ -12,7 +12,7 @@ from safestart.constraints.thrust import InputSet
 
 
 def warm() -> None:
-    """Ask each kernel once."""
+    """Call each kernel once."""
     game = Game(0.0011, InputSet("box", (0.1, 0.1)), InputSet("box", (0.05, 0.05)), 100.0)
     start = np.array([[200.0, 0.0, -4.0, 0.0]])
     upper(game, start, 10.0)

@@ -1,1 +1,1 @@
-"""What must hold at every time of a flight: ``constraint`` is the interface; polyhedra, and sets of accelerations."""
+"""Constraints on a flight at all times: ``constraint`` is the interface; polyhedra, and sets of accelerations."""

@@ -1,4 +1,4 @@
-"""What must hold at every time of a flight: the interface that every constraint offers."""
+"""The interface of every constraint on a flight, which must hold at all times."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from safestart.model.scenario import Floats
 
 
 class Constraint(Protocol):
-    """Some distances that must not be negative."""
+    """A set of distances that must not be negative."""
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -41,13 +41,13 @@ class Corridor:
     def room(self, times: Floats, states: Floats, attitude: Attitude) -> tuple[Floats, Floats]:
         """Distances to the faces (T, F), m, and their rates, m/s; see :class:`safestart.constraints.constraint`.
 
-        Raises ``InvalidInput`` where a planar corridor (d = 2) would be turned out of its plane.
+        Raises ``InvalidInput`` if a planar corridor (d = 2) would turn out of its plane.
         """
         d = self.normals.shape[1]
         turn, omega = attitude.rotation(times), attitude.angular_velocity(times)
         if d == 2 and (turn[:, 2, :2].any() or omega[:, :2].any()):
             raise invalid("corridor", "all five faces where the target does not turn about z", "a planar one")
-        # Unit normals in LVLH axes, (T, d, F), and how the turn moves them.
+        # Unit normals in LVLH axes, (T, d, F), and their rates from the turn.
         normals = np.ascontiguousarray(faces_at(self.normals / self.lengths[:, None], turn).swapaxes(1, 2))
         spin = np.einsum("tji,tj->ti", turn, omega)
         if d == 2:
@@ -71,7 +71,7 @@ def faces_at(normals: Floats, rotation: Floats) -> Floats:
 
 
 def faces_about_z(normals: Floats, angles: Floats) -> Floats:
-    """The same after a turn by ``angles`` (...), rad, about z alone: quicker, and equal in every bit."""
+    """The same after a turn by ``angles`` (...), rad, about z: faster, with the same bits."""
     out = np.empty((*angles.shape, *normals.shape))
     out[...] = normals
     cos, sin = np.cos(angles)[..., None], np.sin(angles)[..., None]

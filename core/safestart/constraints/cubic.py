@@ -1,4 +1,4 @@
-"""Distances between two samples: the cubic through value and slope at both, and where it is lowest."""
+"""Distances between two samples: the cubic through value and slope at both, and its minimum."""
 
 from __future__ import annotations
 

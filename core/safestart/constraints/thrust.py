@@ -28,7 +28,7 @@ class Part(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class InputSet:
-    """Accelerations that may be used, centred at zero; the user says which axis each channel is.
+    """Admissible accelerations, centred at zero; the caller assigns axes to the channels.
 
     ``shape`` and ``bound`` (m/s^2): "box" with one half width per channel (1 to 3), "disk" (radius,) for two
     channels, "ball" (radius,) for three, "cylinder" (radius in the plane, half width normal to it). Raises
@@ -71,7 +71,7 @@ class InputSet:
         return InputSet(self.shape, bound)
 
     def restricted(self, begin: int, end: int) -> InputSet:
-        """Set of the inputs' channels ``begin`` to ``end``: section at zero, and projection, of this one."""
+        """The set of channels ``begin`` to ``end``: both the section at zero and the projection of this set."""
         kept = [part for part in self.parts if part.begin < end and part.end > begin]
         radii = tuple(part.radius for part in kept)
         round_ = len(kept) == 1 and end - begin > 1
@@ -86,14 +86,14 @@ class InputSet:
         return np.asarray(np.sum(sizes, axis=0))
 
     def extreme(self, directions: Floats) -> Floats:
-        """Input (..., m) with the largest s . w for directions s (..., m); zero where s has no part in it."""
+        """Input (..., m) with the largest s . w for directions s (..., m); zero in parts where s is zero."""
         found = np.zeros_like(directions)
         for part in self.parts:
             found[..., part.begin : part.end] = part.radius * unit(directions[..., part.begin : part.end])
         return found
 
     def cut(self, demand: Floats) -> Floats:
-        """``demand`` (..., m) cut off at the limits: every channel of a box by itself, a disk or ball by its size."""
+        """``demand`` (..., m) cut off at the limits: per channel for a box, by its length for a disk or ball."""
         found = np.array(demand)
         for part in self.parts:
             size = np.linalg.norm(found[..., part.begin : part.end], axis=-1, keepdims=True)

@@ -10,11 +10,11 @@ from safestart.model.scenario import Floats
 
 @dataclass(frozen=True, slots=True)
 class Command:
-    """What a controller asks for in one interval, in LVLH axes.
+    """A controller's command for one interval, in LVLH axes.
 
     ``thrust`` (3,), m/s^2, is held over the interval; ``impulse`` (3,), m/s, changes the velocity at its start.
-    ``feasible``: False where the controller found no admissible command and this is its best. ``label`` says what it
-    was doing (a regime, a mode). A controller with more to tell derives its own command.
+    ``feasible``: False when the controller found no admissible command and this is its best. ``label`` names its regime
+    or mode. A controller with more to report derives its own command class.
     """
 
     thrust: Floats
@@ -24,12 +24,12 @@ class Command:
 
 
 class Controller(Protocol):
-    """State in, command out. A controller keeps what it needs of the past and changes nothing else."""
+    """State in, command out. A controller may remember the past, and changes nothing else."""
 
     def begin(self, state: Floats) -> None:
-        """A new flight starts at the LVLH state (6,): what was kept of the last one is forgotten."""
+        """A new flight starts at the LVLH state (6,): forget the last flight."""
         ...
 
     def command(self, k: int, state: Floats) -> Command:
-        """The command for interval ``k`` from the LVLH state (6,), m and m/s, as navigation has it."""
+        """The command for interval ``k`` from navigation's LVLH state (6,), m and m/s."""
         ...

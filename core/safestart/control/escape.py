@@ -17,7 +17,7 @@ class Burn:
         self._thrust, self._burn, self._dt = thrust, burn_s, dt
 
     def begin(self, state: Floats) -> None:
-        """It remembers nothing."""
+        """Nothing to forget."""
 
     def command(self, k: int, state: Floats) -> Command:
         """See :class:`safestart.control.controller.Controller`."""

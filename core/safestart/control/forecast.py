@@ -1,4 +1,4 @@
-"""What a flight needs that no start changes: forecast rows, face normals and transition matrices, tabulated once."""
+"""Tables that do not depend on the start: forecast rows, face normals and transition matrices, computed once."""
 
 from __future__ import annotations
 

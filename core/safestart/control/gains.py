@@ -10,7 +10,7 @@ from safestart.model.scenario import number
 
 @dataclass(frozen=True, slots=True)
 class Gains:
-    """Gains, weights and bands; every default is the tuned preset's, its reason beside it.
+    """Gains, weights and bands; every default is the tuned preset's, with its reason in a comment.
 
     Raises ``InvalidInput`` for a value that is negative, not finite, or zero where a division needs it.
     """
@@ -34,15 +34,15 @@ class Gains:
     kd_hold: float = 0.5
     """Velocity gain of the hold, 1/s."""
 
-    # Braking from v needs v^2 / (2 a_max): at c = 0.6 that is 0.18 r0, so most of the thrust stays free for building
-    # up the co-rotation. At c = 1 it is r0 / 2, paid by the same disk that must turn: the paper's false positives.
+    # Braking from v needs v^2 / (2 a_max): at c = 0.6 that is 0.18 r0, so most of the thrust stays free to build up the
+    # co-rotation. At c = 1 it is r0 / 2, taken from the thrust disk that must also turn: the paper's false positives.
     # Without the second cap below, c = 0.5, 0.6, 0.7, 1 fly certified starts (2944 of 10 800 drawn, 60 s) with
     # precision 0.998, 0.994, 0.968, 0.776.
     closing_factor: float = 0.6
     """c of the speed cap v_max = c sqrt(a_max r0)."""
-    # The PD alone demands a deceleration of v kp / kd, more than a_max when fast; the flight then overshoots into the
-    # corridor's tip. At c = 0.6 the cap lifts the precision over 60 s from 0.994 to 0.997, and the share of certified
-    # starts still flying after 400 s from 0.60 to 0.83.
+    # The PD alone demands a deceleration of v kp / kd, more than a_max at high speed; the flight then overshoots into
+    # the corridor's tip. At c = 0.6 the cap lifts the precision over 60 s from 0.994 to 0.997, and the share of
+    # certified starts still flying after 400 s from 0.60 to 0.83.
     braking_share: float = 0.25
     """Share of a_max that the close approach plans to brake with near the hold point; 0 switches this cap off."""
 
@@ -53,7 +53,7 @@ class Gains:
     move_weight: float = 0.2
     """w_du of eq. (7)."""
 
-    # Of the order of what a face sweeps past the chaser between two checked instants near the hold point.
+    # About the distance that a face sweeps past the chaser between two checked instants near the hold point.
     corridor_margin: float = 0.05
     """epsilon_m of eq. (7), in the scaling of eq. (4) (metres on the hold plane)."""
 
@@ -73,7 +73,7 @@ class Gains:
     """Limit on each LVLH velocity component one step ahead, m/s; 0 switches the rows off."""
 
     disk_limit: float = 1.0
-    """Length, in a_max, that the projection after the solve cuts the command to; from sqrt(3) on it cuts nothing."""
+    """Length, in a_max, to which the projection after the solve cuts the command; from sqrt(3) on it cuts nothing."""
 
     def __post_init__(self) -> None:
         for item in fields(self):
@@ -84,8 +84,8 @@ class Gains:
 TUNED = Gains()
 
 # A documented guess. The paper gives w_u = 0.1 and w_du = 2.0, states both optional row families, and describes no cap
-# tied to the braking distance (c = 1). PD gains, bands and limits are ours: the tuned ones, so that the difference
-# between the presets is the paper's own choices.
+# tied to the braking distance (c = 1). PD gains, bands and limits are our tuned ones, so that the presets differ only
+# in the paper's own choices.
 PAPER = Gains(closing_factor=1.0, braking_share=0.0, move_weight=2.0, keep_out_radius=0.5, speed_limit=5.0)
 
 PRESETS = {"tuned": TUNED, "paper": PAPER}

@@ -10,7 +10,7 @@ from safestart.optim.cone_program import ConeProgram, Each
 from safestart.optim.thrust_ball import into_balls, keep_in_balls
 
 ROUNDS = 8
-# Rows near a local minimum below this share of the wanted margin are added; a plan that keeps it is taken.
+# Rows are added near local minima below this share of the wanted margin; a plan that keeps this share is accepted.
 ENOUGH = 0.8
 
 
@@ -19,8 +19,8 @@ def least_fuel(
 ) -> tuple[Floats, float] | None:
     """Thrusts (N, d) in m/s^2 of least total impulse and the margin (m) they keep at all times, about ``margin``.
 
-    ``times`` (J,) and ``faces`` (J,) are the rows to start with. None when the solver failed or the rounds ran out:
-    the caller then keeps the plan it has.
+    ``times`` (J,) and ``faces`` (J,) are the rows to start with. None when the solver failed or the rounds ran out; the
+    caller then keeps its plan.
     """
     a_max = watch.question.scenario.chaser.max_acceleration
     for _ in range(ROUNDS):

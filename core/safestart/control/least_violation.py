@@ -1,4 +1,4 @@
-"""The command that violates the position rows least, thrust box kept: a Chebyshev problem by the dual simplex."""
+"""The command in the thrust box that violates the position rows least: a Chebyshev problem by the dual simplex."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ class PdGains:
 def pd_thrust(states: Floats, centre: Floats, gains: PdGains, limits: InputSet) -> Floats:
     """u (..., m) in m/s^2 at states (..., 2 m) towards ``centre`` (2 m,), cut off at the limits.
 
-    Positions and then speeds, in the order of the channels, whatever axes these are.
+    States hold positions, then speeds, in the order of the channels, for any axes.
     """
     off = states - centre
     m = limits.channels
@@ -48,7 +48,7 @@ class Pd:
         self._gains, self._limits = gains, limits
 
     def begin(self, state: Floats) -> None:
-        """It remembers nothing."""
+        """Nothing to forget."""
 
     def command(self, k: int, state: Floats) -> Command:  # noqa: ARG002
         """See :class:`safestart.control.controller.Controller`."""

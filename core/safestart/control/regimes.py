@@ -34,7 +34,7 @@ class Law(NamedTuple):
 
 
 def control_law(scenario: Scenario, gains: Gains, dt: float) -> Law:
-    """Law of a scenario with the gains softened where the control interval ``dt`` (s) is too long for them.
+    """Law of a scenario, with softer gains when the control interval ``dt`` (s) is too long for them.
 
     A command held for dt destabilises a PD loop unless kd dt + kp dt^2 / 2 < 2; the gains are scaled in time,
     kd to at most 1 / dt and kp with its square, which keeps the damping ratio.

@@ -8,8 +8,8 @@ contradict each other:
 2. t* is the least possible value, over the thrust box, of the largest violation of the remaining corridor and keep-out
    rows, in metres of distance from the tightened face (0 when they can all be met);
 3. the command is the one nearest to c among those in the box whose largest violation is t*. Without this last part the
-   minimiser is often not unique (one face binds, the other axes are free) and a corner of the box would waste
-   thrust that the disk then takes from the axis that matters.
+   minimiser is often not unique (one face binds, the other axes are free), and a corner of the box would waste thrust
+   that the disk then takes from the decisive axis.
 
 The case is reported. Last comes the projection onto the thrust disk (ball in 3-D).
 """
@@ -74,13 +74,13 @@ def filter_step(plan, k, x, nominal, previous, command, bounds, work, index):  #
         centre = work[9]
         centre[:d] = command[:d]
         least = _least(normals, bounds, weights, command, work, index)
-        # Rows of the fallback, let out by the least violation; the rest of the box stays as it is.
+        # Rows of the fallback, relaxed by the least violation; the rest of the box stays unchanged.
         for r in range(m - 2 * d):
             if weights[r] > 0.0:
                 bounds[r] += max(0.0, least) / weights[r] + TIE
             else:
                 bounds[r] = math.inf
-        # Where rounding makes the shrunken set empty, the minimax solver's own vertex stays.
+        # If rounding makes the shrunken set empty, keep the minimax solver's own vertex.
         if _project(normals, bounds, centre, work, index) == FEASIBLE:
             command[:d] = centre[:d]
     length = 0.0
@@ -105,7 +105,7 @@ def _keep_out(plan, x, normals, bounds, weights):  # type: ignore[no-untyped-def
         square += drift[i] * drift[i]
     radius = math.sqrt(square)
     if radius == 0.0:
-        # At the target's centre no direction is outward: the row says nothing.
+        # At the target's centre no direction is outward, so the row is empty.
         bounds[row] = math.inf
         return
     length = 0.0

@@ -4,10 +4,10 @@ A plan is a thrust sequence for the rest of the flight together with the margin 
 by the cubic enclosure of :mod:`safestart.exact.watch`. The horizon shrinks with the flight, so the tail of an
 admissible plan is admissible: recursively feasible by construction. The cost is total impulse, which adds up over the
 steps; without disturbance the tail of an optimal plan is therefore optimal (Bellman) and solving again would return
-it. So the plan is looked at in every step, and solved again when the state has left it by more than its margin covers.
+it. So each step checks the plan, and solves again only when the state has left the plan by more than its margin covers.
 
-Where no plan keeps the corridor, the one with the least violation is flown, the case is counted, and every step tries
-again.
+If no plan keeps the corridor, the controller flies the plan with the least violation, counts the case, and tries again
+in every step.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ TOLERANCE = 0.01
 """Bracket (m) to which the largest margin is found before impulse is saved."""
 
 CLEARANCE, SHARE = 0.25, 0.5
-"""Margin (m) that a plan keeps when it can; where the largest is smaller, this share of it."""
+"""Margin (m) that a plan keeps if possible; if the largest margin is smaller, this share of it."""
 
 KEPT = 0.5
-"""A plan is kept while its tail, from where the chaser really is, keeps this share of its margin."""
+"""A plan stays while its tail, from the chaser's true state, keeps this share of its margin."""
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """Thrusts (m, 2) in m/s^2, the node states (m + 1, 4) they lead through, and the margin (m) they keep.
+    """Thrusts (m, 2) in m/s^2, the node states (m + 1, 4) on the way, and the kept margin (m).
 
     ``verdict`` is the exact answer for the state the plan begins at; NO_GO and UNDECIDED plans violate least.
     """
@@ -66,7 +66,7 @@ class SequencePlanner:
         elif search.upper < -GUARD or search.distance_now < -GUARD:
             verdict = Verdict.NO_GO
         thrust, margin = search.thrust, search.lower
-        if thrust is None:  # the solver gave nothing usable: coast, which is what the report then says
+        if thrust is None:  # the solver gave nothing usable: coast and report it
             thrust = np.zeros((watch.question.steps, 2))
             margin = watch.minima(state, thrust).lowest
         if verdict is Verdict.GO:
@@ -110,7 +110,7 @@ class PlannedCommand(Command):
 
 
 class SequenceMpc:
-    """The planner as a controller: the plan's thrust, from a new plan where the old one no longer holds."""
+    """The planner as a controller: the plan's thrust, from a new plan when the old one no longer holds."""
 
     def __init__(self, question: Question) -> None:
         self._planner = SequencePlanner(question)
@@ -122,7 +122,7 @@ class SequenceMpc:
         self._plan = None
 
     def command(self, k: int, state: Floats) -> PlannedCommand:
-        """See :class:`safestart.control.controller.Controller`; feasible where the plan keeps the corridor."""
+        """See :class:`safestart.control.controller.Controller`; feasible when the plan keeps the corridor."""
         planar = state[[0, 1, 3, 4]]
         plan = self._plan and self._planner.kept(self._plan, self._first, k, planar)
         label = "kept" if plan else "planned"
@@ -134,6 +134,6 @@ class SequenceMpc:
 
 
 def start_verdict(commands: Sequence[Command]) -> Verdict | None:
-    """The exact answer for the first state that a flight's commands were made from; None of another controller."""
+    """The exact answer for the first state of a flight's commands; None for another controller."""
     first = commands[0] if commands else None
     return first.verdict if isinstance(first, PlannedCommand) else None

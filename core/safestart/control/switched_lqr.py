@@ -1,7 +1,7 @@
 """Switched state feedback (paper 003): one gain far from the target, another within a guard, none once engines fail.
 
-The reach tubes and flights of :mod:`safestart.passive_safety` are about the same law in continuous time, in the paper's
-metres and minutes; here it is a controller in SI that can be flown in any plant.
+:mod:`safestart.passive_safety` computes reach tubes and flights of the same law in continuous time, in the paper's
+metres and minutes; this is a controller in SI for any plant.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from safestart.model.scenario import Floats
 class SwitchedLqr:
     """u = -K x in the orbit plane, x = (x, y, vx, vy) in LVLH, the gains (2, 4) in 1/s^2 and 1/s.
 
-    ``inside`` says of a position (2,), m, whether it is within the guard; once it was, the ``near`` gain stays. From
+    ``inside`` tells whether a position (2,), m, is within the guard; after that the ``near`` gain stays. From
     ``abort_s`` on, counted in intervals of ``dt`` seconds, nothing is commanded. Raises ``InvalidInput`` for gains of
     another shape.
     """
@@ -40,7 +40,7 @@ class SwitchedLqr:
         self._mode = "far"
 
     def begin(self, state: Floats) -> None:  # noqa: ARG002
-        """Far away, whatever the last flight did."""
+        """Begin with the far gain."""
         self._mode = "far"
 
     def command(self, k: int, state: Floats) -> Command:

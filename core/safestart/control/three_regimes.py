@@ -1,6 +1,6 @@
 """The controller of paper 000: the nominal command of three regimes, then the single-input safety filter.
 
-Flown by the thousand it is :mod:`safestart.simulation.compiled_loop`, which gives the same commands.
+For thousands of flights :mod:`safestart.simulation.compiled_loop` gives the same commands.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from safestart.model.scenario import Floats
 class ThreeRegimes:
     """One flight after another with the tables of ``plan``; commands are labelled with their regime.
 
-    A command is not feasible where (7) was not; it is then the fallback's. In a planar plan the thrust has no z part.
+    A command is feasible if (7) was; otherwise it is the fallback's. In a planar plan the thrust has no z part.
     """
 
     def __init__(self, plan: Plan) -> None:
@@ -28,7 +28,7 @@ class ThreeRegimes:
         self._previous, self._range, self._fastest = np.zeros(self._dimensions), 0.0, 0.0
 
     def begin(self, state: Floats) -> None:
-        """Nothing was commanded before; the speed cap follows from the range."""
+        """Reset the previous command; set the speed cap from the range."""
         plan = self._plan
         self._previous = np.zeros(self._dimensions)
         self._range = math.sqrt(float(state[:3] @ state[:3]))

@@ -1,7 +1,7 @@
 """The ancillary feedback of the tube: how far a unit disturbance drives the chaser off its plan, at all times.
 
 CWH splits into the orbit plane and the cross-track axis. In each, u = v + K e with e = x - z, K the discrete LQR of
-the held input; e+ = (A + B K) e + w_d, and between the nodes e(s) = (Phi(s) + B(s) K) e_k + what w has done since.
+the held input; e+ = (A + B K) e + w_d, and between the nodes e(s) = (Phi(s) + B(s) K) e_k + the effect of w since t_k.
 All bounds are linear in the disturbance and hold in every direction of the plane, however the corridor turns.
 """
 
@@ -18,7 +18,7 @@ from safestart.model.scenario import Floats
 from safestart.sets.invariant import Invariant, Push
 
 LONGEST_INTERVAL = 60.0
-"""Seconds over which thrust may be held: the bounds below want n dt well under 1."""
+"""Longest hold of thrust (s): the bounds below need n dt well under 1."""
 _DIRECTIONS = 96
 _PANELS = 8
 _LONGEST_SAMPLE, _FEWEST_SAMPLES, _MOST_SAMPLES = 0.25, 4, 64
@@ -95,7 +95,7 @@ def _regulator(phi: Floats, held: Floats, settle: float) -> Floats | None:
 
 
 def _between(n: float, dt: float, h: float, position: Floats, speed: Floats, thrust: Floats) -> Floats:
-    """What the distance may gain between samples h apart: h^2 / 8 times the largest acceleration of the error.
+    """Largest growth of the distance between samples h apart: h^2 / 8 times the error's largest acceleration.
 
     |r''| <= 3 n^2 |r| + 2 n |v| + |K e| + |w|; the Coriolis term does no work, so |v| grows by the rest times dt.
     """
@@ -127,7 +127,7 @@ def _motion(mean_motion: float, tau: float, part: str) -> tuple[Floats, Floats]:
 
 
 def _push(n: float, h: float, part: str) -> Push:
-    """What a disturbance |w(s)| <= 1 m/s^2, any measurable history of h seconds, does to the state."""
+    """Effect on the state of a disturbance |w(s)| <= 1 m/s^2, any measurable history of h seconds."""
     d = len(_AXES[part])
     columns = np.array([_motion(n, h * k / _PANELS, part)[0][:, d:] for k in range(_PANELS + 1)])
     # After a unit kick |v| <= V and |r| <= h V: the Coriolis term does no work, the gravity gradient is 3 n^2 |r|.

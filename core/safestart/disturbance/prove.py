@@ -21,8 +21,8 @@ def proof_against(
 ) -> dict[str, Any]:
     """JSON-able proof of a GO that withstands ``disturbance``: bounds, feedback, tube and plan.
 
-    ``question`` is the real one, ``tube`` what :func:`~safestart.disturbance.tube.tube_of` made of it, ``answer`` that
-    of the tightened question for the start ``state`` (2 d,). A NO_GO needs no disturbance: its proof is the plain one.
+    ``question`` is the real one, ``tube`` the result of :func:`~safestart.disturbance.tube.tube_of` for it, ``answer``
+    that of the tightened question for the start ``state`` (2 d,). A NO_GO needs no disturbance; it has a plain proof.
     Raises ``InvalidInput`` for an UNDECIDED answer.
     """
     if answer.verdict is not Verdict.GO:

@@ -1,10 +1,10 @@
 """The tube: staying in the corridor against any bounded acceleration disturbance.
 
 Truth: CWH with thrust u and a disturbance w(t), |w(t)| <= w_max, any measurable history (a disk in the plane, a ball
-in space); the start is known to within balls of position and velocity. Plan: z without disturbance from the start as
-known. Flown is u_k = v_k + K (x_k - z_k), held over the interval. The error x - z stays in a set that does not depend
-on the plan, so a plan that stays in a corridor tightened by that set, with thrust less what K may ask for, holds for
-every disturbance (Mayne, Seron and Rakovic 2005).
+in space); the start is known to within balls of position and velocity. Plan: z without disturbance from the known
+start. The flown thrust is u_k = v_k + K (x_k - z_k), held over the interval. The error x - z stays in a set that does
+not depend on the plan. So a plan that stays in the corridor tightened by that set, with thrust reduced by the most that
+K can demand, holds for every disturbance (Mayne, Seron and Rakovic 2005).
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ SETTLE_INTERVALS = (2.5, 5.0, 10.0, 20.0)
 """Time constants of the feedback in intervals. Of 2 s, a disturbance of 1 m/s^2 takes 36.2 m and 1.58 m/s^2 at the
 first, 126 m and 1.50 at the second; a start error of 1 m takes 0.030 and 0.0087 m/s^2."""
 _WORTH_M = 25.0
-"""Radius that counts as much as all the thrust when one of them is chosen."""
+"""Radius that counts as much as the whole thrust in the choice of a time constant."""
 
 
 @dataclass(frozen=True, slots=True)
 class Disturbance:
-    """Bounds: ``acceleration`` (m/s^2) at all times, and how far the start may be from where it is believed to be.
+    """Bounds: ``acceleration`` (m/s^2) at all times, and the error of the known start.
 
     ``position`` (m) and ``velocity`` (m/s) are Euclidean; of both the plan knows only the centre.
     """
@@ -52,11 +52,11 @@ class Disturbance:
 
 @dataclass(frozen=True, slots=True)
 class Tube:
-    """What the error takes from the scenario, and what is left of it.
+    """The error's bounds, and the scenario that they leave.
 
     ``radius`` (m) bounds the position error in the plane, ``height`` (m) across it (0 for planar questions), both at
-    all times; ``thrust`` (m/s^2) bounds |K e|. ``gain`` (d, 2 d) is K. ``question`` has the tightened scenario, None
-    when nothing is left of it: ``reason`` says why. ``epsilon`` bounds by what the set exceeds the minimal one.
+    all times; ``thrust`` (m/s^2) bounds |K e|. ``gain`` (d, 2 d) is K. ``question`` has the tightened scenario; None
+    when nothing is left, and ``reason`` says why. ``epsilon`` bounds how far the set exceeds the minimal one.
     """
 
     radius: float
@@ -117,7 +117,7 @@ def _tighten(scenario: Scenario, radius: float, height: float, thrust: float) ->
     hold = shape.hold_radius + radius
     # |A| delta off the offset x0 - c r_h of a side, while r_h itself has grown by the radius.
     x0 = shape.x0 - math.hypot(1.0, shape.c_x) * radius + shape.c_x * radius
-    # A z face has the normal (0, -c_z, +-1): what the radius takes, the hold plane has given.
+    # A z face has the normal (0, -c_z, +-1): the moved hold plane already covers the radius.
     z0 = shape.z0 - height
     # Sides that meet above the hold plane: the plane moves up to where they meet, and the set is the same.
     rise = max(0.0, -x0 / shape.c_x, -z0 / shape.c_z)
@@ -137,18 +137,18 @@ def decide_disturbed(
     verdict_only: bool = False,
     settle: float | None = None,
 ) -> Answer:
-    """May this start stay whatever the disturbance does? ``state`` (2 d,) as for :func:`~.exact.decide`.
+    """Can this start stay whatever the disturbance does? ``state`` (2 d,) as for :func:`~.exact.decide`.
 
     GO: the tightened question is GO; ``thrust`` is the plan v, ``lower`` the distance that the disturbed flight keeps
     to every face of the real corridor. NO_GO: even without disturbance no thrust history stays (a disturbance may be
-    0, so this holds for every feedback). Between the two UNDECIDED: another feedback than this one might do.
+    0, so this holds for every feedback). Otherwise UNDECIDED: another feedback might succeed.
     """
     tube = tube_of(question, disturbance, settle)
     lower, reason = -math.inf, tube.reason
     if tube.question is not None:
         planned = decide(tube.question, state, tolerance=tolerance, verdict_only=verdict_only)
         if planned.verdict is Verdict.GO:
-            # The disturbed best is at most the undisturbed one, which the tightened program does not bound.
+            # The undisturbed best margin bounds the disturbed one; the tightened program does not bound it.
             return replace(planned, upper=math.inf)
         lower, reason = (
             planned.lower,

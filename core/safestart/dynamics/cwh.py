@@ -160,7 +160,7 @@ _QUOTIENTS = np.array([[[(2.0 * k + j) * (2.0 * k + j + 1.0)] for j in (2, 3, 4)
 def _phases(phase: Floats) -> tuple[Floats, Floats, Floats]:
     """sin(p)/p, (1 - cos p)/p^2 and (p - sin p)/p^3, by series: exact at 0, to 1e-16 for |p| <= 0.5."""
     square = phase * phase
-    # The first term left out is below p^8 / 9! < 3e-18 for p^2 < 1e-3, below p^14 / 15! < 5e-17 for |p| <= 0.5.
+    # The first omitted term is below p^8 / 9! < 3e-18 for p^2 < 1e-3, below p^14 / 15! < 5e-17 for |p| <= 0.5.
     terms = 3 if not len(phase) or float(square.max()) < 1e-3 else 6
     series = np.ones((3, len(phase)))
     for quotients in _QUOTIENTS[terms - 1 :: -1]:

@@ -1,8 +1,8 @@
 """Taylor series in time of the relative motion on an elliptic orbit, for intervals in which LVLH turns little.
 
-With c = cos nu, s = sin nu and rho = 1 + e c: c' = -w s, s' = w c, w = k^2 rho^2, g = mu / r^3 = k^4 rho^3. Everything
-is a polynomial of what came before, so the coefficients follow one by one, and those of the states from the equations
-in :mod:`safestart.dynamics.yamanaka_ankersen`.
+With c = cos nu, s = sin nu and rho = 1 + e c: c' = -w s, s' = w c, w = k^2 rho^2, g = mu / r^3 = k^4 rho^3. Each
+coefficient is a polynomial of the earlier ones; those of the states follow from the equations in
+:mod:`safestart.dynamics.yamanaka_ankersen`.
 """
 
 from __future__ import annotations

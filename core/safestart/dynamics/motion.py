@@ -1,4 +1,4 @@
-"""How a chaser moves relative to a target: the interfaces that every motion offers.
+"""How a chaser moves relative to a target: the interfaces of every motion.
 
 States are LVLH position and velocity (x, y, z, vx, vy, vz), m and m/s; times are seconds since the flight's start.
 """
@@ -13,7 +13,7 @@ from safestart.model.scenario import Floats
 
 
 class Underway(Protocol):
-    """One chaser on its way; ``state`` (6,) is where it is now."""
+    """One chaser in flight; ``state`` (6,) is its current state."""
 
     state: Floats
 
@@ -27,7 +27,7 @@ class Underway(Protocol):
 
 
 class Motion(Protocol):
-    """Anything that a chaser can fly in, linear or not."""
+    """Any relative motion, linear or not."""
 
     def start(self, state: Floats) -> Underway:
         """A chaser at ``state`` (6,) at t = 0."""
@@ -35,10 +35,10 @@ class Motion(Protocol):
 
 
 class RelativeMotion(Protocol):
-    """A linear motion, which may vary with time. Derive from it and give the two matrices.
+    """A linear motion, which may vary with time. Derive from it and implement the two matrices.
 
-    Everything that predicts takes a motion by these two; ``start`` makes every linear motion fly in the loop. Motions
-    are equal, and hashed, by value (a frozen dataclass): what is tabulated for one is kept.
+    All predictions use only these two; ``start`` lets every linear motion fly in the loop. Motions are compared and
+    hashed by value (frozen dataclasses), so that tables can be cached per motion.
     """
 
     def transition(self, t0: float, t1: float) -> Floats:
@@ -46,7 +46,7 @@ class RelativeMotion(Protocol):
         ...
 
     def held(self, t0: float, t1: float) -> Floats:
-        """(6, 3): what one unit of thrust, held in LVLH axes from t0 to t1, adds to the state at t1."""
+        """(6, 3): the effect on the state at t1 of one unit of thrust, held in LVLH axes from t0 to t1."""
         ...
 
     def start(self, state: Floats) -> Underway:
@@ -56,7 +56,7 @@ class RelativeMotion(Protocol):
 
 @runtime_checkable
 class SteadyMotion(RelativeMotion, Protocol):
-    """A linear motion in which only t1 - t0 counts: the tables of one interval serve for all of them."""
+    """A linear motion that depends only on t1 - t0, so that one interval's tables serve all intervals."""
 
     def positions(self, tau: Floats, dimensions: int) -> tuple[Floats, Floats]:
         """Position rows of ``transition``, (J, d, 2 d), and of ``held``, (J, d, d), over J durations ``tau``, s.
@@ -66,8 +66,17 @@ class SteadyMotion(RelativeMotion, Protocol):
         ...
 
 
+@runtime_checkable
+class ManyMoves(RelativeMotion, Protocol):
+    """A linear motion that gives the matrices of many intervals at once."""
+
+    def moves(self, begin: Floats, end: Floats) -> tuple[Floats, Floats]:
+        """``transition`` (J, 6, 6) and ``held`` (J, 6, 3) from ``begin`` (J,) to ``end`` (J,), s."""
+        ...
+
+
 class Drift:
-    """A chaser in a linear motion: every state straight from the interval's first one."""
+    """A chaser in a linear motion; every state comes directly from the interval's first state."""
 
     def __init__(self, motion: RelativeMotion, state: Floats) -> None:
         self._motion, self.state = motion, np.array(state, dtype=np.float64)

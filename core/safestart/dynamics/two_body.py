@@ -32,7 +32,7 @@ class Orbit:
 
     @classmethod
     def of(cls, mean_motion: float, inclination: float = math.radians(98.0)) -> Orbit:
-        """Circular orbit of a mean motion (rad/s); raises ``InvalidInput`` where that lies inside the Earth or is 0."""
+        """Circular orbit of a mean motion (rad/s); raises ``InvalidInput`` for 0 and for an orbit inside the Earth."""
         if not mean_motion > 0.0:
             raise invalid("mean_motion", "more than 0 rad/s for two-body motion", mean_motion)
         radius = (MU / mean_motion**2) ** (1.0 / 3.0)
@@ -67,7 +67,7 @@ def axes(target: Floats) -> tuple[Floats, Floats]:
     size, momentum = math.sqrt(r @ r), math.sqrt(h @ h)
     x, z = r / size, h / momentum
     rows = np.array([x, np.cross(z, x), z])
-    # Along x the axes turn because a force out of the plane tilts the orbit.
+    # The axes turn about x because a force out of the plane tilts the orbit.
     return rows, np.array([size * float(gravity(r) @ z) / momentum, 0.0, momentum / (size * size)])
 
 

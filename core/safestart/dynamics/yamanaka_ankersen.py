@@ -5,12 +5,12 @@ Linearised about the orbit, with w = nu' the rate of LVLH and g = mu / r^3,
     x'' = 2 w y' + w' y + (w^2 + 2 g) x + u_x,  y'' = -2 w x' - w' x + (w^2 - g) y + u_y,  z'' = -g z + u_z.
 
 Yamanaka and Ankersen (Journal of Guidance, Control and Dynamics 25(1), 2002) solve it in closed form with the true
-anomaly, rho = 1 + e cos nu and J = k^2 (t - t0), k^2 = nu' / rho^2; their axes are (y, -z, -x) of ours. What a thrust
-held in LVLH axes adds is the integral of the transition, by Gauss's rule: the integrand is analytic, and short panels
-of ten points leave nothing beside rounding.
+anomaly, rho = 1 + e cos nu and J = k^2 (t - t0), k^2 = nu' / rho^2; their axes are (y, -z, -x) of ours. The effect of a
+thrust held in LVLH axes is the integral of the transition, by Gauss's rule: the integrand is analytic, and short panels
+of ten points leave only rounding errors.
 
-Over a small turn of LVLH their form loses digits, because a drift of seconds is a small difference there. Such
-intervals are summed as Taylor series in time (``elliptic_series``).
+Over a small turn of LVLH their form loses digits, because the drift of a few seconds is a small difference of large
+terms. Such intervals use Taylor series in time (``elliptic_series``).
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from safestart.dynamics.elliptic_series import LARGEST_TURN, series
-from safestart.dynamics.motion import RelativeMotion
+from safestart.dynamics.motion import ManyMoves
 from safestart.model.orbit import KeplerOrbit
 from safestart.model.scenario import Floats
 
@@ -31,7 +31,7 @@ _PANEL = 0.3
 
 
 @dataclass(frozen=True)
-class YamanakaAnkersen(RelativeMotion):
+class YamanakaAnkersen(ManyMoves):
     """The motion near a target on ``orbit``; on a circular one it is CWH."""
 
     orbit: KeplerOrbit
@@ -48,7 +48,7 @@ class YamanakaAnkersen(RelativeMotion):
         return out
 
     def held(self, t0: float, t1: float) -> Floats:
-        """(6, 3): what one unit of thrust, held in LVLH axes from t0 to t1, adds at t1."""
+        """(6, 3): the effect at t1 of one unit of thrust, held in LVLH axes from t0 to t1."""
         out: Floats = self.moves(np.array([t0]), np.array([t1]))[1][0]
         return out
 
@@ -113,12 +113,12 @@ def _out_of_plane(nu: Floats) -> Floats:
 
 
 def _dimensional(plane: Floats, across: Floats, first: Floats, last: Floats, e: float, pace: float) -> Floats:
-    """Phi (J, 6, 6) in metres and seconds, LVLH axes of ours."""
+    """Phi (J, 6, 6) in metres and seconds, our LVLH axes."""
     rho0, rho1 = 1.0 + e * np.cos(first), 1.0 + e * np.cos(last)
     slope0, slope1 = e * np.sin(first), e * np.sin(last)
     count = len(first)
     scaled = np.zeros((count, 6, 6))
-    # Ours are (x, y, z) = (-nadir, along, z): no sign is left where both ends have it.
+    # Ours are (x, y, z) = (-nadir, along, z): the sign cancels where both ends have it.
     order = ((0, 1, -1.0), (1, 0, 1.0))
     for i, a, sa in order:
         for j, b, sb in order:

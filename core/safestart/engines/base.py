@@ -16,7 +16,7 @@ MAX_HORIZON = 3600.0
 
 
 class ResultCode(StrEnum):
-    """How a computation ended. Everything but ``OK`` comes without a mask."""
+    """How a computation ended. Only ``OK`` comes with a mask."""
 
     OK = "ok"
     NUMERICAL_FAILURE = "numerical_failure"
@@ -25,7 +25,7 @@ class ResultCode(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """What an engine is asked: which starts of the grid, at rest, belong to its set.
+    """The question to an engine: which starts of the grid, at rest, belong to its set.
 
     ``horizon`` and ``dt`` in seconds (``dt`` is the control interval of the sampled engines; the horizon is a
     whole number of them).
@@ -55,7 +55,7 @@ class Problem:
         return self.grid.points(self.scenario.corridor)
 
     def inside(self) -> Bools:
-        """Grid points inside the corridor at t = 0, (ny, nx): every engine's region is restricted to them."""
+        """Grid points inside the corridor at t = 0, (ny, nx), to which every engine's region is restricted."""
         return corridor_of(self.scenario.corridor).contains(self.points())
 
 
@@ -64,9 +64,9 @@ class EngineResult:
     """Answer of an engine.
 
     ``mask`` (ny, nx) is True where the start belongs to the engine's set; None unless ``code`` is OK.
-    ``margin`` (ny, nx), metres, positive inside, for engines that have one. ``compile_s`` holds what was
-    spent on compilation and is not part of ``run_s``. ``detail`` holds JSON-able facts (variant, grid,
-    bounds); ``arrays`` further arrays worth keeping (value slices).
+    ``margin`` (ny, nx), metres, positive inside, for engines that have one. ``compile_s`` is the time for compilation
+    and not part of ``run_s``. ``detail`` holds JSON-able facts (variant, grid, bounds); ``arrays`` further arrays to
+    store (value slices).
     """
 
     code: ResultCode
@@ -80,8 +80,8 @@ class EngineResult:
 
 
 class Engine(Protocol):
-    """A reachability engine, made with its options or with their defaults; what it is called says its spec."""
+    """A reachability engine, made with its options or with their defaults; its spec has its name."""
 
     def solve(self, problem: Problem, context: Context) -> EngineResult:
-        """Decide every cell; bad input raises ``InvalidInput``, numerical trouble is a result code."""
+        """Decide every cell; bad input raises ``InvalidInput``, a numerical failure gives a result code."""
         ...

@@ -29,18 +29,18 @@ from safestart.sets.cone import DualArc
 from safestart.sets.rotating_reach import RotatingReach, warm
 
 CHUNK = 8192
-"""Cells between two looks at the context."""
+"""Cells between two polls of the context."""
 
 
 class Exact:
-    """Exact reachable set of the disk input, tube or fixed time; the yardstick of the gridded engines."""
+    """Exact reachable set of the disk input, tube or fixed time; the reference for the gridded engines."""
 
     def solve(self, problem: Problem, context: Context) -> EngineResult:
         """Margin of every cell.
 
-        ``arrays`` holds ``margin_unrestricted`` (ny, nx), the margin of the set before it is cut down to the
-        corridor (a tube restricted to the corridor is all of it), and ``reach_time`` (ny, nx), the time (s) at
-        which that margin is attained.
+        ``arrays`` holds ``margin_unrestricted`` (ny, nx), the margin of the set before its restriction to the corridor
+        (a restricted tube is the whole corridor), and ``reach_time`` (ny, nx), the time (s) at which that margin is
+        attained.
         """
         compile_s = 0.0 if warm.cache_info().currsize else warm()
         start = time.perf_counter()
@@ -100,8 +100,8 @@ def containment_horizon(
     """Smallest multiple of ``dt`` (s) from ``start`` up to ``bound`` at which the fixed-time set holds all starts.
 
     None when there is none. Starts inside the corridor are trivially contained for very short horizons, so
-    ``start`` is usually the horizon at which containment was found violated. Because the corridor turns, a
-    longer horizon can lose starts again: the answer is the first such horizon, not a threshold.
+    ``start`` is usually the horizon at which containment was found violated. Because the corridor turns, a longer
+    horizon can lose starts again, so the answer is the first such horizon and not a threshold.
     """
     bound = number("bound", bound, 0.0, MAX_HORIZON, open_low=True)
     dt = number("dt", dt, 0.0, bound, open_low=True)
@@ -110,7 +110,7 @@ def containment_horizon(
     reach = _reach(scenario, bound, rest)
     first = max(1, math.ceil(start / dt * (1.0 - 1e-12)))
     for k in range(first, int(bound / dt * (1.0 + 1e-12)) + 1):
-        # The start that failed last is asked first: it mostly fails again, and then nothing else is computed.
+        # Try the start that failed last first: it usually fails again and saves the other starts.
         moment = min(k * dt, bound)
         if len(flat) and not reach.at(flat[:1], moment)[0] >= -ROUND_OFF:
             continue

@@ -6,8 +6,8 @@ OUTER polygon of the box-input set.
 
 A start is in the set iff the outer polygon meets the corridor cone: an outer approximation of
 :mod:`~safestart.engines.backward`. The paper asks whether some vertex of the target polygon, the corridor cut at the
-grid's ``y_max``, lies in the outer polygon. That is not a necessary condition for reachability (a set that meets the
-corridor between its vertices is missed), so it bounds nothing; the tests keep it for comparison.
+grid's ``y_max``, lies in the outer polygon. That is not necessary for reachability (it misses a set that meets the
+corridor between its vertices), so it gives no bound; the tests keep it for comparison.
 """
 
 from __future__ import annotations

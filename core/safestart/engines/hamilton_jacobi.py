@@ -1,7 +1,7 @@
 """Hamilton-Jacobi reachability on a grid (paper 000, eq. 11), with our own solver or with hj-reachability.
 
-V(x, -T) is the least signed distance to the corridor that thrust can bring about from x: at time T (fixed), or
-at some time up to T (tube). The set of starts is {V <= 0} on the slice of states at rest.
+V(x, -T) is the least signed distance to the corridor that thrust can reach from x: at time T (fixed), or at some time
+up to T (tube). The set of starts is {V <= 0} on the slice of states at rest.
 """
 
 from __future__ import annotations
@@ -25,20 +25,21 @@ from safestart.errors import Unavailable
 from safestart.model.scenario import Floats, SetKind, number
 from safestart.runtime.progress import Context
 
-# Between two looks at the context: a twentieth of the steps, and no more than a few seconds of work.
+# Work between two polls of the context: a twentieth of the steps, and at most a few seconds.
 MIN_STRETCHES, NODE_STEPS = 20, 20_000_000
 # Share of the target function's range by which the value may leave it: rounding for the monotone first-order
-# scheme, over- and undershoot (measured: 1 %) for the others. A poisoned boundary leaves it several times over.
+# scheme, over- and undershoot (measured: 1 %) for the others. A faulty boundary makes the value leave it several times
+# over.
 MONOTONE_TOLERANCE, TOLERANCE = 1e-3, 0.05
 
 
 class Solver(Protocol):
-    """A time loop: ours, or the library's."""
+    """A time loop, ours or the library's."""
 
     compile_s: float
 
     def advance(self, span: float) -> tuple[bool, float, float]:
-        """Step ``span`` seconds back; returns whether all values are finite, and their least and largest."""
+        """Step ``span`` seconds back; returns whether all values are finite, and the least and largest value."""
         ...
 
     def value(self) -> Floats:
@@ -47,23 +48,23 @@ class Solver(Protocol):
 
 
 class HamiltonJacobi:
-    """Level sets on a four-dimensional grid: neither an inner nor an outer bound, its error has no sign."""
+    """Level sets on a four-dimensional grid: neither an inner nor an outer bound, because the error has no sign."""
 
     def __init__(self, options: HamiltonJacobiInput | None = None, *, match: float | None = None) -> None:
-        """``match`` (m/s, at most 1000) asks for co-rotation to within that speed, too; raises ``InvalidInput``."""
+        """``match`` (m/s, at most 1000) also requires co-rotation within that speed; raises ``InvalidInput``."""
         self._options = options or HamiltonJacobiInput()
         self._match = None if match is None else number("match", match, 0.0, 1e3, open_low=True)
 
     def solve(self, problem: Problem, context: Context) -> EngineResult:
         """Step the value function back over the horizon and read its slice at the starts.
 
-        ``arrays`` holds ``margin_unrestricted`` (ny, nx), minus the value at the starts, before the set is cut
-        down to the corridor, and ``margin_exact`` (ny, nx), the margin by support functions (of the position-only
-        target). ``detail["certified"]`` counts the cells that the exact set refutes
-        (:mod:`safestart.engines.hj.certified`); the mask is the level set's own.
+        ``arrays`` holds ``margin_unrestricted`` (ny, nx), minus the value at the starts, before the restriction to the
+        corridor, and ``margin_exact`` (ny, nx), the margin by support functions (of the position-only target).
+        ``detail["certified"]`` counts the cells that the exact set refutes (:mod:`safestart.engines.hj.certified`); the
+        mask is the level set's own.
 
-        Raises ``InvalidInput`` for a grid that needs more time steps than anyone waits for; ``Cancelled`` between
-        stretches of time. A value that is not finite, or that leaves the range it must keep, is ``NUMERICAL_FAILURE``.
+        Raises ``InvalidInput`` for a grid that needs too many time steps, and ``Cancelled`` between stretches of time.
+        A value that is not finite, or that leaves its possible range, is ``NUMERICAL_FAILURE``.
         """
         settings = Settings.of(problem, self._options, self._match)
         domain = size_domain(problem, settings.frame)
@@ -123,9 +124,9 @@ def _slack(settings: Settings, target: TargetValues) -> float:
 def _march(
     problem: Problem, settings: Settings, solver: Solver, target: TargetValues, steps: int, context: Context
 ) -> str:
-    """Run the horizon in equal stretches; the reason of a numerical failure, or nothing.
+    """Run the horizon in equal stretches; returns the reason of a numerical failure, or "".
 
-    The value is a least value of l over states that the grid holds, so it must stay inside l's range.
+    The value is a minimum of l over states of the grid, so it must stay within l's range.
     """
     batch = min(math.ceil(steps / MIN_STRETCHES), max(1, NODE_STEPS // target.terminal.size))
     stretches = math.ceil(steps / batch)
@@ -145,10 +146,10 @@ def _march(
 
 
 def _slice(problem: Problem, domain: Domain, settings: Settings, value: Floats) -> Floats:
-    """V at the starts (ny, nx), multilinear between nodes; outside the box it would raise, never be NaN.
+    """V at the starts (ny, nx), multilinear between nodes; a start outside the box raises, it never gives NaN.
 
-    A tube's value is at most l at the start itself, which is known exactly; near the apex of the corridor,
-    which is finer than the grid, the interpolated value is not.
+    A tube's value is at most l at the start itself, which is known exactly; the interpolated value can exceed it near
+    the corridor's apex, which is finer than the grid.
     """
     states = start_states(problem, settings.frame)
     axes = domain.axes(settings.shape)
@@ -161,7 +162,7 @@ def _slice(problem: Problem, domain: Domain, settings: Settings, value: Floats) 
 def _detail(
     problem: Problem, domain: Domain, settings: Settings, steps: int, target: TargetValues
 ) -> dict[str, Any]:
-    """What the answer depends on, JSON-able."""
+    """The settings that determine the answer, JSON-able."""
     return {
         "set": problem.kind.value,
         "rest": problem.rest.value,

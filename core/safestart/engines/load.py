@@ -12,9 +12,9 @@ from safestart.model.wire_model import WireModel
 
 
 def engine(name: str, options: WireModel | None = None) -> Engine:
-    """The engine called ``name``, loaded, with its ``options`` or with their defaults.
+    """Load the engine called ``name``, with its ``options`` or with their defaults.
 
-    Raises ``InvalidInput`` for an unknown name, and for options that are those of another engine.
+    Raises ``InvalidInput`` for an unknown name, and for another engine's options.
     """
     spec = engine_spec(name)
     module, kind = spec.engine.split(":")

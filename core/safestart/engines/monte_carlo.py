@@ -1,8 +1,8 @@
 """Closed-loop Monte Carlo: fly every grid start with the three-regime controller and its filter (paper 000, section 7).
 
-A start is safe when no sub-step of its flight lies outside the rotating corridor. The controller is not optimal, so
-the region is an inner estimate of what some controller could fly; unlike the paper's other engines it speaks
-about the whole flight.
+A start is safe when no sub-step of its flight lies outside the rotating corridor. The controller is not optimal, so the
+region is an inner estimate of the starts that some controller could fly; unlike the paper's other engines it covers the
+whole flight.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ FLIGHTS_PER_CHUNK = 256
 
 
 class MonteCarlo:
-    """Flies every start inside the corridor; inside means safe for this controller, for the flight time only."""
+    """Flies every start inside the corridor; cells of its set are safe only for this controller and flight time."""
 
     def solve(self, problem: Problem, context: Context) -> EngineResult:
         """Fly all cells inside the corridor, in the plane.
@@ -76,7 +76,7 @@ class MonteCarlo:
             "t_sim_s": steps * problem.dt,
             "dt_s": problem.dt,
             "nodes": NODES,
-            # One exact start per cell: readers of earlier documents find the same keys.
+            # One exact start per cell, under the same keys as in earlier documents.
             "samples": 1,
             "position_sigma_m": 0.0,
             "velocity_sigma_m_s": 0.0,
@@ -114,7 +114,7 @@ class _Tally:
 
 
 def _warm_up(scenario: Scenario, dt: float) -> float:
-    """Compile the kernels, or load them from the cache, on no flight at all; seconds spent."""
+    """Compile the kernels, or load them from the cache, without a flight; returns the seconds spent."""
     begin = time.perf_counter()
     fly(flight_plan(scenario, preset(PRESET), dt, 1), np.empty((0, 6)))
     return time.perf_counter() - begin

@@ -1,4 +1,4 @@
-"""What the set-based engines share: restriction of a set of starts to the corridor, and rest at the start."""
+"""Shared by the set-based engines: restriction of a set of starts to the corridor, and rest at the start."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def start_velocity(scenario: Scenario, rest: Rest) -> Floats:
 
 
 def restrict(problem: Problem, reach: Floats) -> tuple[Bools, Floats]:
-    """Mask and margin (ny, nx) of a set with margin ``reach`` (ny, nx), cut down to the corridor at t = 0.
+    """Mask and margin (ny, nx) of a set with margin ``reach`` (ny, nx), restricted to the corridor at t = 0.
 
     The margin is the smaller of ``reach`` and the distance to the corridor's nearest face, in metres; the mask
     is exactly where it is >= 0.

@@ -1,6 +1,6 @@
-"""The engines: one entry each, and nothing about an engine stands anywhere else. Importing this loads none of them.
+"""The engines, one entry each, the only place with facts about an engine. Importing this module loads none of them.
 
-The colours are Okabe and Ito's, told apart with every kind of colour vision.
+The colours are Okabe and Ito's, distinct for every kind of colour vision.
 """
 
 from __future__ import annotations
@@ -11,12 +11,19 @@ from safestart.errors import invalid
 
 _SPECS = (
     EngineSpec(
-        name="analytical",
-        title="certificate (closed form)",
+        name="certified",
+        title="certified (sound)",
         colour="#009E73",
-        engine="safestart.engines.analytical:Analytical",
-        summary="closed-form certificate: directional erosion and synchronization range",
+        engine="safestart.engines.analytical:Certified",
+        summary="certificate in closed form: explicit manoeuvres with a proof, for ever",
         line=None,
+    ),
+    EngineSpec(
+        name="analytical",
+        title="paper's conditions (not sound)",
+        colour="#E69F00",
+        engine="safestart.engines.analytical:Analytical",
+        summary="the closed form of paper 000, not sound: directional erosion and synchronization range",
     ),
     EngineSpec(
         name="exact",
@@ -67,7 +74,7 @@ ENGINES: dict[str, EngineSpec] = {spec.name: spec for spec in _SPECS}
 
 
 def engine_spec(name: str) -> EngineSpec:
-    """What is known of the engine called ``name``; raises ``InvalidInput`` with the known names otherwise."""
+    """The spec of the engine called ``name``; raises ``InvalidInput`` with the known names otherwise."""
     if name not in ENGINES:
         raise invalid("engine", f"one of {', '.join(ENGINES)}", name)
     return ENGINES[name]

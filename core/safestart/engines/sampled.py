@@ -34,7 +34,7 @@ class Step:
 
 
 def steps(problem: Problem) -> Iterator[Step]:
-    """The steps whose set is asked for: the last one (fixed time), or all from 0 on (tube)."""
+    """The steps that count: the last one (fixed time), or all from 0 on (tube)."""
     n, count, dt = problem.scenario.target.mean_motion, problem.steps, problem.dt
     if count > MAX_STEPS:
         raise invalid("dt", f"at most {MAX_STEPS} control intervals in the horizon", dt)

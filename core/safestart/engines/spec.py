@@ -1,4 +1,4 @@
-"""What is known of an engine without loading it: name, title, colour, options."""
+"""Facts about an engine, without loading it: name, title, colour, options."""
 
 from __future__ import annotations
 
@@ -12,14 +12,13 @@ LineStyle = Literal["-", "--", ":", "-."]
 
 @dataclass(frozen=True, slots=True)
 class EngineSpec:
-    """An engine as every picture, form and page shows it.
+    """How every picture, form and page shows an engine.
 
-    ``name`` is what requests, documents and arrays call it, ``title`` what people read. ``colour`` (#RRGGBB) is its
-    colour in every picture, ``screen_colour`` the one on pages, light and dark, where that must differ. ``line`` is
-    the style of its outline; an engine without one is drawn filled. ``engine`` names the class as ``module:class``,
-    which is imported only where it runs. ``options`` is the model of its options as they cross the wire: a field of
-    the benchmark's inputs that is called as the engine. ``share`` is its part of a benchmark's time, against 1 for a
-    fast engine.
+    ``name`` is its name in requests, documents and arrays, ``title`` the one for people. ``colour`` (#RRGGBB) is its
+    colour in every picture, ``screen_colour`` the one on pages, light and dark, if that must differ. ``line`` is the
+    style of its outline; an engine without one is drawn filled. ``engine`` names the class as ``module:class``,
+    imported only where it runs. ``options`` is the wire model of its options: the field of the benchmark's inputs with
+    the engine's name. ``share`` is its part of a benchmark's time, relative to 1 for a fast engine.
     """
 
     name: str
@@ -33,7 +32,7 @@ class EngineSpec:
     screen_colour: str | None = None
 
     def document(self) -> dict[str, str]:
-        """What pages need to show it, JSON-able."""
+        """The facts that pages show, JSON-able."""
         return {
             "name": self.name,
             "title": self.title,

@@ -12,12 +12,12 @@ from safestart.exact.watch import Ints
 from safestart.model.scenario import Floats
 
 TOLERANCE = 1e-4
-# Floats carry the distances to about 1e-12 m; a verdict keeps three orders of magnitude away from that.
+# Floats give the distances to about 1e-12 m; a verdict needs a bound three orders of magnitude larger.
 GUARD = 1e-9
 
 
 class Verdict(StrEnum):
-    """GO: a thrust history stays. NO_GO: none does. UNDECIDED: the bracket holds 0, or the solver failed."""
+    """GO: a thrust history stays. NO_GO: none stays. UNDECIDED: the bracket holds 0, or the solver failed."""
 
     GO = "GO"
     NO_GO = "NO_GO"
@@ -29,7 +29,7 @@ class Multiplier:
     """Weight of one face's distance at one time (s) in the proof of a NO_GO.
 
     For a norm limit (``speed``, ``hold``, ``rest``) ``pull`` is the vector p, |p| <= value, of
-    :mod:`safestart.exact.limits`; ``hold`` and ``rest`` are meant at the end, whatever their time.
+    :mod:`safestart.exact.limits`; ``hold`` and ``rest`` apply at the end, whatever their time.
     """
 
     time: float
@@ -51,10 +51,10 @@ class Part:
 class Answer:
     """Verdict and bracket of the signed margin m in metres (all face distances >= m at all times, at best).
 
-    ``lower`` is what the thrust history ``thrust`` (N, d), LVLH m/s^2, keeps at all times; ``upper`` what the
-    ``multipliers`` prove that no history exceeds. ``margin_m`` is the end of the bracket the verdict rests on:
-    ``lower`` for GO, ``upper`` for NO_GO, their middle when UNDECIDED (NaN without a bracket). A GO carries no
-    multipliers, a NO_GO no thrust. ``reason`` says why an answer is UNDECIDED, else it is empty.
+    The thrust history ``thrust`` (N, d), LVLH m/s^2, keeps the margin ``lower`` at all times; the ``multipliers`` prove
+    that no history exceeds ``upper``. ``margin_m`` is the end of the bracket behind the verdict: ``lower`` for GO,
+    ``upper`` for NO_GO, their middle when UNDECIDED (NaN without a bracket). A GO carries no multipliers, a NO_GO no
+    thrust. ``reason`` says why an answer is UNDECIDED, else it is empty.
 
     For `synchronize` m is the best over T, ``thrust`` ends at the T it was found for, and ``parts`` stand for
     ``multipliers``. The loop ends with the verdict, so the bracket may be wide.

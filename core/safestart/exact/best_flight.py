@@ -1,4 +1,4 @@
-"""The best flight from a start, whatever the verdict: what a thrust history of the largest margin looks like."""
+"""The best flight from a start, whatever the verdict: a thrust history with the largest margin."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _GOAL, _ROUNDS = 1e-3, 20
 def best_thrust(question: Question, state: Floats) -> Floats:
     """Thrust history (N, d), LVLH m/s^2, whose smallest face distance is within about a millimetre of the best.
 
-    ``state`` (2 d,) is LVLH position (m) and velocity (m/s). Where the solver fails, the best so far, or no thrust.
+    ``state`` (2 d,) is LVLH position (m) and velocity (m/s). If the solver fails, the best so far, or zero thrust.
     """
     search = Search(watch_of(question), np.asarray(state, dtype=np.float64))
     for _ in range(_ROUNDS):

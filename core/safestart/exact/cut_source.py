@@ -1,20 +1,26 @@
-"""What a search asks of the thing it watches flights by: one question (``watch.py``) or a family of them."""
+"""The interface that a search uses to watch flights, for one question (``watch.py``) or a family of them."""
 
 from __future__ import annotations
 
-from typing import Protocol
+from collections.abc import Sequence
+from typing import Any, Protocol
 
-from safestart.exact.question import Question
+from safestart.exact.norm_rows import Blocks
 from safestart.exact.watch import Cuts, Ints, Minima
 from safestart.model.scenario import Floats
-from safestart.optim.prediction import Prediction
 
 
 class Watched(Protocol):
-    """Faces (``normals`` (F, d), ``offsets`` (F,), ``names``) of one question, its rows, and the minima of a flight."""
+    """Faces (``normals`` (F, d) at t = 0, ``offsets`` (F,), ``names``) of a question, rows, and the minima of a flight.
 
-    question: Question
-    prediction: Prediction
+    ``rounding`` is what floats may lose of a distance, relative to the length that a flight can cover.
+    """
+
+    @property
+    def question(self) -> Any:
+        """A :class:`~safestart.exact.question.Question`, or one of its kin: what a search reads of it is the same."""
+
+    rounding: float
     normals: Floats
     offsets: Floats
     names: tuple[str, ...]
@@ -22,8 +28,11 @@ class Watched(Protocol):
     def cuts(self, times: Floats, faces: Ints) -> Cuts:
         """Rows at pairs of time (J,) and face (J,)."""
 
+    def blocks(self, names: Sequence[str], times: Floats) -> Blocks:
+        """Rows of the norm limits ``names`` (B) at ``times`` (B,)."""
+
     def minima(self, state: Floats, thrust: Floats) -> Minima:
         """Local minima and the all-times bound of a flight."""
 
     def __hash__(self) -> int:
-        """By identity: what is kept for a watch is kept for this one."""
+        """By identity: caches hold entries per watch."""

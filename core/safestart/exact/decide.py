@@ -1,8 +1,8 @@
-"""The exact answer: may this start stay in the corridor at all times of [0, T]? Yes with thrust, no with a proof.
+"""The exact answer: can this start stay in the corridor at all times of [0, T]? Yes with thrust, no with a proof.
 
-Cutting planes in time. The conic program is solved with few rows; the flight it proposes is watched at all times; where
-a face comes closer than the program knew, a row is added. The program's dual bounds the best margin from above, the
-watched flight from below: each round ends with a bracket, the loop with one narrower than the tolerance.
+Cutting planes in time. Each round solves the cone program with few rows, watches the proposed flight at all times, and
+adds a row where a face comes closer than the program assumed. The program's dual bounds the best margin from above, the
+watched flight from below. The loop ends when this bracket is narrower than the tolerance.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def decide(
 ) -> Answer:
     """Answer the question for one start ``state`` (2 d,): LVLH position (m) and velocity (m/s).
 
-    The bracket is narrowed to ``tolerance`` metres, further where 0 lies in it (to 2e-7 m). With ``verdict_only`` the
+    The bracket is narrowed to ``tolerance`` metres, or to 2e-7 m if it contains 0. With ``verdict_only`` the
     loop ends as soon as the verdict is proved: same verdict, wider bracket. Raises ``InvalidInput`` for a state of
     another shape or not finite. A failure of the solver is UNDECIDED with its reason, never a GO.
     """
@@ -39,20 +39,21 @@ def decide(
         return synchronize(watch_of(question), state, tolerance, verdict_only=verdict_only)
     search = Search(watch_of(question), state)
     if search.distance_now < -GUARD:
-        return _outside(search)
-    return _answer(search, search.narrow(tolerance, verdict_only=verdict_only))
+        return outside(search)
+    return answer_of(search, search.narrow(tolerance, verdict_only=verdict_only))
 
 
-def _outside(search: Search) -> Answer:
-    """NO_GO at once for a start outside the corridor: the distance at t = 0 is what it is, whatever the thrust."""
+def outside(search: Search) -> Answer:
+    """NO_GO at once for a start outside the corridor: thrust cannot change the distance at t = 0."""
     question = search.watch.question
-    still = np.zeros((question.steps, question.dimensions))
+    still = np.zeros((question.steps, question.channels))
     worst = search.distance_now
     lower = min(worst, search.watch.minima(search.state, still).lowest)
     return Answer(Verdict.NO_GO, worst, lower, worst, None, (search.now,), 0)
 
 
-def _answer(search: Search, reason: str) -> Answer:
+def answer_of(search: Search, reason: str) -> Answer:
+    """Verdict, bracket and evidence of a search that has ended, for ``reason`` where it is open."""
     lower, upper, rounds = search.lower, search.upper, search.rounds
     if lower > GUARD:
         return Answer(Verdict.GO, lower, lower, upper, search.thrust, (), rounds)

@@ -7,7 +7,7 @@ the body frame,
     rest:  M = s [R(-w T)] [-W, I] with W r = w x r, limit the same radius, s = radius / (largest speed at the end);
     speed: M = S [0, I], limit S v_max, S = ``SPEED_SCALE`` seconds.
 
-For every vector p with |p| <= weight, weight (limit - |y|) <= weight limit - p . y: so they enter a proof.
+For every vector p with |p| <= weight, weight (limit - |y|) <= weight limit - p . y; proofs use this bound.
 """
 
 from __future__ import annotations
@@ -39,19 +39,25 @@ class Limit:
         return self.limit - math.sqrt(float(y @ y))
 
 
+def speed_limit(most: float, d: int) -> Limit:
+    """The limit ``speed``, ``most`` m/s, in ``d`` dimensions."""
+    matrix = np.zeros((d, 2 * d))
+    matrix[:, d:] = SPEED_SCALE * np.eye(d)
+    return Limit(matrix, np.zeros(d), SPEED_SCALE * most)
+
+
 def limit_at(question: Question, name: str, time: float) -> Limit:
     """The limit ``hold``, ``rest`` or ``speed`` of a question at a time in seconds."""
     d, rate, goal = question.dimensions, question.scenario.target.tumble_rate, question.goal
     matrix, centre = np.zeros((d, 2 * d)), np.zeros(d)
     if name == SPEED or goal is None:
-        matrix[:, d:] = SPEED_SCALE * np.eye(d)
-        return Limit(matrix, centre, SPEED_SCALE * float(question.speed_limit or 0.0))
+        return speed_limit(float(question.speed_limit or 0.0), d)
     turn = np.eye(d)
     turn[:2, :2] = rotation(rate * time).T
     if name == "hold":
         matrix[:, :d] = turn
         return Limit(matrix, np.array(question.hold, dtype=np.float64), goal.radius)
     matrix[:, d:] = goal.scale * turn
-    # w x r = w (-y, x): what the body frame itself moves at r.
+    # w x r = w (-y, x): the velocity of the body frame at r.
     matrix[:, 0], matrix[:, 1] = -goal.scale * rate * turn[:, 1], goal.scale * rate * turn[:, 0]
     return Limit(matrix, centre, goal.radius)

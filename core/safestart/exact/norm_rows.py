@@ -1,4 +1,4 @@
-"""Norm limits as rows over start and thrust: what :mod:`safestart.optim.largest_margin` takes as blocks."""
+"""Norm limits as rows over start and thrust, the blocks of :mod:`safestart.optim.largest_margin`."""
 
 from __future__ import annotations
 

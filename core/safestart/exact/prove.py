@@ -13,8 +13,8 @@ from safestart.exact.question import SPEED_SCALE, Question
 from safestart.model.scenario import Floats
 from safestart.proofs.statement import SCHEMA, digest_of
 
-# The claim stands back by what the solver's floats may have lost, in metres; for GO by more, so that the checker
-# need not cut time into ever smaller pieces where a face is touched.
+# The claim is smaller than the margin by these stand-backs (m), which cover the solver's rounding; for GO by more, so
+# that the checker need not cut time ever finer where the flight touches a face.
 NO_GO_STAND_BACK_M = 1e-9
 GO_STAND_BACK_M = 2e-7
 
@@ -23,7 +23,7 @@ def proof_of(question: Question, state: Floats, answer: Answer) -> dict[str, Any
     """JSON-able proof of a GO or NO_GO: the question, the start ``state`` (2 d,), the claim, witness or multipliers.
 
     The claim is the answer's margin less a stand-back (2e-7 m for GO, 1e-9 m for NO_GO). Raises ``InvalidInput`` for an
-    UNDECIDED answer: there is nothing to prove.
+    UNDECIDED answer.
     """
     d = question.dimensions
     document: dict[str, Any] = {
@@ -37,7 +37,7 @@ def proof_of(question: Question, state: Floats, answer: Answer) -> dict[str, Any
         },
     }
     if answer.verdict is Verdict.GO and answer.thrust is not None:
-        # A margin below the stand-back keeps a claim above 0 that the checker can still prove.
+        # A margin below the stand-back gets a smaller claim above 0 that the checker can still prove.
         document["margin_m"] = max(answer.lower - GO_STAND_BACK_M, 0.5 * answer.lower)
         document["thrust_m_s2"] = answer.thrust.tolist()
     elif answer.verdict is Verdict.NO_GO:
@@ -61,7 +61,7 @@ def proof_of(question: Question, state: Floats, answer: Answer) -> dict[str, Any
 
 
 def question_of(question: Question) -> dict[str, Any]:
-    """The question as a document states it, in SI units."""
+    """The question in the document's form, in SI units."""
     target, shape = question.scenario.target, question.scenario.corridor
     return {
         "kind": question.kind,
@@ -83,7 +83,7 @@ def question_of(question: Question) -> dict[str, Any]:
 
 
 def _limits(question: Question) -> dict[str, Any]:
-    """What the question asks beyond the corridor at all times."""
+    """The question's demands beyond the corridor."""
     out: dict[str, Any] = {}
     if question.goal is not None:
         out["earliest_step"] = question.goal.earliest
@@ -100,6 +100,6 @@ def _limits(question: Question) -> dict[str, Any]:
 
 
 def multiplier_of(row: Multiplier, latest: float) -> dict[str, Any]:
-    """One multiplier as a document states it; ``latest`` is the question's, s."""
+    """One multiplier in the document's form; ``latest`` is the question's, s."""
     time = {} if row.face in AT_END else {"time_s": min(row.time, latest)}
     return time | {"face": row.face, "value": row.value} | ({"pull": list(row.pull)} if row.pull else {})

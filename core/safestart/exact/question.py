@@ -22,20 +22,21 @@ import numpy as np
 from safestart.constraints.corridor import corridor_of
 from safestart.errors import invalid
 from safestart.model.scenario import MAX_RANGE, Scenario, number
+from safestart.optim.thrust_shapes import BALL, UnitSet
 
 MAX_STEPS = 400
 MAX_TIME = 3600.0
 SPEED_SCALE = 10.0
-"""Seconds that turn a speed to spare into metres of margin: 0.1 m/s below the limit counts as 1 m."""
+"""Seconds that convert a speed margin into metres: 0.1 m/s below the limit counts as 1 m."""
 
 
 @dataclass(frozen=True, slots=True)
 class Goal:
     """The end of `synchronize`: a ball of ``radius`` metres around ``hold`` (body frame, m), at rest to ``rest`` m/s.
 
-    ``hold`` None is the hold point of the corridor, (0, r_h) or (0, r_h, 0). The speed is that against the rotating
-    body frame; radius / rest seconds turn it into metres, so that both limits give one margin. ``earliest`` is the
-    first step at which the flight may end; equal to the question's ``steps`` it fixes T.
+    ``hold`` None is the hold point of the corridor, (0, r_h) or (0, r_h, 0). The speed is relative to the rotating body
+    frame; radius / rest seconds convert it into metres, so that both limits give one margin. ``earliest`` is the first
+    step at which the flight may end; equal to the question's ``steps`` it fixes T.
     """
 
     radius: float = 0.5
@@ -49,7 +50,7 @@ class Goal:
 
     @property
     def scale(self) -> float:
-        """Seconds that turn the speed left at the end into metres."""
+        """Seconds that convert the speed at the end into metres."""
         return self.radius / self.rest
 
 
@@ -98,8 +99,28 @@ class Question:
 
     @property
     def plain(self) -> bool:
-        """Whether this is `stay` without a speed limit: faces alone."""
+        """Whether this is `stay` without a speed limit, so that only faces count."""
         return self.goal is None and self.speed_limit is None
+
+    @property
+    def thrust_scale(self) -> float:
+        """a_max: thrusts are this many times a point of ``thrust_set``, m/s^2."""
+        return self.scenario.chaser.max_acceleration
+
+    @property
+    def thrust_set(self) -> UnitSet:
+        """The unit ball."""
+        return BALL
+
+    @property
+    def channels(self) -> int:
+        """Numbers that make one thrust."""
+        return self.dimensions
+
+    @property
+    def largest_thrust(self) -> float:
+        """Largest size of a thrust, m/s^2."""
+        return self.scenario.chaser.max_acceleration
 
     @property
     def hold(self) -> tuple[float, ...]:
@@ -115,7 +136,7 @@ class Question:
 
     @property
     def latest(self) -> float:
-        """The last double that is not after the exact T: times in a proof stay within it."""
+        """The last double not after the exact T; no time in a proof exceeds it."""
         time = self.horizon
         while Fraction(time) > Fraction(self.dt) * self.steps:
             time = math.nextafter(time, 0.0)

@@ -9,8 +9,7 @@ import numpy as np
 
 from safestart.exact.answer import GUARD, TOLERANCE, Evidence, Multiplier
 from safestart.exact.cut_source import Watched
-from safestart.exact.limits import AT_END, SPEED, limit_at
-from safestart.exact.norm_rows import blocks
+from safestart.exact.limits import AT_END, SPEED, speed_limit
 from safestart.exact.watch import Cuts, Ints
 from safestart.model.scenario import Floats
 from safestart.optim.largest_margin import solve
@@ -18,18 +17,16 @@ from safestart.optim.largest_margin import solve
 _FIRST_TIMES = 9
 _FINEST = 2e-7
 _ROUNDS = 40
-# What floats may lose of a distance, relative to the length a flight can cover: some hundred roundings.
-_ROUNDING = 1e-13
-# Rows without weight are dropped when farther from binding than this many brackets, in the first rounds only:
-# dropping for ever could cycle.
+# Rows without weight are dropped when farther from binding than this many brackets, but only in the first rounds,
+# because later drops could cycle.
 _NO_WEIGHT, _FAR, _DROPPING_ROUNDS = 1e-7, 100.0, 12
-# Rows with some weight share one touch with a minimum this close (in steps). The first guess of a touch lies this part
-# of the way from the weight to the minimum; times closer than a millisecond are the same.
+# A weighted row and a minimum this close (in steps) belong to one touch. The first guess of a touch lies this share of
+# the way from the weight to the minimum; times closer than a millisecond count as equal.
 _SOME_WEIGHT, _TOUCH_STEPS, _FIRST_GUESS, _SAME_S = 1e-4, 10.0, 0.6, 1e-3
 
 
 class Search:
-    """``lower`` and ``upper`` bracket the margin (m); ``thrust`` keeps ``lower``, ``evidence`` shows ``upper``.
+    """``lower`` and ``upper`` bracket the margin (m); ``thrust`` keeps ``lower``, ``evidence`` proves ``upper``.
 
     ``distance_now`` is the smallest margin of the start itself, proved by the multiplier ``now``.
     """
@@ -40,42 +37,42 @@ class Search:
         self.thrust: Floats | None = None
         question = watch.question
         speed = float(np.abs(state[question.dimensions :]).sum())
-        push = question.scenario.chaser.max_acceleration * question.horizon
+        push = question.largest_thrust * question.horizon
         reach = float(np.abs(state[: question.dimensions]).sum()) + (speed + push) * question.horizon
-        self.rounding = _ROUNDING * reach
+        self.rounding = watch.rounding * reach
         self.dips: dict[int, tuple[float, float]] = {}
         self.evidence: Evidence | None = None
         distances = watch.offsets - watch.normals @ state[: watch.question.dimensions]
         nearest = int(np.argmin(distances))
         self.distance_now, self.now = float(distances[nearest]), Multiplier(0.0, watch.names[nearest], 1.0)
-        # Of the rows at t = 0 the nearest face alone says all; what cannot come below the best it can be, cannot bind.
+        # At t = 0 only the nearest face matters; a row that cannot fall below the best possible margin cannot bind.
         first, pushed = _first(watch)
         distances = first.offset + first.start @ state
         kept = distances - pushed < distances[nearest] + pushed[nearest]
         kept[: len(watch.names)] = np.arange(len(watch.names)) == nearest
         self.times, self.faces, self.rows = first.times[kept], first.faces[kept], first.thrust[kept]
         self.constant = distances[kept]
-        self.blocks = blocks(question, watch.prediction, (), np.empty(0))
+        self.blocks = watch.blocks((), np.empty(0))
         if question.goal is not None:
-            self.rounding += _ROUNDING * question.goal.scale * (speed + push)
+            self.rounding += watch.rounding * question.goal.scale * (speed + push)
             self._limit(AT_END, np.full(len(AT_END), question.horizon))
         if question.speed_limit is not None:
-            self._limit_speed(first.times[:: len(watch.names)])
+            self._limit_speed(question.speed_limit, first.times[:: len(watch.names)])
 
-    def _limit_speed(self, times: Floats) -> None:
+    def _limit_speed(self, most: float, times: Floats) -> None:
         """Rows for the speed at the first times, and how far below its limit the start is."""
-        limit = limit_at(self.watch.question, SPEED, 0.0)
+        limit, rounding = speed_limit(most, self.watch.question.dimensions), self.watch.rounding
         left = limit.left(self.state)
-        self.rounding += _ROUNDING * limit.limit
+        self.rounding += rounding * limit.limit
         self._limit((SPEED,) * len(times), times)
         if left < self.distance_now:
             y = limit.matrix @ self.state
-            pull = (1.0 - _ROUNDING) * y / max(math.sqrt(float(y @ y)), _ROUNDING)
+            pull = (1.0 - rounding) * y / max(math.sqrt(float(y @ y)), rounding)
             self.distance_now = limit.limit - float(pull @ y)
             self.now = Multiplier(0.0, SPEED, 1.0, tuple(pull.tolist()))
 
     def _limit(self, names: tuple[str, ...], times: Floats) -> None:
-        self.blocks = self.blocks.and_more(blocks(self.watch.question, self.watch.prediction, names, times))
+        self.blocks = self.blocks.and_more(self.watch.blocks(names, times))
 
     def _stacked(self) -> tuple[Floats, Floats]:
         """Constant and thrust of all rows, those of the blocks last."""
@@ -86,9 +83,9 @@ class Search:
         return np.concatenate([self.constant, constant.ravel()]), np.concatenate([self.rows, rows])
 
     def narrow(self, tolerance: float, *, verdict_only: bool = False, share: float = 0.0) -> str:
-        """Rounds until the bracket is as narrow as asked for; why it is not, in case the verdict stays open.
+        """Run rounds until the bracket is narrow enough; returns the reason if the verdict stays open.
 
-        ``share``: for a NO_GO a bracket narrower than this share of its margin will do.
+        ``share``: for a NO_GO a bracket narrower than this share of its margin is enough.
         """
         fine = tolerance < TOLERANCE
         for _ in range(_ROUNDS):
@@ -107,8 +104,8 @@ class Search:
         question = self.watch.question
         self.rounds += 1
         constant, rows = self._stacked()
-        a_max, norms = question.scenario.chaser.max_acceleration, len(self.blocks.names)
-        found = solve(constant, rows, a_max, question.dimensions, norms, fine=fine)
+        scale, norms, within = question.thrust_scale, len(self.blocks.names), question.thrust_set
+        found = solve(constant, rows, scale, question.channels, norms, fine=fine, within=within)
         if found.thrust is None or found.weights is None:
             return f"the solver stopped with {found.status} in round {self.rounds}"
         self.flown, self.load = found.thrust, found.weights[: len(self.times)]
@@ -121,7 +118,7 @@ class Search:
         return ""
 
     def cut(self, goal: float) -> bool:
-        """Add the local minima that lie below what the program promised; False when there is none."""
+        """Add the local minima below the program's margin; False when there is none."""
         low = self.found.values < self.upper - 0.25 * goal
         times, faces = self.found.times[low], self.found.faces[low]
         if not len(times):
@@ -141,7 +138,7 @@ class Search:
         return True
 
     def _drop(self) -> None:
-        """Let go of rows that carry no weight and are far from binding: the bound does not need them."""
+        """Drop rows without weight that are far from binding: the bound does not need them."""
         distance = self.constant + self.rows @ self.flown.ravel()
         near = distance < self.upper + _FAR * (self.upper - self.found.lowest)
         kept = near | (self.load > _NO_WEIGHT)
@@ -149,10 +146,10 @@ class Search:
         self.constant, self.rows = self.constant[kept], self.rows[kept]
 
     def _touches(self, times: Floats, faces: Ints) -> tuple[Floats, Ints]:
-        """Where the best flight probably touches: a secant on (time of the weight, time of the flight's minimum).
+        """Estimate where the best flight touches: a secant on (time of the weight, time of the flight's minimum).
 
-        Weight on one time makes the flight dip on the other side of the touch, at a distance smaller by a factor that
-        hardly changes: the dips would close in on the touch by about a half each round, the secant does so at once.
+        Weight on one side of the touch makes the flight dip on the other side, closer by a nearly constant factor. The
+        dips alone would halve their distance to the touch each round; the secant jumps to it.
         """
         out_times, out_faces = [], []
         reach, loaded = _TOUCH_STEPS * self.watch.question.dt, self.load > _SOME_WEIGHT
@@ -176,9 +173,9 @@ class Search:
 
 @lru_cache(maxsize=4)
 def _first(watch: Watched) -> tuple[Cuts, Floats]:
-    """Rows of all faces at some times, to begin with, and how far (m) thrust can move each of them."""
+    """The initial rows, all faces at some times, and how far (m) thrust can move each row."""
     question = watch.question
     times, faces = np.linspace(0.0, question.horizon, _FIRST_TIMES), np.arange(len(watch.names))
     cuts = watch.cuts(np.repeat(times, len(faces)), np.tile(faces, len(times)))
-    pushed = np.square(cuts.thrust.reshape(len(cuts.times), -1, question.dimensions)).sum(axis=-1)
-    return cuts, question.scenario.chaser.max_acceleration * np.sqrt(pushed).sum(axis=-1)
+    by_interval = cuts.thrust.reshape(len(cuts.times), -1, question.channels)
+    return cuts, question.thrust_scale * question.thrust_set.support(by_interval)

@@ -1,4 +1,4 @@
-"""The speed limit watched at all times, through v_max^2 - |v|^2: smooth, as a face distance is."""
+"""The speed limit watched at all times, through v_max^2 - |v|^2, which is smooth like a face distance."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def room(
 
 
 def bend(mean_motion: float, bounds: tuple[float, float, float, float, float]) -> float:
-    """Bound on the fourth derivative of |v|^2 (Leibniz) from those on |r| and its derivatives up to the fourth."""
+    """Bound on the fourth derivative of |v|^2 (Leibniz), from bounds on |r| and its first four derivatives."""
     _, v, a, jerk, snap = bounds
     crackle = 3.0 * mean_motion**2 * jerk + 2.0 * mean_motion * snap
     return 2.0 * (v * crackle + 4.0 * a * snap + 3.0 * jerk * jerk)

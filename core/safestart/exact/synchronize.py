@@ -1,8 +1,8 @@
-"""`synchronize`: the end T is any number of intervals, so every T must be refuted, or one found that succeeds.
+"""`synchronize`: the end T is any number of intervals; GO needs one T that succeeds, NO_GO a refutation of each.
 
-Branch and bound over T. The program of one T is solved; its multipliers bound the margin of every other T, too: the
-rows at times up to T keep their weights, the rows of the end move to the new end. What is not refuted so, the T with
-the highest bound first, is solved in turn. A few programs refute a hundred ends.
+Branch and bound over T. Solving the program of one T gives multipliers that bound the margin of every other T, too: the
+rows at times up to T keep their weights, the rows of the end move to the new end. The remaining T are solved in turn,
+the highest bound first. A few programs refute a hundred ends.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from safestart.exact.search import Search
 from safestart.exact.watch import Watch, watch_of
 from safestart.model.scenario import Bools, Floats
 
-# Refuted ends are solved to a tenth of their margin: the verdict is sure, and the bound of the whole is one end's.
+# Refuted ends are solved only to a tenth of their margin: the verdict is certain, and the worst end sets the bound.
 _SHARE = 0.1
 
 
@@ -50,7 +50,7 @@ def end_rows(question: Question) -> tuple[Floats, Floats, Floats]:
 
 
 class _Ends:
-    """What is known of each end T = k dt: ``upper`` (K + 1,) in metres, and whose multipliers show it."""
+    """Bounds for each end T = k dt: ``upper`` (K + 1,) in metres, and the multipliers that prove it."""
 
     def __init__(self, watch: Watch, state: Floats) -> None:
         question = watch.question
@@ -67,14 +67,14 @@ class _Ends:
         self.thrust: Floats | None = None
 
     def most_hopeful(self) -> int | None:
-        """The end with the highest bound among those neither refuted nor solved; the latest of equals."""
+        """The end with the highest bound among those neither refuted nor solved; the latest one in a tie."""
         open_ends = np.nonzero((self.upper >= -GUARD) & ~self.solved)[0]
         if not len(open_ends):
             return None
         return int(open_ends[len(open_ends) - 1 - int(np.argmax(self.upper[open_ends][::-1]))])
 
     def note(self, steps: int, search: Search) -> None:
-        """Take over the bracket of one end, and what its multipliers say of the others."""
+        """Record the bracket of one end, and the bounds that its multipliers give for the others."""
         self.solved[steps] = True
         self.rounds += search.rounds
         if search.lower > self.lower:
@@ -88,7 +88,7 @@ class _Ends:
         self.evidence.append(evidence)
 
     def _carried(self, evidence: Evidence) -> Floats:
-        """Bounds (K + 1,) on the margins of all ends by the multipliers of one, its end rows moved to theirs."""
+        """Bounds (K + 1,) on the margins of all ends from the multipliers of one, with its end rows moved to theirs."""
         question = self.watch.question
         d, columns, faces = question.dimensions, self.last * question.dimensions, len(evidence.faces)
         names, cone = evidence.blocks.names, question.dimensions + 1
@@ -111,7 +111,7 @@ class _Ends:
         return out
 
     def _before(self, times: Floats) -> Bools:
-        """(K + 1, J): whether the times (J,) are not after the ends, exactly where floats cannot tell."""
+        """(K + 1, J): whether the times (J,) are not after the ends; exact arithmetic decides close cases."""
         dt = self.watch.question.dt
         ends = dt * np.arange(self.last + 1)[:, None]
         out = np.asarray(times <= ends)
@@ -120,7 +120,7 @@ class _Ends:
         return out
 
     def answer(self, reason: str) -> Answer:
-        """GO where an end succeeds, NO_GO where every end is refuted, else UNDECIDED."""
+        """GO if an end succeeds, NO_GO if every end is refuted, else UNDECIDED."""
         upper = float(self.upper.max())
         if self.lower > GUARD:
             return Answer(Verdict.GO, self.lower, self.lower, upper, self.thrust, (), self.rounds)

@@ -1,15 +1,16 @@
-"""One flight watched at all times: the smallest margin in continuous time, and the rows that cut it off.
+"""One flight watched at all times: the smallest margin in continuous time, and the rows that cut the flight off.
 
 Between two samples h seconds apart a face distance f is enclosed by the cubic through f and f' at both: the distance
 between them is at most h^4 / 384 times the largest |f''''|. The cubic's minimum is closed-form, so a handful of samples
 per interval give a bound that holds at all times (in exact arithmetic; floats add about 1e-12 m).
 
-Everything but the turn of the faces depends on (n, dt, steps, d) alone and is kept; a question adds cosines and sines.
+Everything but the turn of the faces depends only on (n, dt, steps, d) and is cached; a question adds cosines and sines.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -22,6 +23,7 @@ from safestart.constraints.cubic import dips
 from safestart.dynamics.cwh import Cwh
 from safestart.exact import speed
 from safestart.exact.limits import AT_END, limit_at
+from safestart.exact.norm_rows import Blocks, blocks
 from safestart.exact.question import Question
 from safestart.model.scenario import Floats
 from safestart.optim.prediction import prediction_of
@@ -35,9 +37,9 @@ _MOST_SAMPLES = 200_000
 
 @dataclass(frozen=True, slots=True)
 class Minima:
-    """What a flight's margins come down to: a bound for all times and the local minima (times in s, m).
+    """A flight's margins: a bound for all times and the local minima (times in s, m).
 
-    Where the speed is limited, the index after the last face is its margin.
+    With a speed limit, the index after the last face stands for its margin.
     """
 
     lowest: float
@@ -62,6 +64,9 @@ class Watch:
 
     ``phase`` is the angle (rad) by which the corridor has turned at the question's t = 0.
     """
+
+    rounding = 1e-13
+    """Some hundred roundings."""
 
     def __init__(self, question: Question, phase: float = 0.0) -> None:
         target = question.scenario.target
@@ -131,6 +136,10 @@ class Watch:
         normal[:, 0], normal[:, 1] = -x, -y
         start, thrust = self.prediction.position_rows(times, normal)
         return Cuts(times, faces, self.offsets[faces], start, thrust)
+
+    def blocks(self, names: Sequence[str], times: Floats) -> Blocks:
+        """Rows of the norm limits ``names`` (B) at ``times`` (B,)."""
+        return blocks(self.question, self.prediction, names, times)
 
     def along_normals(self, flown: Floats) -> tuple[Floats, Floats]:
         """-normal . position in the body frame, (N, S+1, F) in m, and its rate times the sample's length.

@@ -42,14 +42,14 @@ class Example:
 
 @dataclass(frozen=True, slots=True)
 class ForAll:
-    """Verdict for a family; ``margin_m`` is what it rests on.
+    """Verdict for a family; ``margin_m`` is the proved bound behind it.
 
     GO: ``histories`` keep ``margin_m`` > 0 to every face for every member, as ``witness`` says; proved at the
     ``rates`` and ``motions`` (rad/s), with bounds between. NO_GO: the ``pieces`` show that no member's history keeps
-    more than ``margin_m`` < 0. UNDECIDED: NaN, with a ``reason``; ``examples`` hold one GO and one NO_GO member where
-    the verdict depends on which member is true.
+    more than ``margin_m`` < 0. UNDECIDED: NaN, with a ``reason``; if the verdict differs between members, ``examples``
+    holds one GO and one NO_GO member.
 
-    ``upper`` is the most that the witness asked for can keep (inf where it was not sought).
+    ``upper`` bounds the margin that a witness of the requested kind can keep (inf if none was sought).
     """
 
     verdict: Verdict

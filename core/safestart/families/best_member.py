@@ -12,11 +12,13 @@ the rows taken at its tumble rate w and mean motion n, a_max the upper end. F is
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
 from safestart.exact.answer import GUARD, Answer, Evidence, Verdict
 from safestart.exact.decide import decide
+from safestart.exact.norm_rows import Blocks, blocks
 from safestart.exact.search import Search
 from safestart.exact.watch import Cuts, Ints, Minima, Watch
 from safestart.families.answer import TOLERANCE, Example, ForAll, Piece, Witness
@@ -37,6 +39,8 @@ class Friendly:
     a_max, says where the start lies between the ends.
     """
 
+    rounding = Watch.rounding
+
     def __init__(self, family: Family, rate: float, motion: float) -> None:
         self.question = family.member(rate, motion, family.thrusts[1])
         self.watch = Watch(self.question)
@@ -54,6 +58,10 @@ class Friendly:
         moves[:, :, 0] = cuts.start * self.half / self.a_max
         thrust = np.concatenate([cuts.thrust, moves.reshape(len(times), -1)], axis=1)
         return Cuts(times, faces, cuts.offset, cuts.start, thrust)
+
+    def blocks(self, names: Sequence[str], times: Floats) -> Blocks:
+        """Rows of the norm limits ``names`` (B) at ``times`` (B,)."""
+        return blocks(self.question, self.prediction, names, times)
 
     def minima(self, state: Floats, thrust: Floats) -> Minima:
         """The flight from the start that was chosen."""

@@ -1,4 +1,4 @@
-"""What can happen between the values of a parameter that are looked at: bounds that make corners enough.
+"""Bounds between the checked values of a parameter, so that checking the corners is enough.
 
 *Tumble rate.* With the in-plane part of a face's normal a and of the position r, the distance at time t is
 b - |a||r| cos(w t - psi): a constant plus a sinusoid g of the angle, so between two angles lo and hi, 2 delta apart,
@@ -45,7 +45,7 @@ class Reach:
 def reach(distance: float, speed: float, thrust: float, motion: float, horizon: float) -> Reach:
     """Bounds from |r(0)|, |v(0)|, the thrust limit, the largest mean motion n, and T (docs/theory/uncertainty.md)."""
     n, t = motion, horizon
-    # No 2 n t in the exponent: the Coriolis term is at right angles to the velocity and does no work.
+    # No 2 n t in the exponent: the Coriolis term is perpendicular to the velocity and does no work.
     growth = math.exp(min(1.5 * (n * t) ** 2, _LARGEST_EXPONENT))
     push = 3.0 * n * n * distance + thrust
     v = growth * (speed + t * push)
@@ -62,7 +62,7 @@ def half_angle(rates: tuple[float, ...], horizon: float) -> float:
 
 
 def chord_gap(values: tuple[float, ...], curvature: float) -> float:
-    """How far a function of this largest second derivative leaves the chord between neighbouring values."""
+    """How far a function with this largest second derivative deviates from the chord between neighbouring values."""
     return max((b - a for a, b in pairwise(values)), default=0.0) ** 2 / 8.0 * curvature
 
 
@@ -70,7 +70,8 @@ def turned(lowest: Floats, offsets: Floats, aside: Bools, delta: float) -> Float
     """Bounds on the distances (F,) at all rates from those at the nodes, ``lowest`` (F,), where all are positive.
 
     ``offsets`` (F,) are the distances of the target's centre, ``aside`` (F,) marks the faces that lean in x. The others
-    only see how far the chaser is ahead of the target: positive by the hold plane, so that the worst rate is a node.
+    depend only on how far the chaser is ahead of the target, which the hold plane makes positive, so the worst rate is
+    a node.
     """
     below = np.minimum(lowest - offsets, 0.0)
     out: Floats = lowest + np.where(aside, below * (1.0 / math.cos(delta) - 1.0), 0.0)

@@ -24,13 +24,13 @@ from safestart.families.worst_member import (
 from safestart.model.scenario import Floats
 
 _ROUNDS = 40
-# Neighbouring rates turn the corridor by at most twice this at T, so that what lies between costs about a millimetre.
+# Neighbouring rates turn the corridor by at most twice this at T, so the rates between cost about a millimetre.
 _TURN = 0.045
 _MOST_EXAMPLES = 8
 
 
 def one_history(family: Family, state: Floats, middle: Answer, witness: Witness, tolerance: float) -> ForAll:
-    """GO where such histories are found, else UNDECIDED; ``middle`` is the answer of the middle member."""
+    """GO if such histories are found, else UNDECIDED; ``middle`` is the answer of the middle member."""
     half = family.half
     corners = signs(half) if witness == "per_corner" else np.zeros((1, len(half)))
     known = family.at_known_start() if witness == "per_corner" else family
@@ -53,7 +53,7 @@ def one_history(family: Family, state: Floats, middle: Answer, witness: Witness,
 
 
 def _at_nodes(family: Family, starts: list[Floats]) -> tuple[Hostile | None, str]:
-    """The family at enough rates and mean motions; None with the reason where that would be too many."""
+    """The family at enough rates and mean motions; None with the reason if these would be too many."""
     turn = half_angle(family.rates, family.question.horizon)
     bend = max(bend_of(family, start) for start in starts)
     width = family.motions[1] - family.motions[0]
@@ -68,7 +68,7 @@ def _at_nodes(family: Family, starts: list[Floats]) -> tuple[Hostile | None, str
 
 
 def _narrow(search: Search, tolerance: float) -> str:
-    """Rounds until the bracket is narrow or no history can serve all; the reason if there is neither."""
+    """Run rounds until the bracket is narrow or no history can serve all; returns the reason if neither happens."""
     if search.distance_now < -GUARD:
         search.upper = search.distance_now
         return ""
@@ -91,7 +91,7 @@ def _not_go(
     upper: float,
     reason: str,
 ) -> ForAll:
-    """UNDECIDED, with a NO_GO member where one of the worst corners is one."""
+    """UNDECIDED, with a NO_GO member if one of the worst corners is one."""
     if reason:
         return ForAll(Verdict.UNDECIDED, math.nan, upper, witness, reason=reason)
     here = Example(family.question, state, middle)
@@ -111,14 +111,14 @@ def _not_go(
 
 
 def _suspects(family: Family, hostile: Hostile, search: Search) -> list[tuple[float, float, Floats]]:
-    """Members likely to be NO_GO: the ends of the parameters, with the start that the multipliers like least."""
+    """Members likely to be NO_GO: the ends of the parameters, with the start that the multipliers bound lowest."""
     starts = [search.state]
     if search.evidence is not None:
         cuts = hostile.cuts(search.evidence.times, search.evidence.faces)
         pull = search.evidence.weights @ cuts.start
         starts.insert(0, search.state - hostile.half * np.sign(pull))
     else:
-        # The start box reaches outside already: the member whose start is farthest out.
+        # The start box reaches outside already: take the member whose start is farthest out.
         d = family.question.dimensions
         nearest = int(np.argmin(hostile.offsets - hostile.normals @ search.state[:d]))
         away = np.zeros_like(hostile.half)

@@ -1,8 +1,8 @@
 """Go or no-go for all members of a family: proved for every parameter of the intervals and every start of the box.
 
-The middle of the family says which way to look. Where it is GO, one history is sought that stays for every member;
-where it is NO_GO, multipliers that no member beats, on pieces of the rates' interval. Where neither is found the answer
-is UNDECIDED: with two members that differ, or with what stands in the way.
+The middle member sets the direction of the search. If it is GO, the search looks for one history that stays for every
+member; if it is NO_GO, for multipliers that refute every member, on pieces of the rates' interval. Otherwise the answer
+is UNDECIDED, with two members that differ or with the obstacle.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ def decide_for_all(
 ) -> ForAll:
     """Answer `stay` for every member of ``family``; ``state`` (2 d,) is the middle of the start box, LVLH.
 
-    ``witness`` says what a GO shows: ``common``, one history for all, or ``per_corner``, one for each corner of the
-    start box (all parameters). The margin is narrowed to ``tolerance`` m where the nodes allow it. Raises
+    ``witness`` sets the evidence for a GO: ``common``, one history for all, or ``per_corner``, one for each corner of
+    the start box (all parameters). The margin is narrowed to ``tolerance`` m if the nodes allow it. Raises
     ``InvalidInput`` as :func:`~safestart.exact.decide.decide` does.
     """
     if witness not in ("common", "per_corner"):

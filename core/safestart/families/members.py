@@ -1,7 +1,7 @@
 """A family of questions: tumble rate, thrust limit and mean motion in intervals, the start in a box.
 
-What is certain about a target is an interval: its tumble rate is estimated, the engines' thrust varies, navigation
-errs. A verdict for the family holds for every member:
+We know a target's values only as intervals: its tumble rate is an estimate, the engines' thrust varies, and navigation
+has errors. A verdict for the family holds for every member:
 
 GO      one thrust history stays for every member (witness ``common``), or every corner of the start box has a history
         that stays for every parameter (``per_corner``; the viable starts are convex, so each start between has one,
@@ -88,7 +88,7 @@ class Family:
         return replace(self.question, scenario=scenario)
 
     def at_known_start(self) -> Family:
-        """The same parameters with a start that is known."""
+        """The same parameters with a known start."""
         return replace(self, start=())
 
 

@@ -1,30 +1,34 @@
-"""The worst member of a family at each time: what :class:`~safestart.exact.search.Search` sees of a family.
+"""The worst member of a family at each time, as :class:`~safestart.exact.search.Search` sees the family.
 
 One history must stay for every member. The search runs on the rows of a few nodes (tumble rate, mean motion), each row
-less what the start box takes from it, sum_i |start_i| half_i: a face of a node counts as a face of its own. The flight
-is watched from every corner of the box at every node; what lies between nodes is bounded (``between.py``).
+less the part that the start box takes, sum_i |start_i| half_i; each face of each node counts as a separate face. The
+flight is watched from every corner of the box at every node; ``between.py`` bounds the values between nodes.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 
 from safestart.constraints.cubic import dips
+from safestart.exact.norm_rows import Blocks, blocks
 from safestart.exact.watch import Cuts, Ints, Minima, Watch, watch_of
 from safestart.families.between import chord_gap, half_angle, nodes, reach, turned
 from safestart.families.members import Family, signs
 from safestart.model.scenario import Floats
 
 MOST_NODES, MOST_VALUES = 128, 4_000_000
-"""Largest number of nodes, and of distances (corners, samples, faces) looked at per flight."""
+"""Largest number of nodes, and of distances (corners, samples, faces) checked per flight."""
 
 
 class Hostile:
-    """A family as one watch: ``names`` and rows node by node, ``question`` that with the least thrust."""
+    """A family as one watch: ``names`` and rows node by node; ``question`` is the one with the least thrust."""
+
+    rounding = Watch.rounding
 
     def __init__(self, family: Family, rates: tuple[float, ...], motions: tuple[float, ...]) -> None:
         self.family, self.rates, self.motions = family, rates, motions
@@ -55,6 +59,10 @@ class Hostile:
             offset[rows] = cut.offset - np.abs(cut.start) @ self.half
         return Cuts(times, faces, offset, start, thrust)
 
+    def blocks(self, names: Sequence[str], times: Floats) -> Blocks:
+        """Rows of the norm limits ``names`` (B) at ``times`` (B,)."""
+        return blocks(self.question, self.prediction, names, times)
+
     def minima(self, state: Floats, thrust: Floats) -> Minima:
         """Local minima at the nodes; ``lowest`` bounds the distances of every member where it is positive."""
         found = [
@@ -66,21 +74,21 @@ class Hostile:
         times = np.concatenate([minima.times for _, minima in found])
         faces = np.concatenate([minima.faces + k * self.faces for k, (_, minima) in enumerate(found)])
         values = np.concatenate([minima.values for _, minima in found])
-        # Of one face's minima in one interval the lowest is enough of a cut: nodes are near each other.
+        # One face's lowest minimum in an interval is a sufficient cut, as nodes are close together.
         order = np.lexsort((values, faces % self.faces, times // self.question.dt))
         key = np.stack([times // self.question.dt, faces % self.faces])[:, order]
         kept = order[np.concatenate([[True], (np.diff(key) != 0.0).any(axis=0)])]
         return Minima(sure, times[kept], faces[kept], values[kept])
 
     def chord(self, state: Floats) -> float:
-        """What the mean motions between the nodes may take from a distance, m."""
+        """Largest loss of distance from the mean motions between the nodes, m."""
         if len(self.motions) == 1:
             return 0.0
         return chord_gap(self.motions, bend_of(self.family, state))
 
     @property
     def lost(self) -> float:
-        """What the tumble rates between the nodes may take from a positive margin at most, m."""
+        """Largest loss of a positive margin from the tumble rates between the nodes, m."""
         room = float(np.where(self.lean, np.maximum(self.nodes[0].offsets, 0.0), 0.0).max())
         return room * (1.0 / math.cos(self.delta) - 1.0)
 
@@ -100,7 +108,7 @@ def hostile_of(family: Family, rate_parts: int, motion_parts: int) -> Hostile:
 
 
 def samples_of(family: Family) -> int:
-    """How many distances a flight of the fastest member is watched by: samples times faces."""
+    """Number of watched distances of a flight of the fastest member: samples times faces."""
     node = watch_of(family.member(family.rates[1], family.motions[1], family.thrusts[0]))
     return node.times.size * len(node.names)
 
@@ -109,8 +117,8 @@ def samples_of(family: Family) -> int:
 class _Box:
     """The start box at one node: ``signs`` (P, K) of its corners along the K axes that have a width.
 
-    ``value`` and ``slope`` (K, N, S+1, F) are what each half-width adds to distances and slopes; ``far`` (m) and
-    ``fast`` (m/s) what all of them add to position and speed at most.
+    Each half-width adds ``value`` and ``slope`` (K, N, S+1, F) to distances and slopes; all together add at most
+    ``far`` (m) and ``fast`` (m/s) to position and speed.
     """
 
     signs: Floats

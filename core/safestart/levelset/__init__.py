@@ -10,10 +10,10 @@
 ``values`` is l at the horizon (full shape); {V <= 0} is the set. ``kind``: "tube" (reached at some time), "fixed"
 (at the horizon), "always" (held throughout). ``cap`` / ``floor``: arrays that broadcast against the lattice, or
 functions of time, for a moving target (V <= cap) and an obstacle or state constraint (V >= floor). ``dynamics`` may
-also be a model of hj-reachability's form. ``solution.field`` is None on numerical failure (``solution.failure`` says
-why), else it has ``values``, ``value_at(states)``, ``gradient_at(states)``; ``solution.optimal_inputs(states)`` lists
-each input's best choice. States outside the lattice raise ``InvalidInput``. To keep values of several times, solve
-piece by piece, the values of one piece into the next.
+also be a model of hj-reachability's form. On numerical failure ``solution.field`` is None and ``solution.failure``
+gives the reason; else the field has ``values``, ``value_at(states)``, ``gradient_at(states)``;
+``solution.optimal_inputs(states)`` lists each input's best choice. States outside the lattice raise ``InvalidInput``.
+For values at several times, solve piece by piece and pass the values of one piece to the next.
 """
 
 from safestart.levelset.dynamics import Ball, Box, Input, Linear, Motion

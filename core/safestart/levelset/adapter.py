@@ -1,4 +1,4 @@
-"""Models written for hj-reachability, taken as they are: evaluated on the nodes once, by JAX if they need it."""
+"""Use models written for hj-reachability unchanged: evaluate them on the nodes once, by JAX if they need it."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _NEEDED = (
 
 
 class _NoTime:
-    """Stands for the time where a model must not look at it: any use of it raises ``TypeError``."""
+    """Stands for the time when a model must not use it: any use raises ``TypeError``."""
 
     __slots__ = ()
 
@@ -45,7 +45,7 @@ class Tabulated:
 
     @classmethod
     def of(cls, model: Any, lattice: Lattice) -> Tabulated:
-        """Wrap a model; raises ``InvalidInput`` when it lacks something or has another number of states."""
+        """Wrap a model; raises ``InvalidInput`` when it lacks a member or has another number of states."""
         for name in _NEEDED:
             if not hasattr(model, name):
                 raise invalid(
@@ -70,7 +70,7 @@ class Tabulated:
         return found
 
     def rates(self, lattice: Lattice, time: float) -> Rates:
-        """Rates on the nodes, each kept only over the axes it depends on."""
+        """Rates on the nodes, each stored only over the axes it depends on."""
         drift = self._over_nodes("open_loop_dynamics", lattice, time)
         gains: list[list[list[Floats | None]]] = []
         for player, (bound, _, _) in zip(("control", "disturbance"), self.bounds, strict=True):
@@ -95,7 +95,7 @@ class Tabulated:
         ]
 
     def _over_nodes(self, name: str, lattice: Lattice, time: float) -> list[Floats]:
-        """Every component of a method on the nodes, broadcast along the axes it does not depend on."""
+        """Every component of a method on the nodes, with length 1 along axes on which it does not depend."""
         axes = lattice.axes
         rest = np.stack(np.meshgrid(*axes[1:], indexing="ij"), axis=-1).reshape(-1, lattice.ndim - 1)
         layers: list[list[Floats]] = []
@@ -123,7 +123,7 @@ class Tabulated:
 
 
 def as_motion(model: Any, lattice: Lattice) -> Motion:
-    """A motion of this package as it is; anything else as a model of hj-reachability's form."""
+    """Return a motion of this package unchanged; wrap anything else as a model of hj-reachability's form."""
     if hasattr(model, "rates") and hasattr(model, "bounds"):
         motion: Motion = model
         return motion
@@ -140,7 +140,7 @@ def _bound(name: str, space: Any) -> Box | Ball:
 
 
 def _narrow(values: Floats) -> Floats:
-    """Keep one entry along every axis on which nothing changes."""
+    """Keep one entry along every axis without variation."""
     for axis in range(values.ndim):
         first = values.take([0], axis=axis)
         if (values == first).all():
@@ -149,7 +149,7 @@ def _narrow(values: Floats) -> Floats:
 
 
 def _reads_time(model: Any, state: Floats, traced: bool) -> bool:
-    """Whether a model looks at the time it is given; in doubt, yes."""
+    """Whether a model uses its time argument; in doubt, yes."""
     for name in ("open_loop_dynamics", "control_jacobian", "disturbance_jacobian"):
         method = getattr(model, name)
         if traced:

@@ -1,4 +1,4 @@
-"""Motion that a level-set problem may have: dx/dt = f(x, t) + sum over inputs of G(x, t) u, u in a box or a ball.
+"""The motion of a level-set problem: dx/dt = f(x, t) + sum over inputs of G(x, t) u, u in a box or a ball.
 
 An input with ``aim`` "min" makes the value small, one with "max" makes it large. The Hamiltonian is then
 
@@ -66,8 +66,8 @@ class Input:
 class Rates:
     """Motion on the nodes at one time, arrays that broadcast against the grid.
 
-    ``drift[i]`` holds the terms whose sum is dx_i/dt without inputs; ``gains[k][c][i]`` is what channel c of input
-    k adds to dx_i/dt per unit, None for nothing.
+    ``drift[i]`` holds the terms whose sum is dx_i/dt without inputs; ``gains[k][c][i]`` is the effect of one unit of
+    channel c of input k on dx_i/dt, None for no effect.
     """
 
     drift: list[list[Floats]]
@@ -75,7 +75,7 @@ class Rates:
 
 
 class Motion(Protocol):
-    """What the solver needs of a model: sets of its inputs, and its rates on a lattice."""
+    """The interface of a model to the solver: its input sets, and its rates on a lattice."""
 
     @property
     def bounds(self) -> list[tuple[Box | Ball, Aim, float]]:

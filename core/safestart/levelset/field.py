@@ -1,4 +1,4 @@
-"""A value function on a lattice, read at any state inside it; and the inputs that are optimal there."""
+"""A value function on a lattice, read at any state inside it, and the optimal inputs there."""
 
 from __future__ import annotations
 
@@ -62,9 +62,9 @@ class ValueField:
 def optimal_inputs(motion: Motion, gradient: Floats, states: Floats, time: float = 0.0) -> list[Floats]:
     """Each player's optimal input (..., m) for gradients (..., n) at states (..., n).
 
-    The input of an aim "max" maximises gradient . G u over its set, "min" minimises it. Where the gradient does
-    not move a channel of a box, its upper end is taken for "max" and its lower end for "min"; for a ball its
-    middle. A priced input stays at zero where its effect is not worth the price.
+    The input of an aim "max" maximises gradient . G u over its set, "min" minimises it. If the gradient does not move a
+    channel of a box, "max" takes its upper end and "min" its lower end; a ball gives its middle. A priced input stays
+    at zero if its effect is not worth the price.
     """
     found = []
     for (bound, aim, price), gains in zip(motion.bounds, motion.gains_at(states, time), strict=True):

@@ -1,4 +1,4 @@
-"""The grid a level-set problem is solved on: a box of states, node counts, and what lies beyond each axis."""
+"""The grid of a level-set problem: a box of states, node counts, and the boundary of each axis."""
 
 from __future__ import annotations
 
@@ -17,12 +17,11 @@ MAX_TOTAL_NODES = 200_000_000
 
 
 class Boundary(StrEnum):
-    """What a stencil finds beyond the last node of an axis.
+    """The value that a stencil sees beyond the last node of an axis.
 
-    ``EDGE`` repeats the last value: no slope across the wall, so nothing flows in that is not inside, and the
-    first-order scheme keeps the range of the initial values. The extrapolations continue the slope
-    (``AWAY_FROM_ZERO`` with the sign that moves it away from zero, the default of hj-reachability); inflow feeds
-    on them without bound.
+    ``EDGE`` repeats the last value: without a slope across the wall nothing flows in from outside, and the first-order
+    scheme keeps the range of the initial values. The extrapolations continue the slope (``AWAY_FROM_ZERO`` with the
+    sign that moves it away from zero, the default of hj-reachability); inflow feeds on them without bound.
     """
 
     EDGE = "edge"

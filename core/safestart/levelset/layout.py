@@ -1,4 +1,4 @@
-"""Where a node lies in the kernel's memory: axes reordered, the last one with ghost nodes, blocks end to end."""
+"""The layout of nodes in the kernel's memory: reordered axes, ghost nodes on the last one, contiguous blocks."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from safestart.model.scenario import Floats
 
 Array = NDArray[Any]
 
-# A block and its row buffers should stay in the caches close to the core; a longer row needs no second axis.
+# A block and its row buffers should fit in the first caches; a longer row needs no second axis.
 LONGEST_BLOCK, LONG_ROW = 4096, 256
 
 
@@ -57,7 +57,7 @@ class Layout:
 
     @property
     def blocks(self) -> int:
-        """How many blocks there are."""
+        """The number of blocks."""
         return math.prod(self.shape[: self.outer])
 
     @property
@@ -106,7 +106,7 @@ class Layout:
         return padded
 
     def block_pad(self, values: Floats) -> Floats:
-        """Arrays over (outer axes..., block axes...) as (outer axes..., block length), ghosts like the edge."""
+        """Arrays over (outer axes..., block axes...) as (outer axes..., block length); ghosts repeat the edge."""
         g = self.width
         padded = np.pad(values, [(0, 0)] * (values.ndim - 1) + [(g, g)], "edge")
         return padded.reshape(*values.shape[: self.outer], self.block)

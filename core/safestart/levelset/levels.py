@@ -1,4 +1,4 @@
-"""Levels that cap a value or hold it up, and what those that move come to over a stretch of time."""
+"""Upper and lower levels of a value, and the joint effect of moving levels over a time step."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ Level = Floats | Callable[[float], Floats]
 
 Pair = tuple[Floats | None, Floats | None]
 
-# Between two looks a level may change by half of what it changes from one node to the next, or by this share of its
-# range; where it jumps, the time of the jump is found to this depth of halving.
+# Between two samples a level may change by half of its change between neighbouring nodes, or by this share of its
+# range; the time of a jump is bisected to this depth.
 _CELLS, _SHARE, _DEPTH = 0.5, 1e-3, 10
 
 
 class Levels:
     """``cap`` keeps V <= cap, ``floor`` V >= floor.
 
-    ``resolution`` (s): within a step levels that move are looked at this often at least, and more often where they
-    change by more than half a cell; None: only where a step ends.
+    ``resolution`` (s): moving levels are sampled at least this often within a step, and more often when they change by
+    more than half a cell; None: only at the end of a step.
     """
 
     def __init__(self, cap: Level | None, floor: Level | None, resolution: float | None) -> None:
@@ -32,11 +32,11 @@ class Levels:
 
     @property
     def moving(self) -> bool:
-        """Whether one of them depends on time."""
+        """Whether a level depends on time."""
         return callable(self._cap) or callable(self._floor)
 
     def at(self, time: float) -> Pair:
-        """Cap and floor at a time (s); None for one that is not there."""
+        """Cap and floor at a time (s); None for a missing one."""
         cap, floor = (
             np.asarray(level(time), dtype=np.float64) if callable(level) else level
             for level in (self._cap, self._floor)
@@ -44,10 +44,10 @@ class Levels:
         return cap, floor
 
     def over(self, begin: float, end: float) -> Pair:
-        """One cap and one floor for a step back from ``begin`` to ``end`` (s): those met on the way, in their order.
+        """One cap and one floor for a step back from ``begin`` to ``end`` (s), equal to all those met on the way.
 
         V <- max(floor, min(cap, V)) at each of the times; such a sequence is again a cap and a floor. The level at
-        ``begin`` belongs to the step before, but for the first.
+        ``begin`` belongs to the step before, except for the first step.
         """
         if not self.moving or self._resolution is None:
             return self.at(end)
@@ -78,7 +78,7 @@ class Levels:
 
 
 def _far(one: Pair, two: Pair) -> bool:
-    """Whether a level changes too much between two looks for what lies between them to be ignored."""
+    """Whether a level changes so much between two samples that the times between matter."""
     for a, b in zip(one, two, strict=True):
         if a is None or b is None or a is b:
             continue
@@ -95,7 +95,7 @@ def _steepest(level: Floats) -> float:
 
 
 def _then(first: Pair, second: Pair) -> Pair:
-    """Cap and floor of one pair after another."""
+    """Cap and floor equal to one pair after another."""
     (cap, floor), (next_cap, next_floor) = first, second
     if next_cap is not None:
         cap = next_cap if cap is None else np.minimum(cap, next_cap)

@@ -23,7 +23,7 @@ _HALVINGS = 60
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """How to compute: ``stages`` 1 to 3 (None: the scheme's own), ``precision`` float32 or float64, ``threads``."""
+    """Numerical options: ``stages`` 1 to 3 (None: the scheme's own), ``precision`` float32 or float64, ``threads``."""
 
     scheme: Scheme = Scheme.WENO5
     stages: int | None = None
@@ -46,10 +46,10 @@ class Options:
 class March:
     """Value function on a lattice, stepped backwards from ``time`` (s).
 
-    ``values`` (shape of the lattice) is the value at ``time``. ``cap`` keeps V <= cap (a target that moves: tube
-    towards it), ``floor`` V >= floor (an obstacle, or a state constraint: positive where the state must not be);
-    both are applied after every step. ``resolution`` (s) is how often at least they are looked at within a step, if
-    they move, and the longest step of a motion that varies; None: only where a step ends, steps as long as is stable.
+    ``values`` (shape of the lattice) is the value at ``time``. ``cap`` keeps V <= cap (a moving target: tube towards
+    it), ``floor`` V >= floor (an obstacle, or a state constraint: positive where the state is forbidden); both apply
+    after every step. ``resolution`` (s) is the longest time between samples of moving levels within a step, and the
+    longest step of a time-varying motion; None: levels only at the end of a step, steps as long as is stable.
     """
 
     def __init__(
@@ -95,7 +95,7 @@ class March:
 
     @property
     def rate(self) -> float:
-        """Largest sum of speed / spacing on the nodes at the present time, 1/s; a step is ``courant`` / rate."""
+        """Largest sum of speed / spacing on the nodes at the current time, 1/s; a step is ``courant`` / rate."""
         return self._rate
 
     def step(self, most: float) -> float:
@@ -130,8 +130,7 @@ class March:
         return dt
 
     def _stable(self, dt: float) -> float:
-        """A step no longer than ``dt`` that is stable at its beginning, middle and end: a motion may be at rest at one
-        of them and fast at the next."""
+        """A step of at most ``dt`` that is stable at its beginning, middle and end, as the motion's speed may vary."""
         dt = dt if self._resolution is None else min(dt, self._resolution)
         for _ in range(_HALVINGS):
             rate = self._rate
@@ -153,7 +152,7 @@ class March:
 
     def range(self) -> tuple[float, float]:
         """Least and largest value on the nodes; NaN when one is not finite."""
-        # Ghosts that repeat a node do not widen the range, and flat memory is read much faster.
+        # Ghosts that repeat a node do not widen the range, and reading flat memory is much faster.
         copies = self._stage.layout.boundary[-1] in (Boundary.EDGE, Boundary.PERIODIC)
         nodes = self._v[SLACK:-SLACK] if copies else self.nodes()
         low, high = float(nodes.min()), float(nodes.max())

@@ -1,4 +1,4 @@
-"""Numbers by which the compiled kernels are told what to do, and the memory they may run over."""
+"""Codes that control the compiled kernels, and the memory that they may overrun."""
 
 from __future__ import annotations
 

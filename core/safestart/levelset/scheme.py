@@ -1,4 +1,4 @@
-"""Names of what a solver can be asked for: derivative, flux, set."""
+"""Names of the solver's choices: derivative, flux, set."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from safestart.levelset import numbers
 
 
 class Scheme(StrEnum):
-    """One-sided derivative. Each comes with the Runge-Kutta order that its accuracy deserves."""
+    """One-sided derivative, each with the Runge-Kutta order that fits its accuracy."""
 
     FIRST = "first"
     ENO2 = "eno2"
@@ -19,7 +19,7 @@ class Scheme(StrEnum):
 
 
 class SchemeFacts(NamedTuple):
-    """Number in the kernel, ghost nodes it needs, Runge-Kutta stages by default."""
+    """Its number in the kernel, its ghost nodes, its default number of Runge-Kutta stages."""
 
     number: int
     width: int
@@ -48,7 +48,7 @@ class Flux(StrEnum):
 
 
 class Kind(StrEnum):
-    """Which time counts.
+    """Which times count.
 
     ``FIXED``: the value at the horizon. ``TUBE``: the least value on the way (reach: {V <= 0} can be brought, or
     is forced, into the target at some time). ``ALWAYS``: the largest on the way (stay: {V <= 0} can be kept in it).

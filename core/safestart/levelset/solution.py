@@ -1,4 +1,4 @@
-"""Solve a level-set problem: march, watch the range of the value, and say so when it cannot be trusted."""
+"""Solve a level-set problem: march, watch the range of the value, and report an untrustworthy result."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from safestart.runtime.progress import Context
 
 MAX_STEPS = 1_000_000
 # Share of the initial range by which the value may leave it: rounding for the monotone first-order scheme, over-
-# and undershoot (measured: 1 %) for the others. A poisoned boundary leaves it several times over.
+# and undershoot (measured: 1 %) for the others. A faulty boundary makes the value leave it several times over.
 MONOTONE_TOLERANCE, TOLERANCE = 1e-3, 0.05
 LOOKS = 20
 MOMENTS = 200
-"""How often at least levels that move, and a motion that varies, are looked at over the horizon."""
+"""Least number of samples, over the horizon, of moving levels and of a time-varying motion."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,11 +72,11 @@ def solve(
     """Value at time ``start`` of the game that is worth ``values`` (shape of the lattice) at ``start + horizon``.
 
     ``dynamics`` is a motion (:class:`~safestart.levelset.dynamics.Linear`) or a model of hj-reachability's form.
-    ``cap`` and ``floor``: see :class:`~safestart.levelset.march.March`; those that move, and a motion that varies, are
-    looked at 200 times over the horizon at least, a level more often where it changes by more than half a cell. What
-    ``always`` is to keep must be kept inside the lattice: a state that has to leave it counts as outside the set.
-    Raises ``InvalidInput`` for bad input and for more than a million steps, ``Cancelled`` between looks at the
-    context. A value that is not finite, or that leaves the range it must keep, is a solution with ``field`` None.
+    ``cap`` and ``floor``: see :class:`~safestart.levelset.march.March`; moving ones, and a time-varying motion, are
+    sampled at least 200 times over the horizon, a level more often when it changes by more than half a cell. For
+    ``always`` the state must stay inside the lattice: a state that has to leave it counts as outside the set. Raises
+    ``InvalidInput`` for bad input and for more than a million steps, and ``Cancelled`` when the context says so. A
+    value that is not finite, or that leaves its possible range, gives a solution with ``field`` None.
     """
     if not (math.isfinite(horizon) and horizon > 0.0):
         raise invalid("horizon", "a positive number of seconds", horizon)
@@ -116,7 +116,7 @@ def solve(
 
 
 def _trouble(march: March, options: Options, motion: Motion) -> str:
-    """Why the value cannot be trusted, or nothing."""
+    """Why the value cannot be trusted, or ""."""
     low, high = march.range()
     if not math.isfinite(low + high):
         return f"the value is not finite at t = {march.time:g} s"

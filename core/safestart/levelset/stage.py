@@ -60,16 +60,16 @@ class Stage:
         self._groups: NDArray[np.int64]
 
     def at(self, time: float) -> None:
-        """Take the motion's rates at a time (s)."""
+        """Evaluate the motion's rates at a time (s)."""
         if not np.isnan(self._time) and not self._motion.varies:
             return
         self._time = time
         self._load(self._motion.rates(self._lattice, time))
 
     def _load(self, rates: Rates) -> None:
-        """Tables of drift, spread and kink by axis, then of the gains; which gains are whose.
+        """Tables of drift, spread and kink by axis, then of the gains, and the owners of the gains.
 
-        ``spread`` is what the inputs add to the largest |dH/dp_i|, ``kink`` what they put before |p_i| in H.
+        ``spread`` is the inputs' part of the largest |dH/dp_i|, ``kink`` their factor of |p_i| in H.
         """
         n, order = self._lattice.ndim, self.layout.order
         drift = [list(terms) for terms in rates.drift]
@@ -109,7 +109,7 @@ class Stage:
                     kink[i].append(sign * total)
         rows = [*(drift[i] for i in order), *(spread[i] for i in order), *(kink[i] for i in order), *gains]
         tables = Tables.of(self.layout, rows, self._dtype)
-        # Half widths of the channels lie behind the tables, one each.
+        # The channels' half widths follow the tables, one each.
         halves = np.array([half for _, _, half in channels], dtype=self._dtype)
         behind = len(tables.data)
         self._tables = Tables(tables.where, np.concatenate([tables.data, halves]))

@@ -1,4 +1,4 @@
-"""Arrays over the grid as the kernel reads them: a scalar per block plus a run per block, nothing stored twice.
+"""Arrays over the grid for the kernel: a scalar per block plus a run per block, without repetition.
 
 A table is the sum of a part that is constant inside a block and a part that varies there. Each is stored only over
 the axes it depends on; along the others its stride is 0. A linear model thus needs a few runs, not copies of the grid.
@@ -28,7 +28,7 @@ class Tables:
     def of(cls, layout: Layout, rows: Sequence[Sequence[Floats]], dtype: Any) -> Tables:
         """One table per row: the sum of its terms, arrays that broadcast against the lattice."""
         outer = layout.outer
-        # The first run is zeros: where nothing varies, or nothing is there.
+        # The first run is zeros, for tables without a varying part.
         parts: list[NDArray[Any]] = [np.zeros(layout.block, dtype=dtype)]
         where = np.zeros((len(rows), 2 + 2 * outer), dtype=np.int64)
         free = layout.block

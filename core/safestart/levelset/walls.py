@@ -1,4 +1,4 @@
-"""Where a motion leaves the box whatever its player does: what lies beyond is not known, so it counts as outside."""
+"""Where every input makes a motion leave the box; the values beyond are unknown, so these states count as outside."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from safestart.model.scenario import Floats
 
 
 def beyond_is_outside(lattice: Lattice, motion: Motion, values: Floats, times: list[float]) -> Floats:
-    """``values`` of a set that is to be kept, raised on walls of the lattice that a state cannot help but cross.
+    """Raise ``values`` of a set to be kept on walls of the lattice that a state must cross.
 
-    Raised are nodes where the value is not positive already, to the largest value there is (positive in any case): the
-    ghosts behind an ``EDGE`` wall repeat its value, which would let a state that has left stay in the set for ever.
+    Nodes whose value is not positive rise to the largest value (or a positive one). Otherwise the ghosts behind an
+    ``EDGE`` wall, which repeat its value, would keep a state that has left in the set for ever.
     """
     lost = np.zeros(lattice.shape, dtype=np.bool_)
     for time in times if motion.varies else times[:1]:
@@ -31,7 +31,7 @@ def beyond_is_outside(lattice: Lattice, motion: Motion, values: Floats, times: l
 
 
 def _least_outward(lattice: Lattice, motion: Motion, axis: int, time: float) -> dict[int, Floats]:
-    """By sign of the axis, the speed along it that the player who lowers the value cannot prevent."""
+    """For each direction of the axis, the speed along it that the minimising player cannot prevent."""
     rates = motion.rates(lattice, time)
     drift: Floats = np.broadcast_to(
         np.sum(np.broadcast_arrays(0.0, *rates.drift[axis]), axis=0), lattice.shape
@@ -49,7 +49,7 @@ def _least_outward(lattice: Lattice, motion: Motion, axis: int, time: float) -> 
 
 
 def _reach(gains: list[Floats], bound: Box | Ball) -> Floats:
-    """How much an input can add to a rate on either side of its middle."""
+    """The largest effect of an input on a rate, on either side of its middle."""
     if isinstance(bound, Ball):
         return np.asarray(bound.radius * np.sqrt(sum((np.square(g) for g in gains), np.zeros(1))))
     return np.asarray(sum((np.abs(g) * h for g, h in zip(gains, bound.half, strict=True)), np.zeros(1)))

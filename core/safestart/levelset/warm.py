@@ -16,7 +16,7 @@ _warm: set[str] = set()
 
 
 def warm(precision: str = "float64") -> float:
-    """Seconds it took, 0 the second time: dimensions, scheme and inputs are data to the one compiled kernel."""
+    """Returns the seconds it took, 0 the second time; dimensions, scheme and inputs are data of one compiled kernel."""
     if precision in _warm:
         return 0.0
     start = time.perf_counter()

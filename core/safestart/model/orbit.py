@@ -119,6 +119,27 @@ class KeplerOrbit:
         # nu'' = -2 nu' e E' sin E / (1 - e cos E), E' = n / (1 - e cos E).
         return most, 2.0 * most * e * self.mean_motion / (1.0 - e) ** 2
 
+    def turn_bounds(self) -> tuple[float, float, float, float]:
+        """Bounds on the sizes of the first four derivatives of nu at all times, rad/s^k."""
+        e = self.eccentricity
+        most, _ = self.rate_bounds()
+        # nu' = k^2 (1 + e cos nu)^2 is a function w of nu, a cosine polynomial; d/dt = w d/dnu.
+        pace = self.mean_motion / (1.0 - e * e) ** 1.5
+        a, b, c = (pace * (2.0 * e + e * e * 2.0 ** (j - 1)) for j in (1, 2, 3))
+        snap = most * (a * a * a + 4.0 * most * a * b + most * most * c)
+        return most, most * a, most * (a * a + most * b), snap
+
+    def tide_bounds(self) -> tuple[float, float, float]:
+        """Bounds on mu / r^3 = k^4 (1 + e cos nu)^3 and the sizes of its first two derivatives, 1/s^2 to 1/s^4."""
+        e = self.eccentricity
+        near, most = 1.0 + e, self.rate_bounds()[0]
+        pace = self.mean_motion / (1.0 - e * e) ** 1.5
+        slope = 3.0 * pace**2 * near**2 * e
+        bend = 3.0 * pace**2 * (2.0 * near * e * e + near * near * e)
+        # d/dt g = w g_nu, and once more w (w_nu g_nu + w g_nunu).
+        change = pace * (2.0 * e + e * e)
+        return pace**2 * near**3, most * slope, most * (change * slope + most * bend)
+
     def rotation(self, times: Floats) -> Floats:
         """(..., 3, 3): inertial coordinates to LVLH coordinates."""
         angle = self.turned(times)

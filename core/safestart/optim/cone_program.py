@@ -1,4 +1,4 @@
-"""Cone programs put together from named blocks and solved by Clarabel.
+"""Cone programs, built from named blocks and solved by Clarabel.
 
 Minimise sum_v cost_v . v over variables v, subject to constant + sum_v G_v v in K for every block: nonnegative numbers
 (``rows``) or second-order cones, |y| <= head, heads first (``norms``). Clarabel reads b - A x in K: the columns stand
@@ -32,7 +32,7 @@ class Each:
 
 
 class Part(NamedTuple):
-    """What a variable adds to a block: its columns, and for each of them up to w ``values`` (negative) in ``rows``."""
+    """A variable's part of a block: its columns, and for each column up to w ``values`` (negative) in ``rows``."""
 
     columns: slice
     values: Floats | float
@@ -61,9 +61,9 @@ class Columns:
 
 
 class Found:
-    """What the solver left: its own word, values of the variables, weights (dual variables) of the blocks.
+    """The solver's result: its status, values of the variables, weights (dual variables) of the blocks.
 
-    Values and weights are there whatever the ``status``; they need not be finite.
+    Values and weights exist whatever the ``status``, but may not be finite.
     """
 
     def __init__(self, solution: Any, variables: Mapping[str, slice], blocks: Mapping[str, Block]) -> None:
@@ -90,11 +90,11 @@ class Found:
 
 
 class ConeProgram:
-    """One program; ``sizes`` names the variables and says how many components each has.
+    """One program; ``sizes`` gives the variables' names and their numbers of components.
 
     A block takes its coefficients by variable: an array (R, n), :class:`Each`, or, for a variable of one component, a
-    number that enters every row, of norms every head. Raises ``InvalidInput`` for a variable that there is not, a name
-    used twice and a shape that does not fit.
+    number that enters every row, of norms every head. Raises ``InvalidInput`` for an unknown variable, a repeated name
+    and a wrong shape.
     """
 
     def __init__(self, **sizes: int) -> None:
@@ -118,7 +118,7 @@ class ConeProgram:
         self._norms[name] = self._block(name, constant.ravel(), constant.shape[1], coefficients)
 
     def minimise(self, **cost: Floats | float) -> None:
-        """Set costs: for a variable (n,) of them, or one number for all its components; others stay as they are, 0."""
+        """Set the costs of variables: (n,) for each component, or one number for all; other costs stay, 0 at first."""
         for variable, given in cost.items():
             columns = self._of(variable)
             size = columns.stop - columns.start
@@ -128,7 +128,7 @@ class ConeProgram:
 
     def solve(self, *, fine: bool = True) -> Found:
         """Solve; without ``fine`` the solver stops some iterations earlier, some 1e-5 from the optimum."""
-        # Loaded with the first program and not with every import.
+        # Imported with the first program, so that importing this module stays light.
         import clarabel
 
         cost, matrix, constant, cones = self.standard_form()
@@ -153,8 +153,8 @@ class ConeProgram:
 
     def _matrix(self, blocks: list[Block], height: int) -> Columns:
         """A by columns, without zeros."""
-        # A line for each column: what stands in it, block after block, and in which row. Of every line a block takes
-        # as many places as it needs in any.
+        # One line per column with its entries and their rows, block after block. In every line a block takes as many
+        # places as its fullest column needs.
         count, width, first, at = self._count, sum([block.width for block in blocks]), 0, 0
         filled, where = np.zeros((count, width)), np.empty((count, width), dtype=np.int64)
         for block in blocks:

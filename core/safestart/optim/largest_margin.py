@@ -17,7 +17,8 @@ import numpy as np
 
 from safestart.model.scenario import Floats
 from safestart.optim.cone_program import ConeProgram, Ints
-from safestart.optim.thrust_ball import INSIDE, bound, into_balls, keep_in_balls
+from safestart.optim.thrust_ball import INSIDE
+from safestart.optim.thrust_shapes import BALL, UnitSet
 
 _LEAST_WEIGHT = 1e-10
 _USABLE = ("Solved", "AlmostSolved", "InsufficientProgress", "MaxIterations")
@@ -29,7 +30,7 @@ class Solved:
 
     The weights on the rows that hold m (all but the y of blocks) sum to 1.
 
-    ``thrust`` is None where the solver gave nothing usable; ``status`` is its own word for why.
+    ``thrust`` is None when the solver gave nothing usable; ``status`` is the solver's reason.
     """
 
     status: str
@@ -39,12 +40,20 @@ class Solved:
 
 
 def solve(
-    constant: Floats, thrust: Floats, a_max: float, dimensions: int, blocks: int = 0, *, fine: bool = True
+    constant: Floats,
+    thrust: Floats,
+    a_max: float,
+    dimensions: int,
+    blocks: int = 0,
+    *,
+    fine: bool = True,
+    within: UnitSet = BALL,
 ) -> Solved:
     """Solve for J rows: ``constant`` (J,) = offset + start . x0 in m, ``thrust`` (J, N d) in m per m/s^2.
 
-    The last ``blocks`` (d + 1) rows are norm limits. What is found proves what it proves at any accuracy; without
-    ``fine`` the solver stops some iterations earlier, some 1e-5 m from the optimum.
+    The last ``blocks`` (d + 1) rows are norm limits. The weights prove their bound at any accuracy; without ``fine``
+    the solver stops some iterations earlier, some 1e-5 m from the optimum. With another set ``within`` thrusts are
+    a_max times its points, ``dimensions`` its channels.
     """
     rows, columns = thrust.shape
     count, cone = columns // dimensions, dimensions + 1
@@ -54,7 +63,7 @@ def solve(
     program.rows("faces", constant[:plain], thrust=scaled[:plain], margin=-1.0)
     if blocks:
         program.norms("limits", constant[plain:].reshape(blocks, cone), thrust=scaled[plain:], margin=-1.0)
-    keep_in_balls(program, count, dimensions)
+    within.keep(program, count, dimensions)
     program.minimise(margin=-1.0)
     found = program.solve(fine=fine)
     if found.status not in _USABLE:
@@ -65,7 +74,7 @@ def solve(
     if blocks:
         weights = np.concatenate([weights, found.weights("limits")])
         holds = np.concatenate([np.arange(plain), np.arange(plain, rows, cone)])
-    # What the interior point leaves on rows that do not matter is not carried into the proof, nor into its bound.
+    # Drop the interior point's small weights on irrelevant rows from the proof and its bound.
     least = _LEAST_WEIGHT * max(1.0, float(np.maximum.reduce(weights[holds])))
     weights[:plain][weights[:plain] < least] = 0.0
     if blocks:
@@ -74,8 +83,8 @@ def solve(
     if not (math.isfinite(np.add.reduce(w, axis=None)) and 0.0 < total < math.inf):
         return Solved(found.status)
     weights /= total
-    bounded = bound(constant, thrust, weights, a_max, dimensions)
-    return Solved(found.status, a_max * into_balls(w), weights, bounded)
+    bounded = within.bound(constant, thrust, weights, a_max, dimensions)
+    return Solved(found.status, a_max * within.repaired(w), weights, bounded)
 
 
 def _into_cone(weights: Floats, least: float) -> None:

@@ -1,8 +1,8 @@
 """Predictions: the states of a linear motion, at nodes and between them, from the start and the thrusts.
 
 The state is (position, velocity), (2 d,), d = 2 (in the plane) or 3; thrusts are held over equal intervals and act in
-the motion's axes. Three forms, by what is unknown: every thrust (:class:`Prediction`), one thrust held throughout
-(:func:`held_through`), or a box of thrusts of a steady motion, where what each adds is all that counts
+the motion's axes. Three forms, by the unknowns: every thrust (:class:`Prediction`), one thrust held throughout
+(:func:`held_through`), or a box of thrusts of a steady motion, which needs only each thrust's effect
 (:func:`responses`).
 """
 
@@ -15,7 +15,7 @@ from typing import cast
 
 import numpy as np
 
-from safestart.dynamics.motion import RelativeMotion, SteadyMotion
+from safestart.dynamics.motion import ManyMoves, RelativeMotion, SteadyMotion
 from safestart.errors import invalid
 from safestart.model.scenario import Floats
 
@@ -29,7 +29,7 @@ class Prediction:
 
     ``free`` (N, 2 d, 2 d) and ``driven`` (N, 2 d, N d): x(t_k) = free_k x0 + driven_k u. ``along`` (2 d, (S+1) 2 d) and
     ``held`` (d, (S+1) 2 d): states at S+1 equally spaced times of an interval from its first state and its thrust.
-    They serve for every interval of a ``steady`` motion; otherwise each interval has its own, (N, ...).
+    A ``steady`` motion uses them for every interval; otherwise each interval has its own, (N, ...).
     """
 
     motion: RelativeMotion
@@ -108,14 +108,8 @@ class Prediction:
     def _positions(self, begin: Floats, end: Floats) -> tuple[Floats, Floats]:
         """Position rows (J, d, 2 d) and (J, d, d) from J times to J times within one interval each."""
         d = self.dimensions
-        parts = [
-            moved(self.motion, self.begin + t0, self.begin + t1, d)
-            for t0, t1 in zip(begin.tolist(), end.tolist(), strict=True)
-        ]
-        return (
-            np.array([phi[:d] for phi, _ in parts]).reshape(-1, d, 2 * d),
-            np.array([push[:d] for _, push in parts]).reshape(-1, d, d),
-        )
+        phi, push = moved_many(self.motion, self.begin + begin, self.begin + end, d)
+        return phi[:, :d], push[:, :d]
 
 
 def prediction_of(
@@ -126,9 +120,9 @@ def prediction_of(
     ``dimensions`` 2 leaves out z; raises ``InvalidInput`` where the motion in the plane depends on it.
     """
     steady = motion if isinstance(motion, SteadyMotion) else None
-    # A steady motion is the same from 0 on: one entry serves all, and differences of times lose nothing.
+    # A steady motion does not depend on the start time: one entry serves all, and time differences lose nothing.
     begin = begin if steady is None else 0.0
-    # Kept apart, because the large tables do not depend on the samples.
+    # Cached separately, because the large tables do not depend on the samples.
     key = cast(Hashable, motion)
     free, driven = _nodes(key, begin, dt, steps, dimensions)
     along, held = _within(key, begin, dt, steps if steady is None else 1, dimensions, samples)
@@ -168,8 +162,21 @@ def moved(motion: RelativeMotion, t0: float, t1: float, d: int) -> tuple[Floats,
     return motion.transition(t0, t1)[kept[:, None], kept], motion.held(t0, t1)[kept, :d]
 
 
+def moved_many(motion: RelativeMotion, begin: Floats, end: Floats, d: int) -> tuple[Floats, Floats]:
+    """Phi (J, 2 d, 2 d) and B (J, 2 d, d) from ``begin`` (J,) to ``end`` (J,), s: at once where the motion can."""
+    kept = _KEPT[d]
+    if isinstance(motion, ManyMoves):
+        phi, push = motion.moves(begin, end)
+        return phi[:, kept[:, None], kept], push[:, kept, :d]
+    parts = [moved(motion, t0, t1, d) for t0, t1 in zip(begin.tolist(), end.tolist(), strict=True)]
+    return (
+        np.array([phi for phi, _ in parts]).reshape(-1, 2 * d, 2 * d),
+        np.array([push for _, push in parts]).reshape(-1, 2 * d, d),
+    )
+
+
 def _interval(motion: RelativeMotion, t0: float, t1: float, d: int) -> tuple[Floats, Floats]:
-    """:func:`moved`, unless the plane does not keep to itself."""
+    """:func:`moved`, after checking that the plane is decoupled."""
     plane = _KEPT[2]
     if d == 2 and (motion.transition(t0, t1)[plane][:, [2, 5]].any() or motion.held(t0, t1)[plane, 2].any()):
         raise invalid("dimensions", "3, for a motion that couples the plane with z", d)
@@ -183,10 +190,15 @@ def _nodes(motion: RelativeMotion, begin: float, dt: float, steps: int, d: int) 
     free = np.empty((steps, 2 * d, 2 * d))
     driven = np.zeros((steps, 2 * d, steps * d))
     free[0] = np.eye(2 * d)
+    nodes = begin + dt * np.arange(steps, dtype=np.float64)
+    drifts = moved_many(motion, np.full(steps, begin), nodes, d)[0]
+    each = None if steady else moved_many(motion, nodes, begin + dt * np.arange(1.0, steps + 1.0), d)
     for k in range(1, steps):
-        if not steady:
-            step, push = _interval(motion, begin + (k - 1) * dt, begin + k * dt, d)
-        free[k] = moved(motion, begin, begin + k * dt, d)[0]
+        if each is not None:
+            if d == 2:
+                _interval(motion, nodes[k - 1], nodes[k], d)
+            step, push = each[0][k - 1], each[1][k - 1]
+        free[k] = drifts[k]
         driven[k] = step @ driven[k - 1]
         driven[k, :, (k - 1) * d : k * d] = push
     return free, driven
@@ -197,9 +209,19 @@ def _within(
     motion: RelativeMotion, begin: float, dt: float, intervals: int, d: int, samples: int
 ) -> tuple[Floats, Floats]:
     along, held = [], []
+    if isinstance(motion, ManyMoves):
+        begins = np.repeat(begin + dt * np.arange(intervals, dtype=np.float64), samples + 1)
+        parts = np.tile(dt * np.arange(samples + 1) / samples, intervals)
+        phi, push = moved_many(motion, begins, begins + parts, d)
+        shape = (intervals, samples + 1)
+        return (
+            phi.reshape(*shape, 2 * d, 2 * d).transpose(0, 3, 1, 2).reshape(intervals, 2 * d, -1),
+            push.reshape(*shape, 2 * d, d).transpose(0, 3, 1, 2).reshape(intervals, d, -1),
+        )
     for k in range(intervals):
         first = begin + k * dt
-        parts = [moved(motion, first, first + dt * s / samples, d) for s in range(samples + 1)]
-        along.append(np.hstack([phi.T for phi, _ in parts]))
-        held.append(np.hstack([push.T for _, push in parts]))
+        ends = np.array([first + dt * s / samples for s in range(samples + 1)])
+        phi, push = moved_many(motion, np.full(samples + 1, first), ends, d)
+        along.append(np.hstack(list(phi.swapaxes(1, 2))))
+        held.append(np.hstack(list(push.swapaxes(1, 2))))
     return np.array(along), np.array(held)

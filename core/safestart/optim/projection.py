@@ -15,7 +15,7 @@ DEPENDENT = 1e-10
 """A unit normal this close to the span of the active ones counts as lying in it."""
 
 MAX_STEPS = 200
-"""No instance of the tests takes more than a few dozen; beyond this the caller falls back."""
+"""Limit on steps: no test needs more than a few dozen; beyond it the caller falls back."""
 
 
 @compiled(error_model="numpy")
@@ -48,7 +48,7 @@ def project(normals, bounds, point, work, active):  # type: ignore[no-untyped-de
             if entering < 0:
                 return FEASIBLE
             for q in range(count):
-                # Violated although active: rounding only, and nothing is left to gain.
+                # Violated although active: only rounding, so stop here.
                 if active[q] == entering:
                     return FEASIBLE
             entering_multiplier = 0.0

@@ -1,7 +1,6 @@
 """Thrusts u_k of norm at most a_max: as blocks of a cone program, as a projection, as a bound on weighted rows.
 
-A program knows them as its variable ``thrust``, w_k = u_k / a_max in the unit ball, all components of one interval
-after the other.
+A program has them as its variable ``thrust``, w_k = u_k / a_max in the unit ball, ordered by interval, then component.
 """
 
 from __future__ import annotations
@@ -15,7 +14,7 @@ from safestart.model.scenario import Floats
 from safestart.optim.cone_program import ConeProgram, Each
 
 INSIDE = 1.0 - 1e-14
-"""A hair inside the ball, so that the norm is within a_max in exact arithmetic and not only in floats."""
+"""Slightly inside the ball, so that the norm is within a_max in exact arithmetic too."""
 
 
 def keep_in_balls(program: ConeProgram, count: int, dimensions: int, radius: str = "") -> None:
@@ -28,7 +27,7 @@ def keep_in_balls(program: ConeProgram, count: int, dimensions: int, radius: str
 
 
 class _Balls(NamedTuple):
-    """``unit`` (N, d + 1): radius 1; where the components of the thrust and the radii enter."""
+    """``unit`` (N, d + 1): radius 1; the rows where thrust components and radii enter."""
 
     unit: Floats
     thrust: Each
@@ -46,7 +45,7 @@ def _balls(count: int, dimensions: int) -> _Balls:
 
 
 def into_balls(w: Floats) -> Floats:
-    """Thrusts (N, d) in units of a_max, those that the solver left a hair outside the unit ball scaled back into it."""
+    """Thrusts (N, d) in units of a_max; those slightly outside the unit ball are scaled back into it."""
     norms = np.sqrt(np.add.reduce(w * w, axis=1))
     inside: Floats = w * (INSIDE / np.maximum(norms, INSIDE))[:, None]
     return inside

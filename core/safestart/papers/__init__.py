@@ -1,1 +1,1 @@
-"""Figures printed in the papers, to be shown beside ours."""
+"""Figures printed in the papers, shown beside ours."""

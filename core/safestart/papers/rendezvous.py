@@ -1,4 +1,4 @@
-"""Figures that others published about this rendezvous, to be shown beside ours (other machines, other years)."""
+"""Published figures of others about this rendezvous, shown beside ours (other machines, other years)."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ FLOWSTAR_NONLINEAR_S = (126.0, 129.0)
 
 
 class PublishedRow(TypedDict):
-    """What the competition expects of a row; seconds of others, least and most, by tool. Empty: none known."""
+    """The competition's expected verdict of a row; least and most seconds of others, by tool. Empty: none known."""
 
     verdict: str
     tools_s: dict[str, tuple[float, float]]

@@ -1,4 +1,4 @@
-"""Figures printed in paper 000 (arXiv 2607.02128v1), to be shown beside ours."""
+"""Figures printed in paper 000 (arXiv 2607.02128v1), shown beside ours."""
 
 from __future__ import annotations
 

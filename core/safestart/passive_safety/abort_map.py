@@ -12,17 +12,17 @@ from safestart.passive_safety.verify import prove_separation
 from safestart.runtime.progress import Context
 
 _REAL = ("los", "thrust")
-"""Requirements that starts beside the cone or far away break indeed."""
+"""Requirements that starts beside the cone or far away really break."""
 
 _CUTS = 2
 
 
 @dataclass(frozen=True, slots=True)
 class SafeUntil:
-    """Until when (min) every abort is proved, in whole windows; 0: not even in the first.
+    """Time (min) up to which every abort is proved, in whole windows; 0: not even the first window.
 
-    ``separation``: apart from the target's box. ``requirements``: that, and thrust, line of sight and speed octagon
-    proved until then. ``reason``: what ended the proof of the powered flight early, empty where nothing did.
+    ``separation``: apart from the target's box. ``requirements``: also thrust, line of sight and speed octagon up to
+    that time. ``reason``: what ended the proof of the powered flight early, or empty.
     """
 
     separation: float
@@ -35,13 +35,13 @@ def safe_until(
 ) -> SafeUntil:
     """Largest end of the ``windows`` equal parts of [0, window end] up to which the proofs of ``question`` go through.
 
-    Contacts later than the question's horizon do not count. Sets that are too wide are quartered ``cuts`` times.
+    Contacts later than the question's horizon do not count. Too wide sets are quartered ``cuts`` times.
     """
     context = context or Context()
     found = _of_the_whole(question, windows, context)
     if not found.reason or found.reason in _REAL or cuts == 0:
         return found
-    # What fails by the width of the set alone may be proved for its quarters.
+    # A proof that fails only because the set is too wide may succeed for its quarters.
     parts = [safe_until(quarter, windows, context, cuts - 1) for quarter in _quarters(question)]
     reason = "; ".join(sorted({part.reason for part in parts if part.reason}))
     return SafeUntil(min(p.separation for p in parts), min(p.requirements for p in parts), reason)
@@ -64,7 +64,7 @@ def _of_the_whole(question: Question, windows: int, context: Context) -> SafeUnt
     whole = replace(question, window=(0.0, last))
     tubes = reach(whole)
     reason = tubes.entry.reason or requirements.stays_in_mode_2(tubes, question.system.guard)
-    # What follows the entry is not proved then; aborts before it are.
+    # Then only aborts before the entry are proved.
     most = _floor(min(last, tubes.entry.first), last, windows) if reason else windows
     apart = _separated(whole, tubes, most, windows, context)
     doubt, name = requirements.first_doubt(tubes)
@@ -73,12 +73,12 @@ def _of_the_whole(question: Question, windows: int, context: Context) -> SafeUnt
 
 
 def _floor(time: float, last: float, windows: int) -> int:
-    """How many whole windows end before ``time``."""
+    """The number of whole windows that end before ``time``."""
     return max(0, min(windows, math.floor(time * windows / last))) if math.isfinite(time) else windows
 
 
 def _separated(question: Question, tubes: Reach, most: int, windows: int, context: Context) -> int:
-    """How many of the first ``most`` windows are proved, all of them together."""
+    """The number of windows, counted from the first up to ``most``, that are all proved."""
     assert question.window is not None
     last = question.window[1]
 
@@ -89,9 +89,9 @@ def _separated(question: Question, tubes: Reach, most: int, windows: int, contex
         if not len(left.open):
             low = high
         else:
-            # Windows that end before the earliest open abort are proved by this very run.
+            # This run also proves the windows that end before the earliest open abort.
             low = max(low, min(_floor(float(left.open[:, 0].min()), last, windows), high - 1))
-            # Cells of the finest grid are open for good; coarser ones only because they were too many.
+            # Open cells of the finest grid stay open; coarser ones are open only because they were too many.
             fails = high if left.gave_up else low + 1
         high = low + (fails - low) // 2
     return low

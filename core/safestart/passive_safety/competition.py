@@ -16,7 +16,7 @@ REQUIREMENTS = ("separation", "thrust", "los", "velocity", "velocity_disc")
 """Requirements in the order of the table."""
 
 PAPER_JOB = Question(horizon=240.0, window=(120.0, 125.0))
-"""The job that paper 003 times: aborts in [120, 125] min, 4 hours."""
+"""The job timed in paper 003: aborts in [120, 125] min, 4 hours."""
 
 
 def paper_row(system: System = PUBLISHED) -> dict[str, Any]:

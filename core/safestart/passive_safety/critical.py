@@ -1,4 +1,4 @@
-"""Until when may one abort: a time up to which every abort is proved safe, and one at which an abort collides."""
+"""The critical abort time: a time up to which every abort is proved safe, and one at which an abort collides."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def critical_abort(
 
 
 def _proved(question: Question, tubes: Reach, first: float, last: float, context: Context) -> float | None:
-    """Largest end of the window for which the proof went through, up to ``last``; None: not even ``first`` alone."""
+    """Largest proved end of the window, up to ``last``; None: not even ``first`` alone."""
 
     def safe(low: float, high: float) -> bool:
         return not len(prove_separation(replace(question, window=(low, high)), tubes, context).open)
@@ -59,7 +59,7 @@ def _proved(question: Question, tubes: Reach, first: float, last: float, context
         return last
     low, high = first, last
     while high - low > TOLERANCE:
-        # What lies before ``low`` is proved already.
+        # Aborts before ``low`` are proved already.
         middle = 0.5 * (low + high)
         low, high = (middle, high) if safe(low, middle) else (low, middle)
     return low

@@ -1,8 +1,8 @@
-"""Feedback gains of modes 1 and 2: the published ones, digit by digit, and LQR gains of our own by Bryson's rule.
+"""Feedback gains of modes 1 and 2: the published ones, digit by digit, and our LQR gains by Bryson's rule.
 
-Bryson's rule (paper 003, section 3.4): Q and R are diagonal with the inverse squares of the largest values wanted.
-The limits of :data:`PUBLISHED_DESIGN` give the published gains back to 1e-7 of their largest entries; the paper does
-not print them. Units: m, min, kg.
+Bryson's rule (paper 003, section 3.4): Q and R are diagonal with the inverse squares of the largest desired values. The
+limits of :data:`PUBLISHED_DESIGN`, which the paper does not print, reproduce the published gains to 1e-7 of their
+largest entries. Units: m, min, kg.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ Row = tuple[Fraction, Fraction, Fraction, Fraction]
 
 @dataclass(frozen=True, slots=True)
 class Bryson:
-    """Largest values wanted in one mode: ``position`` (x, y), m, ``speed`` (vx, vy), m/min, ``thrust``, kg m/min^2.
+    """Largest desired values in one mode: ``position`` (x, y), m, ``speed`` (vx, vy), m/min, ``thrust``, kg m/min^2.
 
     Only their ratios to ``thrust`` matter. Raises ``InvalidInput``.
     """
@@ -48,7 +48,7 @@ class Design:
 PUBLISHED_DESIGN = Design(
     Bryson((1000.0, 866.0), (20.0, 20.0), 28_800.0), Bryson((100.0, 100.0), (3.0, 3.0), 28_800.0)
 )
-"""8 N; 1000 m by 866 m and 1/3 m/s in mode 1; 100 m and 5 cm/s in mode 2: found from the published gains."""
+"""8 N; 1000 m by 866 m and 1/3 m/s in mode 1; 100 m and 5 cm/s in mode 2: derived from the published gains."""
 
 _PUBLISHED = (
     (
@@ -72,7 +72,7 @@ def published_gain(near: bool) -> tuple[Row, Row]:
 def bryson_gain(limits: Bryson, drift: tuple[tuple[float, ...], ...], mass: float) -> Floats:
     """LQR gain (2, 4) for the motion ``drift`` (A, 4 x 4) of a chaser of ``mass`` kg: K = R^-1 B' P."""
     b = np.vstack([np.zeros((2, 2)), np.eye(2) / mass])
-    # Everything in units of the thrust limit: R = 1 keeps the Riccati equation well scaled.
+    # In units of the thrust limit: R = 1 keeps the Riccati equation well scaled.
     q = np.diag((limits.thrust / np.array([*limits.position, *limits.speed])) ** 2)
     gain: Floats = b.T @ np.asarray(solve_continuous_are(np.array(drift), b, q, np.eye(2)))
     return gain

@@ -1,7 +1,7 @@
 """The switched rendezvous (paper 003 and the competition files made from it): its numbers, exactly as printed.
 
-Units: m, min, kg. One newton is 3600 kg m/min^2, 1 m/min is 1/60 m/s. Coefficients are kept as fractions, so that
-the proofs are about the printed numbers and not about their nearest doubles.
+Units: m, min, kg. One newton is 3600 kg m/min^2, 1 m/min is 1/60 m/s. Coefficients are fractions, so that the proofs
+are about the printed numbers and not about their nearest doubles.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ class Dynamics(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """The linear part of one mode; ``design`` None: published gains. Key of every table of matrix exponentials."""
+    """The linear part of one mode; ``design`` None: published gains. Keys every table of matrix exponentials."""
 
     mode: Mode
     dynamics: Dynamics = Dynamics.LINEAR
@@ -68,7 +68,7 @@ class Motion:
 
 @dataclass(frozen=True, slots=True)
 class System:
-    """What flies: relative ``dynamics``, gains (``design``, None: the published ones) and ``guard``."""
+    """The switched system: relative ``dynamics``, gains (``design``, None: the published ones) and ``guard``."""
 
     dynamics: Dynamics = Dynamics.LINEAR
     design: Design | None = None
@@ -86,8 +86,8 @@ PUBLISHED = System()
 def coefficients(dynamics: Dynamics) -> tuple[Fraction, Fraction]:
     """3 n^2 (1/min^2) and 2 n (1/min).
 
-    The published linear n implies an orbit of 42 125 km, not the paper's 42 164 km: both are kept as they are.
-    The nonlinear 2 n is rounded at 60 digits, which the remainder's own rounding covers.
+    The published linear n implies an orbit of 42 125 km, not the paper's 42 164 km; we use both as printed. The
+    nonlinear 2 n is rounded at 60 digits; the remainder's own rounding covers this.
     """
     return _LINEAR if dynamics is Dynamics.LINEAR else _NONLINEAR
 

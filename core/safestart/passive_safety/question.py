@@ -1,4 +1,4 @@
-"""What is asked: initial set, horizon, abort window, target box; and what is answered per requirement."""
+"""The question: initial set, horizon, abort window, target box; and the answer per requirement."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ class Verdict(StrEnum):
 class Question:
     """Initial set ``centre`` +- ``half`` (x, y, vx, vy in m and m/min), ``horizon`` (min), abort ``window`` (min).
 
-    ``window`` None: the engines never fail. ``box`` is the half-width (m) of the target's box; ``system`` says what
-    flies. All starts are in mode 1, so the initial set lies outside the guard. Raises ``InvalidInput``.
+    ``window`` None: the engines never fail. ``box`` is the half-width (m) of the target's box; ``system`` is the
+    switched system. All starts are in mode 1, so the initial set lies outside the guard. Raises ``InvalidInput``.
     """
 
     centre: tuple[float, float, float, float] = (-900.0, -400.0, 0.0, 0.0)
@@ -69,8 +69,8 @@ class Question:
 class Finding:
     """Answer for one requirement.
 
-    ``bound`` is the proved extreme of the quantity that ``limit`` restricts, ``margin`` the room left (positive: the
-    requirement holds); both None where nothing is proved. ``counter_example`` can be replayed.
+    ``bound`` is the proved extreme of the quantity that ``limit`` restricts, ``margin`` the remaining room (positive:
+    the requirement holds); both None without a proof. ``counter_example`` can be replayed.
     """
 
     verdict: Verdict

@@ -51,8 +51,8 @@ def speed_disc(reach: Reach) -> Finding:
 def line_of_sight(reach: Reach) -> Finding:
     """Least room (m) inside |y| <= -x tan 30 degrees, x >= -100 in mode 2, as written (rows not normalised).
 
-    A branch that starts on the face x = -100 has no room there at first; that it only moves inwards is proved, and
-    the margin is then that of the other faces.
+    A branch that starts on the face x = -100 has no room there at first; if it provably moves inwards, the margin is
+    that of the other faces.
     """
     worst = max((_worst(tube.upper(_CONE)) for b in reach.branches for tube in b.tubes), default=-math.inf)
     base = np.array([-1.0, 0.0])
@@ -60,7 +60,7 @@ def line_of_sight(reach: Reach) -> Finding:
 
 
 def stays_in_mode_2(reach: Reach, guard: Guard) -> str:
-    """Empty where every branch is proved to stay inside the guard; a reason otherwise."""
+    """ "" if every branch is proved to stay inside the guard; otherwise the reason."""
     if guard is Guard.CIRCLE:
         stays = all(_stays_in_circle(branch) for branch in reach.branches)
         return "" if stays else "mode 2 is not proved to stay inside the guard circle"
@@ -73,9 +73,9 @@ def stays_in_mode_2(reach: Reach, guard: Guard) -> str:
 
 
 def first_doubt(reach: Reach) -> tuple[float, str]:
-    """Earliest time (min) at which thrust, line of sight or speed octagon is not proved, and which; inf: never.
+    """Earliest time (min) at which thrust, line of sight or speed octagon is not proved, and its name; inf: never.
 
-    That mode 2 stays inside the guard is taken as proved (:func:`stays_in_mode_2`), and with it x >= -100 m.
+    Assumes that mode 2 is proved to stay inside the guard (:func:`stays_in_mode_2`), and so x >= -100 m.
     """
     doubts = [_first_above(reach.far, 0.0, "thrust", _both(gain(reach.far.motion)), MAX_THRUST)]
     for branch in reach.branches:
@@ -94,7 +94,7 @@ def _first_above(tube: Tube, since: float, name: str, rows: Floats, limit: float
 
 
 def _stays_in_circle(branch: Branch) -> bool:
-    """Whether the distance never exceeds the circle again: it falls from there, until it is proved to be inside.
+    """Whether the distance never exceeds the circle again: it falls after the crossing until it is proved inside.
 
     Half the rate of its square is p.v = (h.p)(h.v) + (k.p)(k.v), h the normal at the nominal crossing, k across it.
     """
@@ -117,9 +117,9 @@ def _stays_in_circle(branch: Branch) -> bool:
 def _room_inside(branch: Branch, row: Floats, limit: float) -> float:
     """Least proved room (m) of ``row`` . (x, y) <= limit in mode 2; negative: not proved.
 
-    The limit must hold throughout the guard: then the first entry, a point of the guard, is behind it; while the value
-    is proved to fall it stays so, and those segments are left out of the minimum. (The crossing set of one face of
-    the octagon may reach past its corners. No flight does.)
+    The limit must hold throughout the guard: then it holds at the first entry, a point of the guard, and as long as the
+    value is proved to fall; those segments are left out of the minimum. (The crossing set of one face of the octagon
+    may reach beyond its corners, but no flight does.)
     """
     falling = True
     whole = rows_of(row[None, :])

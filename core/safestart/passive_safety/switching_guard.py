@@ -13,7 +13,7 @@ GAP_GUARD, GAP_DIAGONAL = 100.0, 141.1
 
 
 class Guard(StrEnum):
-    """Where mode 2 begins: ``octagon`` as in the competition, ``circle`` as in the words of paper 003."""
+    """Where mode 2 begins: ``octagon`` as in the competition, ``circle`` as in the text of paper 003."""
 
     OCTAGON = "octagon"
     CIRCLE = "circle"
@@ -35,7 +35,7 @@ COMPASS = np.stack([np.cos(np.arange(64) * np.pi / 32), np.sin(np.arange(64) * n
 """64 unit directions (64, 2)."""
 
 COMPASS_STRETCH = 1.0 / np.cos(np.pi / 64.0) * (1.0 + 1e-15)
-"""A length is at most its greatest component along :data:`COMPASS` times this."""
+"""A length is at most this factor times its greatest component along :data:`COMPASS`."""
 
 
 def depth(guard: Guard, positions: Floats) -> Floats:

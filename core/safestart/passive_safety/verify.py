@@ -23,10 +23,10 @@ FAR_LEVEL, NEAR_LEVEL = 4, 5
 """Coarsest bins: 2^4 segments of mode 1 (3.2 min), 2^5 of mode 2 (0.8 and 8 min)."""
 
 _TOLERANCE = 1e-5
-"""How deep (m) a replayed contact must be, and how late (min) it may be: ten times the error of a replay."""
+"""Least depth (m) of a replayed contact, and its largest delay (min): ten times the error of a replay."""
 _HINT_MIN = 0.5
 _DEEP = 0.8
-"""A counter-example this far inside the box (times its half-width) ends the search."""
+"""A counter-example within this multiple of the box's half-width ends the search."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,7 @@ class Verification:
 
 
 def verify(question: Question, context: Context | None = None, seed: int = 0) -> Verification:
-    """Prove or refute every requirement; ``seed`` feeds the search for counter-examples only."""
+    """Prove or refute every requirement; ``seed`` only affects the search for counter-examples."""
     start = time.perf_counter()
     context = context or Context()
     tubes = reach(question)
@@ -70,7 +70,7 @@ def _separation(question: Question, tubes: Reach, reason: str, seed: int, contex
 
 
 def prove_separation(question: Question, tubes: Reach, context: Context | None = None) -> Drift:
-    """Passive safety of every start in the window; the drift that is left ``open`` is not proved."""
+    """Passive safety of every start in the window; an ``open`` drift is not proved."""
     assert question.window is not None
     context = context or Context()
     done: list[Drift] = []
@@ -85,7 +85,7 @@ def prove_separation(question: Question, tubes: Reach, context: Context | None =
 
 
 def drift_sources(tubes: Reach) -> list[tuple[Tube, Clock, int]]:
-    """Tubes that passive starts come from, with the clock of their abort times and the level of the coarsest bins."""
+    """Tubes of passive starts, with the clock of their abort times and the level of the coarsest bins."""
     sources = [(tubes.far, tubes.clock, FAR_LEVEL)]
     for branch in tubes.branches:
         sources += [(tube, branch.clock, NEAR_LEVEL) for tube in branch.tubes]
@@ -136,7 +136,7 @@ def _powered(question: Question, tubes: Reach, reason: str) -> dict[str, Finding
 
 
 def bracket(tubes: Reach) -> tuple[float, float] | None:
-    """Times (min) between which every start is proved to enter mode 2; None where that is not proved."""
+    """Times (min) between which every start is proved to enter mode 2; None without a proof."""
     entry = tubes.entry
     return (entry.first, entry.last) if entry.branches else None
 

@@ -12,6 +12,6 @@ from safestart.passive_safety.verify import verify
 
 
 def warm(system: System = PUBLISHED) -> None:
-    """Ask each kernel once; computes the tables of matrix exponentials, too, which depend on the system alone."""
+    """Call each kernel once; also computes the tables of matrix exponentials, which depend only on the system."""
     verify(Question(window=(0.0, HORIZON), box=50.0, system=system))
     simulate(system, np.array([[-900.0, -400.0, 0.0, 0.0]]), np.array([np.inf]), np.array([[1.0]]))

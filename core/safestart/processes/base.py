@@ -1,4 +1,4 @@
-"""What a process is: a description with typed inputs and outputs, and a pure function of (inputs, context)."""
+"""A process: a description with typed inputs and outputs, and a pure function of (inputs, context)."""
 
 from __future__ import annotations
 
@@ -36,19 +36,17 @@ class Table:
 
 @dataclass(frozen=True, slots=True)
 class ProcessSpec:
-    """Description of a process; light to import, so that the service can offer what it cannot run.
+    """Description of a process; light to import, so that the service can offer processes that it cannot run.
 
-    ``run`` names the function as ``module:function``; it is imported only where the process executes. A process that
-    is cut into shards has ``sharding`` instead.
-    ``light`` processes may run synchronously inside the service; all others are async-execute only.
-    ``replay_tolerance`` is how far a replay on another machine or with other versions may be off, relative to
-    max(1, |value|); on the same ones it is the same bit for bit.
-    ``instant`` names a function (inputs) -> document that the service answers with at submission.
-    ``cost`` gives the seconds of one core that an answer takes, roughly, for inputs of a ``light`` process; 0 without.
-    ``states`` names the list among the inputs, if there is one, that a service may limit further (``max_states``).
-    ``tables`` are those of the outputs that are no lists of objects; these are tables by themselves.
-    ``views`` say how a page shows the outputs, the most important first.
-    ``extensions`` are further members of its description, each called ``safestart:...``.
+    ``run`` names the function as ``module:function``, imported only where the process executes. A sharded process has
+    ``sharding`` instead. ``light`` processes may run synchronously inside the service; all others are async-execute
+    only; ``cost`` estimates the seconds of one core that an answer takes for given inputs. ``replay_tolerance`` bounds
+    the deviation of a replay on another machine or with other versions, relative to max(1, |value|); on the same
+    machine and versions a replay is equal bit for bit. ``instant`` names a function (inputs) -> document for the
+    service's answer at submission. ``states`` names the input list, if any, that a service may limit further
+    (``max_states``). ``tables`` declares tables over plain lists among the outputs; lists of objects are tables without
+    a declaration. ``views`` say how a page shows the outputs, the most important first. ``extensions`` are further
+    members of its description, named ``safestart:...``.
     """
 
     id: str
@@ -78,9 +76,9 @@ class ProcessSpec:
             raise validation_error(error) from None
 
     def check(self, document: dict[str, Any]) -> None:
-        """Raise ``UnfitResult`` unless ``document``, as the JSON that is kept, is what ``outputs`` describes.
+        """Raise ``UnfitResult`` unless ``document``, in its stored JSON form, matches ``outputs``.
 
-        Nothing is converted on the way: text is not taken for a number, 2.0 not for an integer, NaN is refused.
+        Nothing is converted: text is not accepted as a number, 2.0 not as an integer, and NaN is refused.
         """
         try:
             self.outputs.model_validate_json(to_json(document, inf_nan_mode="constants"), strict=True)
@@ -99,5 +97,5 @@ class ProcessSpec:
         return self.sharding.run
 
     def instant_answer(self, inputs: WireModel) -> dict[str, Any] | None:
-        """The document that is known at once, before any engine has run, or None."""
+        """The document that is known before any engine has run, or None."""
         return None if self.instant is None else load(self.instant)(inputs)

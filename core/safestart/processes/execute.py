@@ -1,4 +1,4 @@
-"""Execute a process by id: the one path that service, worker, CLI and notebook share."""
+"""Execute a process by id; service, worker, CLI and notebook share this path."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Execution:
 
 
 def execute(process_id: str, inputs: Any, context: Context | None = None) -> Execution:
-    """Validate the inputs, run the process, check the outputs, state where the answer came from.
+    """Validate the inputs, run the process, check the outputs, add the provenance.
 
     Raises ``NotFound`` for an unknown process, ``InvalidInput`` for inputs outside the spec, and ``UnfitResult`` for
     outputs outside it.
@@ -39,7 +39,7 @@ def execute(process_id: str, inputs: Any, context: Context | None = None) -> Exe
 def merge(
     process_id: str, inputs: Any, parts: Sequence[Part], started: datetime, context: Context | None = None
 ) -> Execution:
-    """The end of a sharded process whose shards have run elsewhere, since ``started``; raises as :func:`execute`."""
+    """Merge a sharded process whose shards ran elsewhere since ``started``; raises as :func:`execute`."""
     spec = process(process_id)
     parsed = spec.parse(inputs)
     if spec.sharding is None:

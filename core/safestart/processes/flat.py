@@ -1,4 +1,4 @@
-"""A model's fields as flat names: what a query string or a command line can give of inputs that hold objects."""
+"""A model's fields as flat names, so that a query string or a command line can give inputs that hold objects."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ M = TypeVar("M", bound=WireModel)
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """A flat name: the field that it stands for, its text, and the opened field (``""``: none) that it belongs to.
+    """A flat name: its field, its text, and the opened field (``""``: none) that it belongs to.
 
     ``required``: neither the field nor the opened one has a default. ``json_text``: the field takes objects or lists,
     and the parameter their JSON.
@@ -36,9 +36,9 @@ class Parameter:
 class Flat(Generic[M]):
     """The fields of ``model`` as flat parameters, in its order.
 
-    A field named in ``opened`` gives way to the fields of the object that it holds, or of the one object in its list.
-    Every other one keeps its name; where it takes objects or lists, the parameter takes their JSON. So an optional
-    object that is added to the model is a parameter at once, and needs no word here.
+    A field named in ``opened`` is replaced by the fields of its object, or of the one object in its list. Every other
+    field keeps its name; if it takes objects or lists, the parameter takes their JSON. So an optional object added to
+    the model becomes a parameter without a change here.
     """
 
     def __init__(self, model: type[M], opened: Mapping[str, Any]) -> None:
@@ -57,19 +57,19 @@ class Flat(Generic[M]):
                     item.is_required() and field.is_required(),
                     _holds_objects(item.annotation),
                 )
-        # Where nothing is said of these, they are left out; the others are objects of their defaults.
+        # Without values these are left out; the others become objects of their defaults.
         self._omitted = [
             name
             for name, inner in opened.items()
             if not model.model_fields[name].is_required()
             and any(item.is_required() for item in inner.__pydantic_fields__.values())
         ]
-        # Opened names are none themselves.
+        # Opened fields are not parameters themselves.
         self._special: dict[str, Parameter | None] = dict.fromkeys(opened)
         self._special |= {name: one for name, one in self.parameters.items() if one.within or one.json_text}
 
     def parse(self, values: Mapping[str, Any]) -> M:
-        """Validate flat values, texts among them; raises ``InvalidInput`` under the flat name."""
+        """Validate flat values, which may be texts; raises ``InvalidInput`` under the flat name."""
         top: dict[str, Any] = {name: {} for name in self._opened}
         for name, value in values.items():
             if name not in self._special:
@@ -97,7 +97,7 @@ class Flat(Generic[M]):
             raise refusal(reports) from None
 
     def query(self, name: str, doc: str) -> type[BaseModel]:
-        """A model of the parameters, that describes them; :meth:`parse` validates."""
+        """A model that describes the parameters; :meth:`parse` validates."""
         fields: dict[str, Any] = {}
         for key, parameter in self.parameters.items():
             field = copy(parameter.field)
@@ -120,7 +120,7 @@ class Flat(Generic[M]):
 
 
 def _holds_objects(annotation: Any) -> bool:
-    """Whether a value of this type is an object or a list, or may be."""
+    """Whether a value of this type can be an object or a list."""
     kind = get_origin(annotation) or annotation
     if isinstance(kind, type) and issubclass(kind, list | dict | tuple | BaseModel):
         return True

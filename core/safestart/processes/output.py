@@ -1,4 +1,4 @@
-"""What a process returns."""
+"""The return value of a process."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What every picture shares: headless figures, the corridor, PNG and NPZ bytes."""
+"""Shared by all pictures: headless figures, the corridor, PNG and NPZ bytes."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def draw_corridor(axes: Axes, shape: CorridorShape, y_max: float) -> Polygon:
 
 
 def png(name: str, drawing: Figure, dpi: int = 130) -> Artifact:
-    """Figure as a PNG artifact; no time stamp inside, so equal pictures are equal bytes."""
+    """Figure as a PNG artifact without a time stamp, so that equal pictures are equal bytes."""
     buffer = io.BytesIO()
     drawing.savefig(buffer, format="png", dpi=dpi, metadata={"Software": None})
     return Artifact(name, "image/png", buffer.getvalue())

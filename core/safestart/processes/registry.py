@@ -24,6 +24,7 @@ _SPECS = {
     "sweep": "safestart.processes.sweep.spec",
     "trade-study": "safestart.processes.trade_study.spec",
     "hop-time": "safestart.processes.hop_time.spec",
+    "passive-abort": "safestart.processes.passive_abort.spec",
 }
 
 PROCESS_IDS = tuple(_SPECS)

@@ -1,8 +1,7 @@
-"""A process cut into shards: pure parts that run anywhere in any order, merged in their own order.
+"""A process cut into shards: pure parts that run anywhere in any order and are merged by index.
 
-The parts depend on the inputs alone, never on how many workers there are, and are merged by index: the result is the
-same for one worker or many, and after a worker was killed. Whoever runs the shards may keep what each gave and
-skip those when the job is resumed.
+The parts depend only on the inputs, not on the number of workers, so the result is the same for one worker or many, and
+after a worker was killed. The runner may store each shard's result and skip it when the job resumes.
 """
 
 from __future__ import annotations
@@ -27,8 +26,8 @@ class Sharding:
     """Four pure functions, each named as ``module:function``.
 
     ``split`` (inputs) -> parts, JSON-able dictionaries; light to import. ``shard`` (part, context) -> :class:`Part`.
-    ``merge`` (inputs, parts in order, context) -> ``ProcessOutput``. ``summary`` (inputs, documents of the shards that
-    are finished) -> document of what is known so far; light to import, the service answers with it.
+    ``merge`` (inputs, parts in order, context) -> ``ProcessOutput``. ``summary`` (inputs, documents of the finished
+    shards) -> document of the partial result; light to import, as the service answers with it.
     """
 
     split: str
@@ -49,17 +48,17 @@ class Sharding:
         return done
 
     def merged(self, inputs: WireModel, parts: Sequence[Part], context: Context) -> ProcessOutput:
-        """The result of a job from all of its parts."""
+        """The result of a job from all its parts."""
         output: ProcessOutput = load(self.merge)(inputs, parts, context)
         return output
 
     def so_far(self, inputs: WireModel, documents: Iterable[dict[str, Any]]) -> dict[str, Any]:
-        """What the finished shards say already."""
+        """The partial result from the finished shards."""
         document: dict[str, Any] = load(self.summary)(inputs, documents)
         return document
 
     def run(self, inputs: WireModel, context: Context) -> ProcessOutput:
-        """Every shard in turn, here, then the merge."""
+        """Run every shard here, one after the other, then merge."""
         parts = self.parts(inputs)
         count = len(parts)
         done = []
@@ -72,7 +71,7 @@ class Sharding:
 
 
 def content(process_id: str, part: dict[str, Any], by: str) -> str:
-    """SHA-256 of what a shard's result depends on: process, part, and the source it is computed ``by``."""
+    """SHA-256 of all that a shard's result depends on: process, part, and the source ``by`` which it is computed."""
     text = canonical([process_id, part, by])
     return sha256(text.encode()).hexdigest()
 

@@ -1,8 +1,8 @@
-"""How a page shows the outputs of a process: typed declarations beside ``tables``, served with its description.
+"""How a page shows the outputs of a process: typed declarations, like ``tables``, served with its description.
 
-A page knows how to draw each kind of view, and no process. ``table`` names one of the tables of the outputs, as CSV and
-Parquet have them: a declared one, a list of objects, or ``outer.inner`` for lists of objects within its rows; "" is the
-one row of the outputs' own scalars. A column's ``path`` is the name of that table's column.
+A page can draw each kind of view and knows no process. ``table`` names a table of the outputs, as in CSV and Parquet: a
+declared table, a list of objects, or ``outer.inner`` for lists of objects within its rows; "" is the single row of the
+outputs' own scalars. A column's ``path`` is its name in that table.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any, ClassVar
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """A column or a figure: its title for people, and where its value stands."""
+    """A column or a figure: its title, and the path of its value."""
 
     title: str
     path: str
@@ -22,10 +22,11 @@ class Column:
 
 @dataclass(frozen=True, slots=True)
 class Findings:
-    """Statements, each with a verdict in one word: they head the page, and the worst of them is the result's verdict.
+    """Statements, each with a one-word verdict: they head the page, and the worst verdict is the result's.
 
     ``word`` is the column of the verdict. A word that is neither ``good`` nor ``bad`` decides nothing. ``basis`` is the
-    output that says what the verdicts rest on; where it is one of ``unproved``, they are shown as claims without proof.
+    output that names the basis of the verdicts; if it is one of ``unproved``, the page shows them as claims without
+    proof.
     """
 
     kind: ClassVar[str] = "findings"
@@ -49,7 +50,7 @@ class Facts:
 
 @dataclass(frozen=True, slots=True)
 class Rows:
-    """A table with titles for people. ``explore``: each row is a start that the page can lead to."""
+    """A table with column titles. ``explore``: each row is a start that links to Explore."""
 
     kind: ClassVar[str] = "rows"
     title: str
@@ -61,11 +62,11 @@ class Rows:
 
 @dataclass(frozen=True, slots=True)
 class Matrices:
-    """Confusion matrices: what was claimed of the cases (rows) against what was so (columns).
+    """Confusion matrices: the claim about the cases (rows) against the truth (columns).
 
-    ``path`` leads to each of them, ``*`` standing for every entry of a list or object; ``names`` are, for each ``*``,
-    the member that names the entry, "" for its key. ``heading`` is made of these names, by their places. ``cells`` are
-    the words for claimed and so, claimed and not so, not claimed and so, neither. ``omit``: names to leave out.
+    ``path`` leads to each matrix, with ``*`` for every entry of a list or object; ``names`` gives, for each ``*``, the
+    member that names the entry, "" for its key. ``heading`` is a template for these names. ``cells`` are the words for
+    claimed and true, claimed and false, not claimed and true, neither. ``omit``: names to leave out.
     """
 
     kind: ClassVar[str] = "matrices"
@@ -82,10 +83,10 @@ class Matrices:
 
 @dataclass(frozen=True, slots=True)
 class Overlay:
-    """Two of the masks of an NPZ file against each other: ``NAME_mask`` on ``x_m``, ``y_m``, within ``inside``.
+    """Compare two masks of an NPZ file: ``NAME_mask`` on ``x_m``, ``y_m``, within ``inside``.
 
-    The names are those in column ``by`` of the table whose ``cells`` are known. ``certain`` is the one that the others
-    are looked at beside.
+    The names are those in column ``by`` of the table whose ``cells`` are known. The page compares the others with
+    ``certain``.
     """
 
     kind: ClassVar[str] = "overlay"
@@ -112,7 +113,7 @@ class Flights:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """What two or more runs of the process are compared by: measures of the rows of a table, named by column ``by``."""
+    """Measures for the comparison of two or more runs: columns of a table whose rows column ``by`` names."""
 
     kind: ClassVar[str] = "comparison"
     table: str

@@ -7,6 +7,7 @@ from typing import Annotated, TypeVar
 
 from pydantic import AfterValidator, Field
 
+from safestart.closed_form.by_name import ClosedForm
 from safestart.model.scenario import (
     MAX_ACCELERATION,
     MAX_MEAN_MOTION,
@@ -48,7 +49,14 @@ def _distinct(values: list[T]) -> list[T]:
 
 
 DISTINCT = AfterValidator(_distinct)
-"""For a list that names nothing twice."""
+"""For a list without repeated names."""
+Certificate = Annotated[
+    ClosedForm,
+    Field(
+        description="certified: explicit manoeuvres with a proof, GO is for ever. paper: the conditions of paper 000, "
+        "NOT SOUND, a GO may be impossible to fly."
+    ),
+]
 Seed = Annotated[int, Field(ge=0, le=2**63 - 1, description="Seed of every random draw.")]
 
 
@@ -95,7 +103,7 @@ class ScenarioInput(WireModel):
 
 
 class Confusion(WireModel):
-    """A certificate (positive: certified) against what is so (actual); shares without a case are null."""
+    """A certificate (positive: certified) against the truth (actual); shares without a case are null."""
 
     tp: int
     fp: int

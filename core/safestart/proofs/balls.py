@@ -14,7 +14,7 @@ PRECISION = 160
 
 
 def _phases(p: arb) -> tuple[arb, arb, arb]:
-    """sin(p)/p, (1 - cos p)/p^2, (p - sin p)/p^3: alternating series, the first term left out bounds the error."""
+    """sin(p)/p, (1 - cos p)/p^2, (p - sin p)/p^3: alternating series whose first omitted term bounds the error."""
     square, term = p * p, arb(1)
     f1 = f2 = f3 = arb(0)
     for k in range(0, 400, 2):

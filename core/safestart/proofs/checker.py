@@ -1,4 +1,5 @@
-"""Any proof document checked: single starts (``proof.py``), families (``families/``), disturbances (``disturbed/``)."""
+"""Check any proof document: single starts (``single.py``), families (``family.py``), disturbances
+(``disturbed.py``), plans with burns that fail (``abort/``)."""
 
 from __future__ import annotations
 
@@ -8,6 +9,9 @@ from typing import Any
 from safestart.proofs import disturbed, disturbed_statement, family_statement
 from safestart.proofs import family as for_all
 from safestart.proofs import single as proof
+from safestart.proofs.abort import check as abort
+from safestart.proofs.abort.statement import SCHEMA as ABORT
+from safestart.proofs.abort.wording import lines
 from safestart.proofs.single import Verified
 
 
@@ -18,4 +22,7 @@ def check(document: Any) -> Verified:
         return for_all.check(document)
     if schema == disturbed_statement.SCHEMA:
         return disturbed.check(document)
+    if schema == ABORT:
+        asked, cells = abort.check(document)
+        return Verified("PROVED", float(document["least_distance_m"]), cells, lines(asked))
     return proof.check(document)

@@ -1,12 +1,13 @@
 """Checker of proofs against a disturbance (schema ``safestart-proof-disturbed/1``) in ball arithmetic.
 
-Flown is u_k = v_k + K e_k, e the state less the plan's. CWH is linear, so e knows neither plan nor corridor:
+The flown thrust is u_k = v_k + K e_k, with e the state minus the plan's state. CWH is linear, so e does not depend on
+plan or corridor:
 
     e_{k+1} = F e_k + int Phi_v(s) w(s) ds,   F = Phi(dt) + B(dt) K,   r_e(t_k + s) = M(s) e_k + int Phi_rv w,
 
-M = (Phi + B K)_r. Every row q . e is bounded over all disturbances and starts by carrying q back through F; the worst
-direction of the plane by 96 of them; what lies between the samples of an interval by the largest acceleration of the
-error. The plan is then flown with less thrust, away from every face by what the error may take.
+M = (Phi + B K)_r. Carrying q back through F bounds every row q . e over all disturbances and starts; 96 directions
+bound the worst direction of the plane; the error's largest acceleration bounds the values between the samples of an
+interval. The checker then flies the plan with less thrust and keeps it away from every face by the bound on the error.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from safestart.runtime.precision import precise
 
 _DIRECTIONS, _PANELS = 96, 8
 _REST = 1e-11
-"""Share of a bound that may be left to the coarser bound of the unit rows."""
+"""Share of a bound that may come from the coarser bound of the unit rows."""
 _LONGEST_SAMPLE, _FEWEST_SAMPLES, _MOST_SAMPLES = fmpq(1, 4), 4, 64
 
 
@@ -63,14 +64,14 @@ def _require_tube(stated: StatedDisturbed) -> None:
 
 @dataclass(frozen=True, slots=True)
 class _Worst:
-    """Bounds on the error of position at all times (m) and on what the feedback asks for at the nodes (m/s^2)."""
+    """Bounds on the position error at all times (m) and on the feedback's thrust at the nodes (m/s^2)."""
 
     position: arb
     thrust: arb
 
 
 def _worst(stated: StatedDisturbed, axes: tuple[int, ...], gain: list[list[fmpq]]) -> _Worst:
-    """The error along ``axes``, the orbit plane or the line across it: in CWH they do not know each other."""
+    """The error along ``axes``, the orbit plane or the line across it, which CWH decouples."""
     plan, error = stated.plan, _Error(stated, axes, gain)
     n, dt, push = error.motion.n, arb(plan.dt), arb(stated.push)
     unit, widen = _directions(len(axes))
@@ -91,8 +92,8 @@ def _worst(stated: StatedDisturbed, axes: tuple[int, ...], gain: list[list[fmpq]
         late.append(push * s * s / 2 * fastest)
     bounds = [widen * (b + more) for b, more in zip(error.over(blocks), late, strict=True)]
     thrust, speed, position = bounds[0], bounds[1], _largest(bounds[2:])
-    # n . r_e between samples h apart: h^2 / 8 of |r''| <= 3 n^2 |r| + 2 n |v| + |K e| + |w|, and |v| grows by what
-    # pushes; the largest |r| stands on both sides.
+    # n . r_e between samples h apart: h^2 / 8 of |r''| <= 3 n^2 |r| + 2 n |v| + |K e| + |w|, and |v| grows by the
+    # accelerations; the largest |r| appears on both sides.
     h, gravity = dt / samples, 3 * n * n
     bend = h * h / 8
     share = bend * gravity * (1 + 2 * n * dt)
@@ -124,7 +125,7 @@ class _Error:
         d = self.d
         self.kicks = [arb_mat([[phi[i, d + c] for c in range(d)] for i in range(2 * d)]) for phi in panels]
         n, fastest = self.motion.n, _kick(self.motion.n, self.dt)
-        # Second derivatives of what a unit kick makes of position and velocity.
+        # Second derivatives of position and velocity after a unit kick.
         self.bend = 3 * n * n * self.dt * fastest + 2 * n * fastest
         self.jerk = 3 * n * n * fastest + 2 * n * self.bend
 
@@ -155,8 +156,8 @@ class _Error:
     ) -> tuple[list[arb], int]:
         """Bounds on |q . e_k| for rows q (R, 2 d) and all k up to ``steps``, and how many steps were carried.
 
-        With ``units``, those of the unit rows, it ends where what is left is small: (q F^m) . e is at most the sum of
-        its entries' sizes times the units' bounds.
+        With ``units``, the bounds of the unit rows, it ends when the remainder is small: (q F^m) . e is at most the sum
+        of its entries' sizes times the units' bounds.
         """
         driven, begun = [arb(0)] * rows.nrows(), [arb(0)] * rows.nrows()
         known = bool(self.away == 0) and bool(self.fast == 0)
@@ -179,7 +180,7 @@ class _Error:
         return [a + b for a, b in zip(driven, begun, strict=True)], steps
 
     def _pushed(self, rows: arb_mat, near: list[arb], fast: list[arb]) -> list[arb]:
-        """What a unit disturbance does to each row within one interval: int |q Phi_v(s)| ds from above.
+        """Upper bound on the effect of a unit disturbance on each row within one interval: int |q Phi_v(s)| ds.
 
         The norm of a linear interpolant is at most the interpolated norm; the interpolant errs by h^2 / 8 of the second
         derivative, h^2 / 12 on average.
@@ -203,7 +204,7 @@ def _kick(n: arb, dt: arb) -> arb:
 
 
 def _directions(d: int) -> tuple[arb_mat, arb]:
-    """Unit rows over half a turn, and by how much a direction between two may exceed both.
+    """Unit rows over half a turn, and the factor by which a direction between two may exceed both.
 
     Between directions 2 b apart any unit vector is their combination with weights >= 0 of sum at most 1 / cos b.
     """
@@ -234,5 +235,5 @@ def _top(value: arb) -> float:
 
 
 def _largest(values: list[arb]) -> arb:
-    """The largest of numbers that are not negative, from above."""
+    """Upper bound on the largest of non-negative numbers."""
     return max((value.abs_upper() for value in values), key=float)

@@ -1,7 +1,7 @@
-"""What a proof against a disturbance states, read strictly: the question, the bounds, the feedback, the tube, the plan.
+"""The statement of a proof against a disturbance, read strictly: question, bounds, feedback, tube, plan.
 
 Part of the checker. The question is the real one, with the whole corridor and all the thrust; the plan is a plain
-statement (``certificates/statement.py``) about it, whose margins the tube then uses up.
+statement (``statement.py``) about it, and the tube uses part of its margins.
 """
 
 from __future__ import annotations
@@ -24,10 +24,11 @@ _LONGEST_INTERVAL_S = 60
 class StatedDisturbed:
     """A document's statement in SI.
 
-    ``push`` bounds the disturbance's acceleration, ``away`` and ``fast`` how far position and velocity of the start may
-    be from where the plan begins. ``plane`` (2, 4) and ``cross`` (1, 2, empty in the plane) are the feedback's gains on
-    the errors of position and velocity. ``radius`` and ``height`` bound the error of position in the orbit plane and
-    across it, ``thrust`` what the feedback asks for; ``plan`` has the real question, its claim and the plan's thrusts.
+    ``push`` bounds the disturbance's acceleration, ``away`` and ``fast`` the distance in position and velocity between
+    the start and the plan's beginning. ``plane`` (2, 4) and ``cross`` (1, 2, empty in the plane) are the feedback's
+    gains on the errors of position and velocity. ``radius`` and ``height`` bound the error of position in the orbit
+    plane and across it, ``thrust`` the feedback's thrust; ``plan`` has the real question, its claim and the plan's
+    thrusts.
     """
 
     plan: Stated

@@ -1,8 +1,8 @@
 """Checker of proofs for families (schema ``safestart-proof-for-all/1``) in ball arithmetic.
 
 Distances are proved at the nodes by balls, for every start of the box at once: a cubic's Bernstein coefficients are
-affine in the start. What lies between the nodes is bounded by the inequalities of docs/theory/uncertainty.md, written
-here again: a sinusoid between two of its values, and Gronwall's bound on the second derivative in the mean motion.
+affine in the start. The inequalities of docs/theory/uncertainty.md, derived here again, bound the values between the
+nodes: a sinusoid between two of its values, and Gronwall's bound on the second derivative in the mean motion.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ def _gap(values: list[fmpq]) -> fmpq:
 
 
 class _Flight:
-    """One history at one node, from every start of the box: distances stand back by what the nodes leave out."""
+    """One history at one node, from every start of the box; distances are reduced by the bound between nodes."""
 
     def __init__(self, stated: StatedForAll, case: Stated) -> None:
         self.case, self.pieces, self.d = case, 0, case.d
@@ -98,7 +98,8 @@ class _Flight:
         for name, (normal, offset) in case.faces.items():
             length = arb(sum((e * e for e in normal), fmpq(0))).sqrt()
             at_centre = arb(offset) / length
-            # Faces that do not lean in x see the chaser ahead of the target (hold_plane): the worst rate is a node.
+            # Faces that do not lean in x depend on the distance ahead of the target (hold_plane), so the worst rate is
+            # a node.
             short = normal[0] != 0 and not needed >= at_centre
             level = at_centre - (at_centre - needed) * delta.cos() if short else needed
             self.faces[name] = ([arb(e) for e in normal], arb(offset), length, level)
@@ -127,7 +128,7 @@ class _Flight:
         return self.pieces
 
     def _piece(self, flights: list[tuple[arb_mat, arb_mat]], k: int, centre: fmpq, half: fmpq) -> bool:
-        """Whether every level is proved on [centre - half, centre + half] of interval k; raise where one is false."""
+        """Whether every level is proved on [centre - half, centre + half] of interval k; raise if one is false."""
         self.pieces += 1
         begin, middle, h = arb(self.case.dt * k), arb(centre), arb(half)
         taylor = []
@@ -157,7 +158,7 @@ class _Flight:
 
 
 def _distance(normal: list[arb], coefficients: list[list[arb]]) -> Row:
-    """Of -normal . q over a piece: its middle, its cubic's four Bernstein coefficients, and a bound on the rest."""
+    """For -normal . q over a piece: its middle, its cubic's four Bernstein coefficients, a bound on the remainder."""
     a0, a1, a2, a3, a4 = (-sum((e * x for e, x in zip(normal, q, strict=True)), arb(0)) for q in coefficients)
     bends = (a2 - a1 - a3, a3 - (a1 + a2) / 3, (a1 - a2) / 3 - a3, a1 + a2 + a3)
     return (a0, *(a0 + bend for bend in bends), a4.abs_upper())
@@ -184,7 +185,7 @@ def _no_go(stated: StatedForAll, case: Stated, rates: list[fmpq]) -> None:
             return
         if not all(bound <= claim * total for bound in bounds):
             break
-        # The side that hides more between its nodes is cut in two.
+        # Cut the side with the larger bound between its nodes in two.
         parts[0 if float(gaps[0]) >= float(gaps[1]) else 1] *= 2
     raise ProofRejected(
         f"sum of weighted distances <= margin_m < 0 for every thrust and member with tumble rate in "

@@ -1,4 +1,4 @@
-"""What a proof for a family states, read strictly: it comes apart into statements about single members.
+"""The statement of a proof for a family, read strictly and split into statements about single members.
 
 Part of the checker. A GO document holds at its nodes, one plain statement (``statement.py``) per history, tumble rate
 and mean motion; a NO_GO document holds on its pieces, one plain statement per piece, read at the piece's lower ends.
@@ -30,7 +30,7 @@ class StatedForAll:
 
     ``middle`` is the question about the middle of the start box, with the ends of the intervals that bind; ``box`` the
     half-widths around it. GO: ``rates`` and ``motions`` are the nodes, ``cases`` the statements at each of them,
-    ``half`` the half-widths that each history must bear. NO_GO: ``cases`` go with ``pieces``, intervals of the tumble
+    ``half`` the half-widths that each history must cover. NO_GO: ``cases`` go with ``pieces``, intervals of the tumble
     rate, and ``half`` is the box.
     """
 
@@ -89,7 +89,7 @@ def read(document: Any) -> StatedForAll:
         box=half,
         rates=nodes[0],
         motions=nodes[1],
-        # The history of a corner starts there and nowhere else.
+        # The history of a corner starts exactly there.
         half=half if common else [fmpq(0)] * len(half),
         cases=cases,
         pieces=pieces,

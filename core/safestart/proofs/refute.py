@@ -1,4 +1,4 @@
-"""The checker's NO_GO: weighted margins that no thrust history brings above the claim, for every end asked for."""
+"""The checker's NO_GO: weighted margins that no thrust history brings above the claim, for every end in question."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from safestart.proofs.weights import Weight
 
 
 def refute(stated: Stated) -> int:
-    """Check a NO_GO, at the precision set: raise :class:`ProofRejected` where an end is not refuted. No pieces: 0."""
+    """Check a NO_GO at the current precision; raise :class:`ProofRejected` if an end is not refuted. Returns 0."""
     Refutation(stated).check()
     return 0
 
@@ -24,7 +24,7 @@ class Refutation:
         self.motion, self.limits = Motion(stated), stated.limits
 
     def check(self) -> None:
-        """Every end is refuted; where no row is at the end, staying until the first of the part is."""
+        """Check that every end is refuted; without a row at the end, check only the part's first end."""
         for first, last, weights in self.stated.parts:
             path = [(w, *self._along(w, arb(w.time))) for w in weights if w.time is not None]
             at_end = [w for w in weights if w.time is None]

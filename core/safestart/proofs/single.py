@@ -1,8 +1,8 @@
 """Checker of proof documents (schema ``safestart-proof/1``) in ball arithmetic; it trusts nothing but python-flint.
 
-It shares no code with what makes the proofs: motion and turn (``balls.py``) and the corridor (``statement.py``)
-are derived here again. Every number of a document is the double it is, every operation carries its error, and a
-comparison counts only when it holds for the whole ball. docs/theory/exact.md states the inequalities.
+It shares no code with the provers: it derives motion and turn (``balls.py``) and the corridor (``statement.py``) again.
+It reads every number of a document as an exact double, every operation carries its error, and a comparison counts only
+when it holds for the whole ball. docs/theory/exact.md states the inequalities.
 """
 
 from __future__ import annotations
@@ -28,7 +28,10 @@ _MOST_PIECES = 100_000
 class Verified:
     """What a document proves: its verdict and the margin (m) that bounds the best one, from below (GO) or above.
 
-    ``pieces`` is the number of time intervals a GO took, 0 for a NO_GO. ``statement`` says in lines all that is proved.
+    For a plan with failing burns the verdict is PROVED and the margin its least distance to the target.
+
+    ``pieces`` is the number of time intervals it took, 0 for a NO_GO. ``statement`` lists all that is
+    proved, line by line.
     """
 
     verdict: str
@@ -50,7 +53,7 @@ def _square(vector: list[arb]) -> arb:
 
 
 class Witness:
-    """The thrust history of one statement, flown in balls; every face stands back by what is ``taken`` of it (m)."""
+    """The thrust history of one statement, flown in balls; each face's distance is reduced by ``taken`` (m)."""
 
     def __init__(self, stated: Stated, taken: Mapping[str, arb] | None = None) -> None:
         self.stated, self.pieces = stated, 0
@@ -64,9 +67,9 @@ class Witness:
         self.start = arb_mat(2 * self.d, 1, [arb(e) for e in stated.start])
 
     def check(self) -> int:
-        """|u_k| <= a_max exactly, and every margin >= the claim > 0 at all times, those of the end at the end.
+        """Check |u_k| <= a_max exactly, and every margin >= the claim > 0 at all times, those of the end at the end.
 
-        The number of pieces of time it took; raises :class:`ProofRejected`.
+        Returns the number of pieces of time; raises :class:`ProofRejected`.
         """
         phi, held = self.motion.over(arb(self.dt))
         state = self.start
@@ -89,7 +92,7 @@ class Witness:
         return self.pieces
 
     def _end(self, state: arb_mat, time: arb) -> None:
-        """In the ball around the hold point, and slow enough against the body frame."""
+        """Check the ball around the hold point, and the speed relative to the body frame."""
         flat, high = self.motion.rates(state, arb_mat(self.d, 1), arb(0), 1)
         at, speed = self.motion.body(flat, high, time)
         radius = arb(self.limits.radius)
@@ -105,7 +108,7 @@ class Witness:
                 )
 
     def _piece(self, state: arb_mat, u: arb_mat, k: int, centre: fmpq, half: fmpq) -> bool:
-        """Whether the claim is proved on [centre - half, centre + half] of interval k; raise where it is false."""
+        """Whether the claim is proved on [centre - half, centre + half] of interval k; raise if it is false."""
         self.pieces += 1
         begin, middle, h = arb(self.dt * k), arb(centre), arb(half)
         proved = True
@@ -122,7 +125,7 @@ class Witness:
                     + ("" if level < 0 else f", not settled after {_MOST_PIECES} pieces")
                 )
             rest = level - a4.abs_upper()
-            # The cubic's Bernstein coefficients bound it from below; the fourth derivative bounds what is left.
+            # The cubic's Bernstein coefficients bound it from below; the fourth derivative bounds the remainder.
             bends = (a2 - a1 - a3, a3 - (a1 + a2) / 3, (a1 - a2) / 3 - a3, a1 + a2 + a3)
             proved = proved and all(rest + bend >= 0 for bend in bends)
         return proved
@@ -130,7 +133,7 @@ class Witness:
     def _room(
         self, state: arb_mat, u: arb_mat, begin: arb, s: arb, orders: range
     ) -> Iterator[tuple[str, list[arb]]]:
-        """What must not be negative at all times: its time derivatives of the orders asked for, at begin + s."""
+        """Time derivatives, of the requested orders at begin + s, of the quantity that must not be negative."""
         most, highest = self.limits.most, orders[-1]
         flat, high = self.motion.rates(state, u, s, highest + (most is not None))
         chain = self.motion.body(flat[: highest + 1], high, begin + s)

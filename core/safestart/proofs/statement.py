@@ -1,6 +1,6 @@
-"""What a proof document states, read strictly: every number the double it is, as an exact rational.
+"""The statement of a proof document, read strictly: every number is a double, taken as an exact rational.
 
-Part of the checker (:mod:`safestart.proofs.single`): it shares no code with what makes the proofs.
+Part of the checker (:mod:`safestart.proofs.single`), which shares no code with the provers.
 """
 
 from __future__ import annotations
@@ -41,8 +41,8 @@ class Stated:
     """A document's statement in SI: question, start (2 d numbers), claim and the evidence for it.
 
     ``shape`` holds the corridor's numbers, ``faces`` maps a name to (normal, offset). The end is any of the steps
-    ``earliest`` .. ``steps``; both are one where it is fixed. ``thrust`` (k, d) for GO; for NO_GO ``parts`` (first,
-    last, weights), each against the ends first .. last, together against all ends asked for.
+    ``earliest`` .. ``steps``; both are equal if it is fixed. ``thrust`` (k, d) for GO; for NO_GO ``parts`` (first,
+    last, weights), each against the ends first .. last, together against all ends in question.
     """
 
     verdict: str
@@ -70,7 +70,7 @@ def digest_of(document: Mapping[str, Any]) -> str:
 
 
 def check_seal(document: Any, schema: str) -> None:
-    """Raise :class:`ProofRejected` unless the document is an object of that schema and its digest is its own."""
+    """Raise :class:`ProofRejected` unless the document is an object of that schema and its digest is right."""
     if not isinstance(document, Mapping) or document.get("schema") != schema:
         raise ProofRejected(f"schema: required a document of schema {schema}")
     try:
@@ -82,7 +82,7 @@ def check_seal(document: Any, schema: str) -> None:
 
 
 def read(document: Any) -> Stated:
-    """The statement of a document; raise :class:`ProofRejected` when it is malformed or its digest is another's."""
+    """The statement of a document; raise :class:`ProofRejected` when it is malformed or its digest is wrong."""
     check_seal(document, SCHEMA)
     verdict, question, start = document.get("verdict"), document.get("question"), document.get("start")
     kind = part(question, "kind", str)

@@ -1,4 +1,4 @@
-"""Reading a proof document strictly: the parts that must be there, every number the double it is."""
+"""Read a proof document strictly: required parts, known fields, numbers as exact doubles."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ LARGEST = 1e7
 
 
 class ProofRejected(SafestartError):
-    """The document proves nothing; the message names the inequality that fails, with its numbers."""
+    """The document proves nothing; the message names the failed inequality, with its numbers."""
 
     status = 422
     slug = "proof-rejected"
@@ -21,14 +21,14 @@ class ProofRejected(SafestartError):
 
 
 def shown(value: Any, most: int = 60) -> str:
-    """What came, for a message: short, and without characters that could forge lines of output."""
+    """A received value for a message: short, and without characters that could forge lines of output."""
     return ascii(value)[:most]
 
 
 def fields(document: Any, name: str, needed: Collection[str], optional: Collection[str] = ()) -> None:
-    """The object called ``name`` holds every field needed, maybe optional ones, and no other.
+    """Check that the object ``name`` has every needed field and only needed or optional ones.
 
-    A field that the checker does not know would be believed and never checked.
+    Readers would believe an unknown field although the checker never checks it.
     """
     if not isinstance(document, Mapping):
         raise ProofRejected(f"{name}: required an object, received {type(document).__name__}")
@@ -40,7 +40,7 @@ def fields(document: Any, name: str, needed: Collection[str], optional: Collecti
 
 
 def part(document: Any, key: str, kind: type) -> Any:
-    """The value under ``key``, of the type asked for."""
+    """The value under ``key``, of the required type."""
     value = document.get(key) if isinstance(document, Mapping) else None
     if not isinstance(value, kind) or isinstance(value, bool):
         raise ProofRejected(f"{key}: required a {kind.__name__}, received {type(value).__name__}")
@@ -48,7 +48,7 @@ def part(document: Any, key: str, kind: type) -> Any:
 
 
 def exact(value: Any, name: str, low: float, high: float = LARGEST) -> fmpq:
-    """A number in [low, high] as the rational it is."""
+    """A number in [low, high], as an exact rational."""
     if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
         raise ProofRejected(f"{name}: required a number in [{low:g}, {high:g}], received {shown(value)}")
     return fmpq(*value.as_integer_ratio())

@@ -1,4 +1,4 @@
-"""Norm limits and multipliers as a proof document states them; part of the checker."""
+"""Norm limits and multipliers of a proof document; part of the checker."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ AT_END = ("hold", "rest")
 
 @dataclass(frozen=True, slots=True)
 class Weight:
-    """One multiplier; ``pull``, |pull| <= value, for norm limits, ``time`` None where the end is meant."""
+    """One multiplier; ``pull``, |pull| <= value, for norm limits; ``time`` None means the end."""
 
     time: fmpq | None
     face: str
@@ -28,8 +28,8 @@ class Weight:
 class Limits:
     """Norm limits: the ball of ``radius`` around ``hold`` and the speed ``rest`` in it; the speed ``most``.
 
-    ``rest_scale`` and ``scale`` (s) turn speeds into metres. None for what the question does not ask. ``keep_out`` (m)
-    is at most the hold radius.
+    ``rest_scale`` and ``scale`` (s) convert speeds into metres. Limits that the question lacks are None. ``keep_out``
+    (m) is at most the hold radius.
     """
 
     hold: list[fmpq] | None
@@ -41,7 +41,7 @@ class Limits:
 
     @property
     def rest_scale(self) -> fmpq:
-        """Seconds that turn the speed left at the end into metres."""
+        """Seconds that convert the speed at the end into metres."""
         return self.radius / self.rest
 
 
@@ -66,7 +66,7 @@ def limits_of(question: Any, d: int, free: bool) -> Limits:
 def parts_of(
     rows: list[Any], ends: tuple[int, int], faces: Mapping[str, Any], limits: Limits, horizon: fmpq
 ) -> list[tuple[int, int, list[Weight]]]:
-    """The parts in turn, which together must cover the ends (first, last) without a hole."""
+    """Yield the parts, which together must cover the ends (first, last) without a gap."""
     out, covered = [], ends[0]
     for row in rows:
         fields(row, "parts", ("first_step", "last_step", "multipliers"))

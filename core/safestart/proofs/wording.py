@@ -1,7 +1,7 @@
-"""What a checked document proves, in words: the whole statement, from the numbers that the checker has read.
+"""The whole statement of a checked document in words, from the numbers that the checker has read.
 
-Part of the checker. Every number stands here as the double it is, so that nobody reads a rounded one as proved; what
-is converted for the reader (degrees, seconds of a number of steps) stands in brackets behind it.
+Part of the checker. It prints every number as an exact double, so that nobody reads a rounded one as proved; converted
+values (degrees, seconds of a number of steps) follow in brackets.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _NONE = "no member of these sets has a thrust history that keeps more than the m
 
 
 def lines(stated: Stated) -> tuple[str, ...]:
-    """The statement about one start, a line for each part of it."""
+    """The statement about one start, one line per part."""
     found = "a thrust history keeps" if stated.verdict == "GO" else "no thrust history keeps more than"
     return (
         f"{found} the margin, {_margin(stated)}",
@@ -59,7 +59,7 @@ def lines_disturbed(stated: StatedDisturbed) -> tuple[str, ...]:
     )
     radius, hold = stated.radius, plan.shape["hold_radius_m"]
     across = (plan.shape["c_z"] * radius + stated.height) if space else fmpq(0)
-    # Every face moved in by what the error may take: |A| radius off the sides' offsets, as roots that are rounded.
+    # Every face moved in by the error bound: |A| radius off the sides' offsets, with rounded roots.
     narrow = [f"y >= {_double(hold + radius):g}"]
     c_x, x0 = (_double(plan.shape[key]) for key in ("c_x", "x0_m"))
     narrow.append(f"|x| <= {x0 - _double(radius) * math.hypot(1.0, c_x):g} + {c_x:g} (y - {_double(hold):g})")
@@ -85,8 +85,10 @@ def lines_disturbed(stated: StatedDisturbed) -> tuple[str, ...]:
 
 
 def asked(document: Mapping[str, Any]) -> dict[str, Any]:
-    """Question, start and bounds of a document that was checked, less what a planar question does not rest on."""
+    """Question, start and bounds of a checked document, without the parts that a planar question does not use."""
     question = document["question"]
+    if "corridor" not in question:
+        return {"question": question}
     unused = ("c_z", "z0_m") if question["dimensions"] == 2 else ()
     corridor = {key: value for key, value in question["corridor"].items() if key not in unused}
     bounds = {key: document[key] for key in ("disturbance", "feedback", "tube") if key in document}
@@ -153,7 +155,7 @@ def _rate(low: fmpq, high: fmpq) -> str:
 
 
 def _value(low: fmpq, high: fmpq, factor: float | None = None) -> str:
-    """A number, or an interval where its ends differ; rounded only where it is converted."""
+    """A number, or an interval if its ends differ; only converted values are rounded."""
     ends = [_number(e) if factor is None else f"{_double(e) * factor:.6g}" for e in (low, high)]
     return ends[0] if low == high else f"{ends[0]} to {ends[1]}"
 

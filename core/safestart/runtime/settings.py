@@ -53,21 +53,20 @@ class Settings(BaseSettings):
         60.0,
         ge=1,
         le=3600,
-        description="A job that reports nothing and uses no processor for that long, s, starts again.",
+        description="A job that reports nothing and uses no processor for this long, s, starts again.",
     )
     keep_days: float = Field(
-        0.0, ge=0, le=36500, description="Days after which the worker deletes ended jobs; 0: they are kept."
+        0.0, ge=0, le=36500, description="Days after which the worker deletes ended jobs; 0: never."
     )
     log_format: Literal["text", "json"] = Field(
-        "text", description="Logs as text or as one JSON object a line."
+        "text", description="Logs as text or as one JSON object per line."
     )
     max_body_bytes: int = Field(8_000_000, ge=1000, description="Largest request body the service reads.")
     max_states: int = Field(100_000, ge=1, description="Most states in one go-no-go request.")
     max_queued: int = Field(10_000, ge=1, description="Most jobs waiting at once.")
     allowed_hosts: str = Field(
         "",
-        description="Host names, separated by commas, under which the service may be asked for, besides localhost "
-        "and IP addresses.",
+        description="Host names, separated by commas, that the service accepts besides localhost and IP addresses.",
     )
     rate_per_s: float = Field(
         1000.0, gt=0, description="Requests per second of one API key; bursts of 10 s' worth."

@@ -1,4 +1,4 @@
-"""Convex sets by their support functions, and when one of them meets the corridor.
+"""Convex sets by their support functions, and the test whether one meets the corridor.
 
 Directions: the planar corridor {y >= r_h, |x| <= x0 + c_x (y - r_h)} is a convex set that recedes in +y, so a
 convex set R misses it exactly when some direction d = (sin a, cos a), |tan a| <= 1/c_x, of the dual cone

@@ -18,10 +18,10 @@ import numpy as np
 
 from safestart.model.scenario import Floats
 
-# E may be this part of the largest step |w|_P.
+# Allowed size of E, as a part of the largest step |w|_P.
 _TAIL = 1e-6
 _MOST_TERMS = 4000
-# What floats lose in some thousand additions of positive terms, with room.
+# Bound on rounding in some thousand additions of positive terms.
 _ROUNDING = 1e-10
 
 
@@ -30,8 +30,8 @@ class Push:
     """W = {integral over [0, h] of G(s) w(s) ds : |w(s)| <= 1, w measurable}, G(s) of shape (n, m).
 
     ``columns`` (q + 1, n, m) samples G at equal steps. The support function is the integral of |G(s)' d|; the trapezoid
-    rule bounds it from above, because linear interpolation bounds the norm and ``excess`` (n,) bounds what it misses
-    per component of d.
+    rule bounds it from above, because linear interpolation bounds the norm and ``excess`` (n,) bounds the interpolation
+    error per component of d.
     """
 
     columns: Floats
@@ -72,7 +72,7 @@ class Invariant:
         spectral = float(np.abs(np.linalg.eigvals(closed_loop)).max())
         if not spectral < 1.0 - 1e-6:
             return None
-        # F'PF = r^2 (P - I) for any r between the spectral radius and 1; the factor is measured, not assumed.
+        # F'PF = r^2 (P - I) for any r between the spectral radius and 1; the factor is computed, not assumed.
         rate = spectral + 0.25 * (1.0 - spectral)
         found = solve_discrete_lyapunov((closed_loop / rate).T, np.eye(len(closed_loop)))
         weight: Floats = np.asarray(0.5 * (found + found.T), dtype=np.float64)

@@ -6,8 +6,7 @@ q = R(-omega t) D(t) p. With the separating direction at angle a (see :mod:`safe
     f(t, a) = (q_x +- x0) sin a + (q_y - r_h) cos a + S(t, pi/2 - a + omega t)
 
 and the margin is max over t of min over a. Every derivative is in closed form (the series is), so both
-extrema are polished instead of sampled: Newton in ``a``, tangents in ``t``. All of it lives in one file
-because Numba's cache sees changes in a kernel's own file only.
+extrema are polished instead of sampled: Newton in ``a``, tangents in ``t``. One file holds the whole kernel.
 """
 
 from __future__ import annotations
@@ -75,7 +74,7 @@ def _polish(a: float, low: float, high: float, x: float, y: float, waves: Floats
     """Angle of the local minimum of one smooth piece inside [low, high]: Newton, safeguarded by bisection."""
     for _ in range(60):
         _, d, dd, _, _ = _f(a, x, y, waves)
-        # What is left to gain is about d^2 / (2 dd).
+        # The remaining gain is about d^2 / (2 dd).
         if dd > 0.0 and d * d <= 1e-11 * dd:
             break
         if d > 0.0:
@@ -161,8 +160,8 @@ def _climb(
     """Polish the local maximum near ``times[k]``; the better of it and (``best``, ``at``).
 
     The next trial is where the two tangents of the bracket cross: right for a kink, halving the bracket for a
-    parabola. It ends when the tangents promise no gain and, with second derivatives of the size of ``bend``
-    (m/s^2), the bracket is too narrow for them to be wrong (the sides of a kink may be convex).
+    parabola. It ends when the tangents promise no gain and the bracket is so narrow that second derivatives of the size
+    of ``bend`` (m/s^2) cannot change that (the sides of a kink may be convex).
     """
     a = b = times[k]
     va, ga = _margin_at(a, px, py, horizon, omega, half, hold, value, slope, nodes, trig, raw, waves, scan)
@@ -278,8 +277,8 @@ def reach_margins(
                 after = coarse[m + 1, i] if m < moments - 1 else -math.inf
                 if m == top or before >= now or after > now:
                     continue
-                # Between nodes a peak rises about as far as the steeper of its two sides goes on; twice that
-                # leaves room for sides that steepen.
+                # Between nodes a peak rises about as far as its steeper side extends; twice that leaves room for
+                # steepening sides.
                 rise = 2.0 * max(now - before if m > 0 else 0.0, now - after if m < moments - 1 else 0.0)
                 if now + rise > best:
                     best, at = _climb(

@@ -1,4 +1,4 @@
-"""Margin of arbitrary starts against the rotating corridor: series and kernel put together."""
+"""Margin of arbitrary starts against the rotating corridor, from the series and the kernel."""
 
 from __future__ import annotations
 

@@ -69,7 +69,7 @@ def reach_series(
 
 
 def _last(sizes: Floats, group: int = 1) -> int:
-    """Index of the last entry worth keeping (number of groups, when entries come in groups)."""
+    """Index of the last significant entry (number of groups, when entries come in groups)."""
     keep = np.flatnonzero(sizes > NEGLIGIBLE)
     if keep.size == 0:
         return 0

@@ -17,8 +17,8 @@ def support(generators: Floats, unit: Floats) -> Floats:
 def meet_arc(generators: Floats, arc: DualArc) -> MeetArc:
     """Breakpoints and vertices of the zonotope of ``generators`` (G, 2), body axes, over the dual arc.
 
-    The breakpoints are the generators' normals inside the arc; the port's segment x0 (1, 0) is one more
-    generator. Sorted by angle, passing a breakpoint flips the sign of one generator: O(G log G).
+    The breakpoints are the generators' normals inside the arc; the port's segment x0 (1, 0) is one more generator. In
+    angular order each breakpoint flips the sign of one generator: O(G log G).
     """
     both = np.vstack([generators, [[arc.half_width, 0.0]]])
     both = both[(both != 0.0).any(axis=1)]

@@ -107,9 +107,9 @@ def fly(
 ) -> Record:
     """Fly each of ``starts`` (M, 6), LVLH states (m, m/s) at t = 0, to the plan's end or its first violation.
 
-    In a planar plan z and vz must be 0. ``draws`` (M, K, 6) are the standard normals of :func:`noise.draws`, needed
-    where ``truth`` is noisy. ``keep_paths`` writes down every checked instant. Raises ``InvalidInput`` for other
-    shapes, a start out of the plane, noise in space.
+    In a planar plan z and vz must be 0. ``draws`` (M, K, 6) are the standard normals of :func:`noise.draws`, needed if
+    ``truth`` is noisy. ``keep_paths`` records every checked instant. Raises ``InvalidInput`` for other shapes, a start
+    out of the plane, and noise in space.
     """
     _check(plan, starts, truth, draws)
     starts = np.ascontiguousarray(starts, dtype=np.float64)

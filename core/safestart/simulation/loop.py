@@ -37,7 +37,7 @@ def fly(
 
 
 def fly_watched(flight: Watched, controller: Controller, steps: int, dt: float, errors: Errors) -> Record:
-    """The loop itself, over a flight that is about to begin."""
+    """The loop over a prepared flight."""
     times, states = [flight.time], [flight.state.copy()]
     commands: list[Command] = []
     held: list[Floats] = []
@@ -45,10 +45,10 @@ def fly_watched(flight: Watched, controller: Controller, steps: int, dt: float, 
     delta_v = peak = 0.0
     controller.begin(states[0])
     for k in range(steps):
-        # Written so that a NaN ends the flight.
+        # This form of the test also ends the flight at a NaN.
         if not flight.margin >= 0.0:
             break
-        # The copy: a flight may move its own state in place, and a controller may keep what it was given.
+        # A copy: a flight may change its state in place, and a controller may keep the array.
         command = controller.command(k, errors.seen(k, states[-1]))
         thrust = errors.delivered(k, command.thrust, dt)
         size = math.sqrt(float(thrust @ thrust))

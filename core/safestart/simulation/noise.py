@@ -1,4 +1,4 @@
-"""What the flown world does beyond the plan: navigation noise, thruster errors, pushes from outside."""
+"""Deviations of the simulated world from the plan: navigation noise, thruster errors, external accelerations."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from safestart.runtime.kernels import compiled
 
 AT_NODES, AT_SUBSTEPS, CONTINUOUS = 0, 1, 2
 CHECKS = {"nodes": AT_NODES, "substeps": AT_SUBSTEPS, "continuous": CONTINUOUS}
-"""Where a violation is looked for: at control nodes, at the sub-steps of paper 000, or at all times."""
+"""Where to look for violations: at control nodes, at the sub-steps of paper 000, or at all times."""
 
 DRAWS = 6
 """Standard normals per control step in the plane: navigation x, y, vx, vy, thrust magnitude, thrust direction."""
@@ -22,7 +22,7 @@ DRAWS_IN_SPACE = 9
 
 
 class Truth(NamedTuple):
-    """Settings of the flown world, as the compiled kernels take them.
+    """Settings of the simulated world, as the compiled kernels take them.
 
     ``position_sigma`` (m) and ``velocity_sigma`` (m/s): white navigation noise per axis and control step;
     ``magnitude_sigma`` (relative) and ``direction_sigma`` (rad): error of each held thrust; ``minimum_impulse`` (m/s):
@@ -43,7 +43,7 @@ class Truth(NamedTuple):
 
     @property
     def exact(self) -> bool:
-        """Whether thrust is delivered and the state known as the controller thinks."""
+        """Whether the world is perfect: exact thrust and a known state."""
         return not any(self[1:])
 
 
@@ -65,7 +65,7 @@ def draws(
 ) -> Floats:
     """Standard normals (M, K, ``DRAWS`` or ``DRAWS_IN_SPACE``) of the numbered cases; empty when nothing is drawn.
 
-    Each case has a counter-based generator of its own, so what it meets depends on seed and number alone.
+    Each case has its own counter-based generator, so its draws depend only on seed and number.
     """
     if not truth.noisy:
         return NO_DRAWS
@@ -77,10 +77,10 @@ def draws(
 
 
 class Errors(Protocol):
-    """What stands between a controller and the world."""
+    """The interface between a controller and the world."""
 
     def seen(self, k: int, state: Floats) -> Floats:
-        """The state (6,) as navigation has it at the start of interval ``k``."""
+        """Navigation's estimate of the state (6,) at the start of interval ``k``."""
         ...
 
     def delivered(self, k: int, asked: Floats, held_s: float) -> Floats:
@@ -88,19 +88,19 @@ class Errors(Protocol):
         ...
 
     def push(self, k: int, state: Floats, thrust: Floats) -> Floats | None:
-        """An acceleration (3,) from outside, which costs no propellant, at the true state under ``thrust``; or None."""
+        """An external acceleration (3,), which costs no propellant, at the true state under ``thrust``; or None."""
         ...
 
 
 class Exact:
-    """The state is known, thrust is delivered, nothing pushes; the base of every other kind of errors."""
+    """No errors: known state, exact thrust, no external acceleration; the base of all other kinds."""
 
     def seen(self, k: int, state: Floats) -> Floats:  # noqa: ARG002
         """The state itself."""
         return state
 
     def delivered(self, k: int, asked: Floats, held_s: float) -> Floats:  # noqa: ARG002
-        """What was asked for."""
+        """The commanded thrust."""
         return asked
 
     def push(self, k: int, state: Floats, thrust: Floats) -> Floats | None:  # noqa: ARG002

@@ -1,4 +1,4 @@
-"""One control interval of the truth: exact CWH under a held thrust, the rotating corridor checked on the way.
+"""One control interval of the truth: exact CWH under a held thrust, with checks of the rotating corridor.
 
 Between sub-steps h seconds apart a face distance is enclosed by the cubic through value and slope at both: the true one
 is at most h^4 / 384 times the largest |f''''| away, some 1e-5 m for the paper's sub-steps at 5 deg/s, 1e-7 m for h =
@@ -24,7 +24,7 @@ def distance(normals, offsets, x, d, count):  # type: ignore[no-untyped-def]
         value = offsets[i]
         for c in range(d):
             value -= normals[c, i] * x[c]
-        # Written so that a NaN distance is passed on, not skipped.
+        # This form of the comparison passes a NaN distance on.
         if not value >= least:
             least = value
     return least
@@ -32,7 +32,7 @@ def distance(normals, offsets, x, d, count):  # type: ignore[no-untyped-def]
 
 @compiled(error_model="numpy")
 def slopes(normals, offsets, x, d, count, omega, step, out):  # type: ignore[no-untyped-def]
-    """Distances ``out[0]`` and their rates times ``step`` ``out[1]`` of each face that turns at ``omega``."""
+    """Distances ``out[0]`` to each face that turns at ``omega``, and their rates times ``step``, ``out[1]``."""
     for i in range(count):
         value = offsets[i]
         rate = omega * (normals[1, i] * x[0] - normals[0, i] * x[1])

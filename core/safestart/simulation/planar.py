@@ -21,7 +21,7 @@ _NO_LOG = np.empty((0, 6))
 
 
 class PlanarFlight:
-    """The same flight as :class:`safestart.simulation.watch.WatchedFlight`; it stops a sample after a violation."""
+    """The same flight as :class:`safestart.simulation.watch.WatchedFlight`; it stops one sample after a violation."""
 
     def __init__(self, motion: Cwh, spin: Spin, corridor: Corridor, start: Floats, dt: float) -> None:
         self._spin, self._rate, self._dt = spin, spin.rate * spin.axis[2], dt
@@ -68,7 +68,7 @@ class PlanarFlight:
 
 
 def watched(plant: Plant, constraints: Sequence[Constraint], start: Floats, dt: float) -> Watched:
-    """The flight from ``start`` (6,), compiled where the parts allow it."""
+    """The flight from ``start`` (6,), compiled if its parts allow it."""
     motion, spin = plant.motion, plant.attitude
     if len(constraints) == 1 and isinstance(motion, Cwh) and isinstance(spin, Spin) and spin.planar:
         corridor = constraints[0]

@@ -1,4 +1,4 @@
-"""The plant: how the chaser moves and how the target turns, as one scenario has them."""
+"""The plant of a scenario: how the chaser moves and how the target turns."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ MOTIONS: dict[str, Callable[[Target], Motion]] = {
     "cwh": lambda target: Cwh(target.mean_motion),
     "two_body_j2": lambda target: TwoBody(Orbit.of(target.mean_motion)),
 }
-"""The motions that a scenario can be flown in, by name."""
+"""The motions of a scenario, by name."""
 
 ATTITUDES: dict[str, Callable[[Target], Attitude]] = {"spin": spin_of}
-"""The ways in which a scenario's target can turn, by name."""
+"""The attitudes of a scenario's target, by name."""
 
 
 @dataclass(frozen=True, slots=True)
 class Plant:
-    """A motion and an attitude; neither knows the other."""
+    """A motion and an attitude, independent of each other."""
 
     motion: Motion
     attitude: Attitude
 
 
 def plant_of(scenario: Scenario, motion: str = "cwh", attitude: str = "spin") -> Plant:
-    """The plant of a scenario; raises ``InvalidInput`` for a motion or an attitude of another name."""
+    """The plant of a scenario; raises ``InvalidInput`` for an unknown motion or attitude."""
     if motion not in MOTIONS:
         raise invalid("motion", f"one of {', '.join(MOTIONS)}", motion)
     if attitude not in ATTITUDES:

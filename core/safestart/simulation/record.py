@@ -1,4 +1,4 @@
-"""The record of flights: what became of each, and its history where that is kept."""
+"""The record of flights: the outcome of each, and its history if kept."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ Counts = np.ndarray[tuple[int], np.dtype[np.int64]]
 
 @dataclass(frozen=True, slots=True)
 class Path:
-    """One flight at the T times at which it was written down, and its K control intervals.
+    """One flight at its T recorded times, and its K control intervals.
 
     ``times`` (T,) s; ``states`` (T, 6) LVLH, m and m/s; ``thrust`` (K, 3) m/s^2 as delivered, each held over an
-    interval; ``commands`` (K): what the controller asked for, empty where that is not kept; ``impulses`` (K, 3) m/s as
-    delivered, each at the start of an interval, empty where there was none.
+    interval; ``commands`` (K): the controller's commands, empty if not kept; ``impulses`` (K, 3) m/s as delivered, each
+    at the start of an interval, empty without impulses.
     """
 
     times: Floats
@@ -41,13 +41,13 @@ class Path:
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """What became of M flights.
+    """The outcomes of M flights.
 
-    ``margin`` (M,): least distance of any constraint over what was checked, m, NaN where the state left the
-    floating-point numbers; a flight ends at its first violation, so a negative margin is the distance by which it was
-    first seen outside. ``violated_at`` (M,): seconds, infinite without a violation. ``delta_v`` (M,): m/s spent.
-    ``peak`` (M,): largest thrust acceleration delivered, m/s^2. ``steps`` (M,): control intervals begun.
-    ``fallbacks`` (M,): those in which the controller found no admissible command. ``paths`` (M), or empty.
+    ``margin`` (M,): least checked distance of any constraint, m, NaN if the state became non-finite; a flight ends at
+    its first violation, so a negative margin is the distance by which it was first seen outside. ``violated_at`` (M,):
+    seconds, infinite without a violation. ``delta_v`` (M,): m/s spent. ``peak`` (M,): largest thrust acceleration
+    delivered, m/s^2. ``steps`` (M,): control intervals begun. ``fallbacks`` (M,): intervals in which the controller
+    found no admissible command. ``paths`` (M), or empty.
     """
 
     margin: Floats
@@ -63,12 +63,12 @@ class Record:
 
     @property
     def finite(self) -> Bools:
-        """Flown with numbers throughout, (M,)."""
+        """True where the state stayed finite, (M,)."""
         return np.asarray(~np.isnan(self.margin))
 
     @property
     def safe(self) -> Bools:
-        """Never outside a constraint where it was checked, and a number throughout, (M,)."""
+        """True where every check held and the state stayed finite, (M,)."""
         return np.asarray((self.margin >= 0.0) & np.isinf(self.violated_at))
 
     @classmethod

@@ -1,4 +1,4 @@
-"""Starts of flights: states of chasers at rest, and how many control intervals a time takes."""
+"""Starts of flights: states of chasers at rest, and the number of control intervals of a time."""
 
 from __future__ import annotations
 

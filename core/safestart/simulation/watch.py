@@ -1,4 +1,4 @@
-"""One flight under way in any plant, watched at all times: any motion, any attitude, any constraints.
+"""One flight in progress, watched at all times: any motion, any attitude, any constraints.
 
 Between two samples h seconds apart a distance is enclosed by the cubic through value and slope at both: the true one is
 at most h^4 / 384 times the largest fourth derivative away. The cubic's minimum is closed-form; where it is negative,
@@ -31,24 +31,24 @@ def samples_of(attitude: Attitude, dt: float) -> int:
 
 
 class Watched(Protocol):
-    """A flight from one start on, as the loop asks for it."""
+    """The interface of a flight to the loop."""
 
     state: Floats
     """LVLH state (6,) now, m and m/s."""
     time: float
-    """Seconds flown: whole intervals, less where the last one ended at a violation."""
+    """Seconds flown: whole intervals, or less if the last one ended at a violation."""
     margin: float
-    """Least distance of any constraint so far, m; NaN where the state left the floating-point numbers."""
+    """Least distance of any constraint so far, m; NaN if the state became non-finite."""
     violated_at: float
     """Seconds until the first violation, infinite without one."""
 
     def fly(self, thrust: Floats, impulse: Floats | None = None) -> None:
-        """One interval: ``impulse`` (3,), m/s, at its start, ``thrust`` (3,), m/s^2, held in LVLH; to a violation."""
+        """One interval, or to a violation: ``impulse`` (3,), m/s, at its start; ``thrust`` (3,), m/s^2, in LVLH."""
         ...
 
 
 class WatchedFlight:
-    """The general flight, in NumPy. It flies an interval to its end, even where that holds the first violation."""
+    """The general flight, in NumPy. It flies an interval to its end, even if the first violation is in it."""
 
     def __init__(self, plant: Plant, constraints: Sequence[Constraint], start: Floats, dt: float) -> None:
         self._attitude, self._constraints, self._dt = plant.attitude, tuple(constraints), dt

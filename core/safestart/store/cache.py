@@ -48,8 +48,7 @@ class Cache:
 
 
 def shelve(session: Session, key: str, data: bytes, most_bytes: int = MOST_BYTES) -> None:
-    """Store ``data`` under ``key`` in this transaction, and drop the oldest entries beyond ``most_bytes`` in
-    total."""
+    """Store ``data`` under ``key`` in this transaction, and drop the oldest entries beyond ``most_bytes`` in total."""
     if len(data) > min(MOST_BYTES_EACH, most_bytes):
         return
     session.execute(delete(CacheRow).where(CacheRow.key == key))

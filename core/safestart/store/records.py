@@ -191,8 +191,8 @@ class ApiKey:
 
 @dataclass(frozen=True, slots=True)
 class AuditEntry:
-    """An audit entry: the caller did ``action`` to ``subject`` (the id of a job or a key); ``key_id`` None without
-    a key."""
+    """An audit entry: a caller did ``action`` to ``subject`` (the id of a job or key); ``key_id`` None without a
+    key."""
 
     id: int
     at: datetime

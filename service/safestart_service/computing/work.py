@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -36,6 +37,10 @@ LONG_BYTES = 1_000_000
 """A body longer than this goes through a file."""
 
 
+def _nothing(_: Any) -> dict[str, str]:
+    return {}
+
+
 @dataclass(frozen=True, slots=True)
 class Asked:
     """A POST: ``bare`` bodies are the inputs alone, the others execution requests of the standard.
@@ -51,6 +56,8 @@ class Asked:
     queued: bool = False
     wants_async: bool = False
     idempotency_key: str | None = None
+    announced: Callable[[Any], dict[str, str]] = field(default=_nothing)
+    """Further header fields of an answer, from the inputs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,7 +125,8 @@ def _parsed(store: Store, asked: Asked) -> ExecuteRequest:
 
 def _answer(spec: ProcessSpec, request: ExecuteRequest, context: Context, asked: Asked) -> Made:
     document = run_now(spec, request.inputs, context)
-    return Made(orjson.dumps(document if asked.bare else selected(document, request)))
+    body = orjson.dumps(document if asked.bare else selected(document, request))
+    return Made(body, headers=asked.announced(request.inputs))
 
 
 def _submitted(store: Store, spec: ProcessSpec, request: ExecuteRequest, asked: Asked) -> Made:

@@ -16,13 +16,15 @@ class Notice:
     """A call, or one of its query parameters, that is deprecated from ``since`` on and may be removed from
     ``until`` on.
 
-    Times are aware; ``link`` is the address of the page that names the replacement.
+    With ``value`` only that value of the parameter is. Times are aware; ``link`` is the address of the page that names
+    the replacement.
     """
 
     since: datetime
     until: datetime
     link: str
     parameter: str | None = None
+    value: str | None = None
 
     def __post_init__(self) -> None:
         if self.until <= self.since:
@@ -37,16 +39,32 @@ class Notice:
             (b"link", f'<{self.link}>; rel="deprecation"; type="text/html"'.encode()),
         ]
 
+    def fields(self) -> dict[str, str]:
+        """The same by name."""
+        return {name.decode(): value.decode() for name, value in self.headers()}
+
     def concerns(self, scope: Scope) -> bool:
         """True when this request uses the deprecated call or parameter."""
         if self.parameter is None:
             return True
         asked = parse_qsl(scope["query_string"].decode("latin-1"), keep_blank_values=True)
-        return any(name == self.parameter for name, _ in asked)
+        return any(name == self.parameter and self.value in (None, value) for name, value in asked)
 
 
-NOTICES: dict[tuple[str, str], Notice] = {}
-"""By method and path as in the API description: ``("GET", "/jobs/{jobID}")``. Nothing is deprecated today."""
+RENAMED_METHOD = Notice(
+    datetime(2026, 12, 1, tzinfo=UTC),
+    datetime(2027, 12, 1, tzinfo=UTC),
+    "/docs",
+    "method",
+    "closed_form",
+)
+"""go-no-go's method `closed_form` is called `paper`."""
+
+NOTICES: dict[tuple[str, str], Notice] = {
+    ("GET", "/go-no-go"): RENAMED_METHOD,
+    ("GET", "/go-no-go/proof"): RENAMED_METHOD,
+}
+"""By method and path as in the API description: ``("GET", "/jobs/{jobID}")``."""
 
 
 class Deprecation:
@@ -54,9 +72,13 @@ class Deprecation:
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
+        self.telltales = _telltales()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Serve one request."""
+        if self.telltales and not any(word in scope.get("query_string", b"") for word in self.telltales):
+            await self.app(scope, receive, send)
+            return
 
         async def telling(message: Message) -> None:
             if message["type"] == "http.response.start":
@@ -68,11 +90,19 @@ class Deprecation:
         await self.app(scope, receive, telling if scope["type"] == "http" else send)
 
 
+def _telltales() -> tuple[bytes, ...]:
+    """Words of which a query that concerns a notice holds one, percent-encoded or not; empty: any may concern one."""
+    if any(notice.parameter is None for notice in NOTICES.values()):
+        return ()
+    return tuple({str(notice.value or notice.parameter).encode() for notice in NOTICES.values()} | {b"%"})
+
+
 def mark(document: dict[str, Any]) -> None:
-    """Mark the same in an OpenAPI description; raises ``KeyError`` for a notice about an unknown call or
-    parameter."""
+    """Mark them in an OpenAPI description; raises ``KeyError`` for a notice about an unknown call or parameter."""
     for (method, path), notice in NOTICES.items():
         operation = document["paths"][path][method.lower()]
+        if notice.value is not None:
+            continue  # the parameter stays; its description names the value
         if notice.parameter is None:
             operation["deprecated"] = True
         else:

@@ -71,8 +71,7 @@ def _objects_tables(name: str, value: Rows) -> dict[str, Rows]:
 
 
 def _flat(row: dict[str, Any]) -> dict[str, Any]:
-    """The scalars of a row: inner objects as ``name.member``, vectors as ``name.0``, lists of short words as one
-    text."""
+    """The scalars of a row: inner objects as ``name.member``, vectors as ``name.0``, short words as one text."""
     found: dict[str, Any] = {}
     for name, value in row.items():
         if isinstance(value, dict):

@@ -31,8 +31,7 @@ class Following(Callers):
         return POLL_S * max(1.0, self.now / UNSLOWED)
 
     async def pause(self, request: Request, most_s: float = math.inf) -> bool:
-        """Wait that long, at most ``most_s``; returns False, within :data:`POLL_S`, once the caller's access has
-        ended."""
+        """Wait that long, at most ``most_s``; False, within :data:`POLL_S`, once the caller's access has ended."""
         until = monotonic() + min(self.pause_s, most_s)
         while (left := until - monotonic()) > 0:
             if not self._access.still_passes(request):

@@ -1,6 +1,6 @@
 """A route whose whole input is one query, without FastAPI's dependency machinery.
 
-FastAPI documents its model as usual, but resolving the parameters one by one would take longer than the closed-form
+FastAPI documents its model as usual, but resolving the parameters one by one would take longer than a closed-form
 answer. This route splits the query string once and validates it in one call.
 """
 
@@ -53,11 +53,12 @@ def query_values(raw: bytes) -> dict[str, str]:
 def query_route(
     parse: Callable[[dict[str, str]], Query],
     answer: Callable[[Request, Query], Awaitable[Response]],
-    instant: Callable[[Query], Any] = lambda _: None,
+    instant: Callable[[Query, bytes], Any] = lambda _, __: None,
 ) -> type[APIRoute]:
     """An ``APIRoute`` class that serves ``answer(request, parse(parameters))``; the endpoint is only documentation.
 
-    ``instant`` gives the document of a query that takes microseconds, sent at once, or None.
+    ``instant`` gives the document of a query that takes microseconds, sent at once, or None. Its second argument is
+    the query string.
     """
 
     class QueryRoute(APIRoute):
@@ -69,7 +70,7 @@ def query_route(
                 await super().handle(scope, receive, send)  # refuses it
                 return
             query = parse(query_values(scope["query_string"]))
-            document = instant(query)
+            document = instant(query, scope["query_string"])
             if document is None:
                 response = await answer(Request(scope, receive, send), query)
                 await response(scope, receive, send)

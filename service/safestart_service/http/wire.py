@@ -207,8 +207,7 @@ class Protocol(Read):
 
 
 def holder(address: str) -> str | None:
-    """The peer of a connection: an IPv4 address or IPv6 network; None on this machine (perhaps a proxy for
-    many)."""
+    """The peer of a connection: an IPv4 address or IPv6 network; None on this machine, which may be a proxy."""
     if not address or is_local(address):
         return None
     found = ipaddress.ip_address(address.partition("%")[0])

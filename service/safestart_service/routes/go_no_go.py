@@ -9,11 +9,12 @@ from fastapi.responses import Response
 
 from safestart.errors import NotFound
 from safestart.processes.go_no_go import run
-from safestart.processes.go_no_go.method_registry import METHODS, PROVING
+from safestart.processes.go_no_go.method_registry import PROVING, RENAMED, method_of
 from safestart.processes.go_no_go.one_start import ONE_START, GoNoGoAnswer
 from safestart.processes.go_no_go.spec import SPEC, GoNoGoInputs, GoNoGoOutputs
 from safestart.runtime.progress import Context
 from safestart_service.computing.dispatch import one_document, posted
+from safestart_service.documents.deprecation import RENAMED_METHOD
 from safestart_service.documents.openapi import answer, content, json_body, refusals
 from safestart_service.http.answers import Json
 from safestart_service.http.lean import query_route
@@ -25,21 +26,26 @@ else:
 _SILENT = Context()
 
 
-def _instant(inputs: GoNoGoInputs) -> dict[str, Any] | None:
-    """The document of a question that takes microseconds, else None: a cone program would block every other
-    request."""
-    return run.answer(inputs, _SILENT).document_of_one() if METHODS[inputs.method].at_once else None
+def _instant(inputs: GoNoGoInputs, query: bytes) -> dict[str, Any] | None:
+    """The document of a question that takes microseconds, else None: a cone program would block other requests."""
+    found = run.at_once(inputs, _SILENT)
+    return None if found is None else _linked(found.document_of_one(), inputs, query)
 
 
 async def _answer(request: Request, inputs: GoNoGoInputs) -> Response:
     document = await one_document(request, inputs)
-    if METHODS[inputs.method].proves and document["verdict"] != "UNDECIDED":
-        document["proof_url"] = f"/go-no-go/proof?{request.url.query}"
-    return Json(document)
+    return Json(_linked(document, inputs, request.scope["query_string"]))
+
+
+def _linked(document: dict[str, Any], inputs: GoNoGoInputs, query: bytes) -> dict[str, Any]:
+    """The answer with the address of a proof of the same question; none for what is undecided or not sound."""
+    if document["verdict"] != "UNDECIDED" and method_of(inputs.method).sound:
+        document["proof_url"] = f"/go-no-go/proof?{query.decode('latin-1')}"
+    return document
 
 
 async def _proof(request: Request, inputs: GoNoGoInputs) -> Response:
-    method = inputs.method if METHODS[inputs.method].proves else PROVING
+    method = inputs.method if method_of(inputs.method).proves else PROVING
     asked = inputs.model_copy(update={"method": method, "proofs": True})
     document = await one_document(request, asked)
     if document["proof"] is None:
@@ -67,8 +73,9 @@ many = APIRouter(tags=["instant answers"])
 async def go_no_go_one(_query: Annotated[GoNoGoQuery, Query()]) -> Response:
     """May a chaser at rest at this point start its approach?
 
-    By the paper's closed form, where NO_GO means not certified and GO is no proof, or with ``method=exact`` by a cone
-    program that proves either. A start outside the corridor is NO_GO; ``violated_faces`` says where.
+    No GO without a proof: a certificate in closed form says GO at once, for ever, or an atlas or a cone program
+    decides; ``decided_by`` says which. ``method=paper`` asks the paper's conditions, which are not sound. A start
+    outside the corridor is NO_GO; ``violated_faces`` says where.
     """
     raise AssertionError("its route class answers")
 
@@ -101,4 +108,9 @@ async def go_no_go_proof(_query: Annotated[GoNoGoQuery, Query()]) -> Response:
 )
 async def go_no_go_many(request: Request) -> Response:
     """The same question for up to 100 000 starts of one operating point."""
-    return await posted(request, SPEC.id, bare=True)
+    return await posted(request, SPEC.id, bare=True, announced=_renamed)
+
+
+def _renamed(inputs: GoNoGoInputs) -> dict[str, str]:
+    """Header fields for a deprecated name of a method."""
+    return RENAMED_METHOD.fields() if inputs.method in RENAMED else {}

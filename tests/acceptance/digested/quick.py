@@ -18,7 +18,7 @@ SYNC: Inputs = {
     "proofs": True,
 }
 CORRIDOR = {"c_x": 1.0, "c_z": 0.8, "x0_m": 4.0, "z0_m": 3.0, "r_h_m": 2.0}
-MANY = [{"x_m": 1.7 * k - 90, "y_m": 10 + (7.3 * k) % 120} for k in range(110)]
+MANY = [{"x_m": 1.7 * k - 90, "y_m": 10 + (7.3 * k) % 120} for k in range(150)]
 
 
 def starts_asked(**more: Any) -> Inputs:
@@ -47,12 +47,25 @@ def level_set(accuracy: str, **more: Any) -> Inputs:
 NO_LEVEL_SET = ("analytical", "exact", "backward", "forward", "monte_carlo")
 
 QUICK: dict[str, Inputs | tuple[Inputs, ...]] = {
-    "go-no-go/closed-form": starts_asked(),
-    "go-no-go/closed-form-body": starts_asked(rest="body"),
-    "go-no-go/closed-form-solid": {**POINT, "states": SOLID},
-    "go-no-go/closed-form-corridor": starts_asked(corridor=CORRIDOR, mean_motion_rad_s=0.0),
-    "go-no-go/closed-form-still": {"omega_t_deg_s": 0, "a_max_m_s2": 0.01, "states": STARTS},
-    "go-no-go/closed-form-sliver": SLIVER,
+    "go-no-go/paper": starts_asked(method="paper"),
+    "go-no-go/paper-body": starts_asked(method="paper", rest="body"),
+    "go-no-go/paper-solid": {**POINT, "states": SOLID, "method": "paper"},
+    "go-no-go/paper-corridor": starts_asked(method="paper", corridor=CORRIDOR, mean_motion_rad_s=0.0),
+    "go-no-go/paper-still": {"omega_t_deg_s": 0, "a_max_m_s2": 0.01, "states": STARTS, "method": "paper"},
+    "go-no-go/paper-sliver": {**SLIVER, "method": "paper"},
+    "go-no-go/paper-by-its-old-name": starts_asked(method="closed_form"),
+    "go-no-go/certified": starts_asked(method="certified"),
+    "go-no-go/certified-body": starts_asked(method="certified", rest="body"),
+    "go-no-go/certified-solid": {**POINT, "states": SOLID, "method": "certified"},
+    "go-no-go/certified-corridor": starts_asked(method="certified", corridor=CORRIDOR, mean_motion_rad_s=0.0),
+    "go-no-go/certified-still": {
+        "omega_t_deg_s": 0,
+        "a_max_m_s2": 0.01,
+        "states": STARTS,
+        "method": "certified",
+    },
+    "go-no-go/default": starts_asked(),
+    "go-no-go/default-sliver": SLIVER,
     "go-no-go/exact": proved(),
     "go-no-go/exact-body": proved(rest="body"),
     "go-no-go/exact-solid": {**POINT, "states": SOLID, "method": "exact", "proofs": True},

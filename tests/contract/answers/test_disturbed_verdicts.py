@@ -90,9 +90,11 @@ def test_http_and_command_line(tmp_path: Path) -> None:
     with service(tmp_path) as client:
         found = client.get("/go-no-go", params=inputs).json()
         proof = client.get(found["proof_url"]).json()
-        refused = client.get("/go-no-go", params=POINT | NEAR | {"disturbance_m_s2": 0.004})
+        by_default = client.get("/go-no-go", params=POINT | NEAR | {"disturbance_m_s2": 0.004}).json()
+        refused = client.get("/go-no-go", params=inputs | {"method": "certified"})
     assert found["verdict"] == "GO"
     assert check(proof).verdict == "GO"
+    assert by_default == found | {"method": "auto", "proof_url": by_default["proof_url"]}
     assert refused.status_code == 422
     assert refused.json()["field"] == "method"
     written = tmp_path / "proof.json"

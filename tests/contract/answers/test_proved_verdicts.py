@@ -16,7 +16,7 @@ from tests.contract.api.service_client import service
 
 POINT = {"omega_t_deg_s": 2, "a_max_m_s2": 0.05}
 SLIVER = {"x_m": 9.364, "y_m": 81.044}
-"""Certified by the closed form; no thrust history stays."""
+"""The paper's conditions certify it; no thrust history stays."""
 STATES = [SLIVER, {"x_m": 0, "y_m": 40}, {"x_m": 200, "y_m": 20}]
 
 
@@ -25,8 +25,9 @@ def ask(**inputs: Any) -> dict[str, Any]:
     return outputs
 
 
-def test_exact_refuses_what_the_closed_form_lets_pass() -> None:
-    assert ask(states=STATES)["verdict"] == ["GO", "GO", "NO_GO"]
+def test_exact_refuses_what_the_papers_conditions_let_pass() -> None:
+    assert ask(states=STATES, method="paper")["verdict"] == ["GO", "GO", "NO_GO"]
+    assert ask(states=STATES)["verdict"] == ["NO_GO", "GO", "NO_GO"]
     exact = ask(states=STATES, method="exact", proofs=True)
     assert exact["verdict"] == ["NO_GO", "GO", "NO_GO"]
     assert exact["violated_faces"][2] == ["right"]
@@ -76,7 +77,9 @@ def test_over_http(tmp_path: Path) -> None:
         assert one["method"] == "exact"
         assert one["margin_m"] == pytest.approx(-1.194, abs=1e-3)
         assert check(one["proof"]).verdict == "NO_GO"
-        assert client.get("/go-no-go", params=POINT | SLIVER).json()["verdict"] == "GO"
+        for method, verdict in (("paper", "GO"), ("closed_form", "GO"), ("auto", "NO_GO"), (None, "NO_GO")):
+            more = {} if method is None else {"method": method}
+            assert client.get("/go-no-go", params=POINT | SLIVER | more).json()["verdict"] == verdict
         many = client.post("/go-no-go", json=POINT | {"states": STATES, "method": "auto"}).json()
         assert many["verdict"] == ["NO_GO", "GO", "NO_GO"]
         refused = client.get("/go-no-go", params=query | {"method": "oracle"})

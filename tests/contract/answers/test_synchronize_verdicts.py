@@ -58,9 +58,9 @@ def test_limits_in_space_and_at_rest_in_the_body_frame() -> None:
 
 BAD = [
     ({"keep_out_m": 0.6, "method": "exact"}, "keep_out_m", "not convex"),
-    ({"question": "synchronize"}, "method", "exact or auto"),
-    ({"speed_limit_m_s": 1}, "method", "exact or auto"),
-    ({"keep_out_m": 0.1}, "method", "exact or auto"),
+    ({"question": "synchronize", "method": "certified"}, "method", "exact or auto"),
+    ({"speed_limit_m_s": 1, "method": "certified"}, "method", "exact or auto"),
+    ({"keep_out_m": 0.1, "method": "certified"}, "method", "exact or auto"),
     ({"question": "leave", "method": "exact"}, "question", ""),
     ({"question": "synchronize", "method": "exact", "within_s": 601}, "within_s", ""),
     ({"question": "synchronize", "method": "exact", "within_s": 3}, "within_s", ""),

@@ -54,6 +54,17 @@ def test_a_notice_about_nothing_is_found_out(tmp_path, monkeypatch):
         Notice(UNTIL, SINCE, "https://docs.example/api")
 
 
-def test_nothing_is_deprecated_today(client):
-    assert deprecation.NOTICES == {}
+def test_the_method_that_is_called_paper_now(client):
+    start = {"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "x_m": 5, "y_m": 40}
+    notice = deprecation.RENAMED_METHOD
+    for path in ("/go-no-go", "/go-no-go/proof"):
+        assert said(client.get(path, params=start)) == {}
+        assert said(client.get(path, params=start | {"method": "paper"})) == {}
+        old = said(client.get(path, params=start | {"method": "closed_form"}))
+        assert old["deprecation"] == f"@{int(notice.since.timestamp())}"
+        assert old["link"] == '</docs>; rel="deprecation"; type="text/html"'
+        assert said(client.get(f"{path}?method=closed%5Fform")) == old, "escaped, and refused"
+    many = {"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "states": [{"x_m": 5, "y_m": 40}]}
+    assert said(client.post("/go-no-go", json=many)) == {}
+    assert said(client.post("/go-no-go", json=many | {"method": "closed_form"})) == old
     assert said(client.get("/conformance")) == {}

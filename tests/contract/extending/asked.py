@@ -51,7 +51,7 @@ def method(client: TestClient, _: Path) -> dict[str, Any]:
         "printed": _command("go-no-go", *options, "--method=reserve", "--json"),
         "one": client.get("/go-no-go", params=query).json(),
         "many": client.post("/go-no-go", json=many).json(),
-        "closed_form": client.get("/go-no-go", params=POINT | START).json(),
+        "paper": client.get("/go-no-go", params=POINT | START | {"method": "paper"}).json(),
         "proof": client.get("/go-no-go/proof", params=query).json()["schema"],
         "refused": client.get("/go-no-go", params=query | {"method": "none"}).json()["required"],
         "parameter": _parameter(client, "/go-no-go", "method"),

@@ -72,7 +72,7 @@ def test_its_view_is_a_part_of_it(extended: tuple[list[Touched], dict[str, Any]]
 
 def test_a_method_of_go_no_go(extended: tuple[list[Touched], dict[str, Any]]) -> None:
     found = extended[1]["method"]
-    one, closed = found["one"], found["closed_form"]
+    one, closed = found["one"], found["paper"]
     assert one["method"] == "reserve"
     assert one["margin_m"] == closed["margin_m"] - 1.0
     assert one["face_margins_m"] == closed["face_margins_m"]
@@ -82,7 +82,9 @@ def test_a_method_of_go_no_go(extended: tuple[list[Touched], dict[str, Any]]) ->
     assert found["printed"] == one
     assert found["proof"] == "safestart-proof/1", "of the exact answer: the method has none"
     assert "'reserve'" in found["refused"]
-    assert found["parameter"]["schema"]["enum"] == ["reserve", "closed_form", "exact", "auto"]
+    assert found["parameter"]["schema"]["enum"] == [
+        *("reserve", "certified", "paper", "exact", "auto", "closed_form")
+    ]
     assert "reserve: a metre in reserve." in found["parameter"]["description"]
 
 

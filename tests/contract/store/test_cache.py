@@ -112,7 +112,9 @@ def test_links_to_proofs(tmp_path: Path) -> None:
         query = POINT | SLIVER | {"method": "exact"}
         one = client.get("/go-no-go", params=query).json()
         assert check(client.get(one["proof_url"]).json()).verdict == "NO_GO"
-        assert client.get("/go-no-go", params=POINT | SLIVER).json().get("proof_url") is None
+        for method in ("paper", "closed_form"):
+            asked = POINT | SLIVER | {"method": method}
+            assert client.get("/go-no-go", params=asked).json().get("proof_url") is None
         # The closed form has no proof of its own: the link gives the exact one.
         assert check(client.get("/go-no-go/proof", params=POINT | SLIVER).json()).verdict == "NO_GO"
         assert_problem(client.get("/go-no-go/proof", params=query | {"x_m": "far"}), 422, "x_m")

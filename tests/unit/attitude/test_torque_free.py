@@ -216,3 +216,31 @@ def test_ten_thousand_times_are_quick() -> None:
         seen.rotation(times)
         spent.append(time.process_time() - begin)
     assert min(spent) < 20e-3
+
+
+@pytest.mark.parametrize("orbit", [KeplerOrbit(1.1e-3), KeplerOrbit.of(3.3e7, 0.8, -0.3)])
+def test_bounds_on_four_derivatives_hold(orbit: KeplerOrbit) -> None:
+    """Of a direction of the body, of LVLH's turn and of the tide, by differences."""
+    h, at = 2.0, np.linspace(0.0, 900.0, 61)
+    offsets = h * np.arange(-3, 4)
+    stencils = (
+        (np.array([0, 0, -0.5, 0, 0.5, 0, 0]), 1),
+        (np.array([0, 0, 1.0, -2.0, 1.0, 0, 0]), 2),
+        (np.array([0, -0.5, 1.0, 0, -1.0, 0.5, 0]), 3),
+        (np.array([0, 1.0, -4.0, 6.0, -4.0, 1.0, 0]), 4),
+    )
+    rng = np.random.default_rng(11)
+    for kind in KINDS:
+        seen = torque_free(*drawn(kind, rng), "inertial", orbit)
+        rows = seen.rotation(at[:, None] + offsets)
+        for (weights, order), bound in zip(stencils, seen.turn_bounds(), strict=True):
+            found = np.einsum("s,tsij->tij", weights, rows) / h**order
+            assert np.linalg.norm(found, axis=2).max() <= bound * 1.01 + 1e-14 / h**order
+    angles, rate = orbit.turned(at[:, None] + offsets), orbit.rate(at[:, None] + offsets)
+    pace = orbit.mean_motion / (1.0 - orbit.eccentricity**2) ** 1.5
+    tide = pace**2 * (rate / pace) ** 1.5
+    for (weights, order), bound in zip(stencils, orbit.turn_bounds(), strict=True):
+        assert np.abs(angles @ weights).max() / h**order <= bound * 1.01 + 1e-13
+    assert tide.max() <= orbit.tide_bounds()[0] * (1.0 + 1e-12)
+    for (weights, order), bound in zip(stencils[:2], orbit.tide_bounds()[1:], strict=True):
+        assert np.abs(tide @ weights).max() / h**order <= bound * 1.01 + 1e-18

@@ -8,7 +8,7 @@ import pytest
 
 from safestart.errors import InvalidInput
 from safestart.processes.go_no_go.method_registry import METHODS, decide_by
-from safestart.processes.go_no_go.methods import closed_form
+from safestart.processes.go_no_go.methods import plain
 from safestart.processes.go_no_go.one_start import ONE_START, GoNoGoAnswer
 from safestart.processes.go_no_go.run import answer
 from safestart.processes.go_no_go.spec import GoNoGoInputs, GoNoGoOutputs
@@ -17,7 +17,7 @@ from safestart.runtime.progress import Context
 POINT: dict[str, Any] = {"omega_t_deg_s": 2, "a_max_m_s2": 0.05}
 PLANE = [{"x_m": x, "y_m": y} for x, y in ((9.364, 81.044), (0, 40), (200, 20), (5.1, 33.3))]
 SPACE = [state | {"z_m": z} for state, z in zip(PLANE, (0, 7.7, -3, 60), strict=True)]
-NOT_TAKEN = sorted(GoNoGoInputs.model_fields.keys() - closed_form._TAKEN)
+NOT_TAKEN = sorted(GoNoGoInputs.model_fields.keys() - plain.KNOWN)
 
 
 def asked(**inputs: Any) -> dict[str, Any]:
@@ -59,14 +59,16 @@ def test_the_methods_can_be_found() -> None:
 
 
 @pytest.mark.parametrize("name", NOT_TAKEN)
-def test_the_closed_form_refuses_what_it_does_not_know(name: str) -> None:
+@pytest.mark.parametrize("method", ["certified", "paper", "closed_form"])
+def test_the_closed_forms_refuse_what_they_do_not_know(name: str, method: str) -> None:
     more = {name: "synchronize" if name == "question" else 0.001}
     with pytest.raises(InvalidInput, match=f"where {name} is given") as refused:
-        asked(states=PLANE, **more)
+        asked(states=PLANE, method=method, **more)
     assert refused.value.field == "method"
 
 
 def test_defaults_that_are_given_ask_for_nothing() -> None:
     given = {name: GoNoGoInputs.model_fields[name].default for name in NOT_TAKEN}
     assert len(given) >= 11
-    assert asked(states=PLANE, **given) == asked(states=PLANE)
+    for method in METHODS:
+        assert asked(states=PLANE, method=method, **given) == asked(states=PLANE, method=method)

@@ -62,12 +62,14 @@ def test_violation_fractions_are_those_of_the_masks(result: Execution) -> None:
         for outer, value in row.items():
             a, b = arrays[f"{inner}_mask"], arrays[f"{outer}_mask"] | arrays[f"{outer}_undecided"]
             assert value == pytest.approx((a & ~b).sum() / a.sum())
-    links = {(link["inner"], link["outer"]): link for link in outputs["chain"]}
-    assert list(links) == [
-        ("tube", "analytical"),
-        ("analytical", "synchronize"),
-        ("synchronize", "hj_position"),
+    assert [(link["whose"], link["inner"], link["outer"]) for link in outputs["chain"]] == [
+        ("ours", "certified", "synchronize"),
+        ("ours", "synchronize", "hj_position"),
+        ("paper", "tube", "analytical"),
+        ("paper", "analytical", "synchronize"),
+        ("paper", "synchronize", "hj_position"),
     ]
+    links = {(link["inner"], link["outer"]): link for link in outputs["chain"]}
     for (inner, outer), link in links.items():
         assert link["violation_fraction"] == outputs["violation_fraction"][inner][outer]
 
@@ -80,6 +82,7 @@ def test_what_must_be_nested_is(result: Execution) -> None:
         ("analytical_tube", "analytical"),
         ("synchronize", "hj_position"),
         ("stay", "exact_position"),
+        ("certified", "stay"),
     ):
         assert shares[inner][outer] == 0.0
     assert shares["tube"]["analytical"] > 0.0
@@ -109,12 +112,15 @@ def test_every_non_zero_entry_has_its_counter_example_and_proofs_check(result: E
     assert proved >= 5
 
 
-def test_the_horizon_of_containment_is_the_smallest(result: Execution) -> None:
+@pytest.mark.parametrize("inner", ["certified", "analytical"])
+def test_the_horizon_of_containment_is_the_smallest(result: Execution, inner: str) -> None:
     outputs, arrays = result.document["outputs"], _arrays(result)
-    entry = next(e for e in outputs["horizon_contained_s"] if e["outer"] == "synchronize")
+    entries = {e["inner"]: e for e in outputs["horizon_contained_s"] if e["outer"] == "synchronize"}
+    assert list(entries) == ["certified", "analytical"]
+    entry = entries[inner]
     assert entry["cells_never"] == 0
     steps = round(entry["horizon_s"] / 2.0)
-    starts = arrays["points_m"][arrays["analytical_mask"]]
+    starts = arrays["points_m"][arrays[f"{inner}_mask"]]
 
     def goes(start: np.ndarray, count: int) -> bool:
         question = Question(Scenario.of(4.0, 0.1), 2.0, count, goal=Goal())
@@ -151,7 +157,7 @@ def test_a_disturbance_that_leaves_nothing_is_an_empty_tube() -> None:
     for row in outputs["sets"][:2]:
         assert row["cells"] == 0
         assert "the feedback may ask for" in row["message"]
-    assert outputs["chain"][0]["violation_fraction"] is None
+    assert [(link["whose"], link["violation_fraction"]) for link in outputs["chain"]] == [("paper", None)]
     assert outputs["violation_fraction"]["analytical"]["tube"] == 1.0
     example = outputs["counter_examples"][0]
     assert example["outer_margin_m"] is None
@@ -159,10 +165,14 @@ def test_a_disturbance_that_leaves_nothing_is_an_empty_tube() -> None:
 
 
 def test_the_sliver_is_shown_with_its_proof() -> None:
-    """Next to the range limit the closed form certifies starts of which none can stay (docs/theory/closed-form.md)."""
-    inputs = {"omega_t_deg_s": 2, "a_max_m_s2": 0.05, "horizon_s": 60, "sets": ["analytical", "stay"]}
+    """The paper's conditions certify starts that cannot stay, the certificate none (docs/theory/closed-form.md)."""
+    sets = ["certified", "analytical", "stay"]
+    inputs = {"omega_t_deg_s": 2, "a_max_m_s2": 0.05, "horizon_s": 60, "sets": sets}
     outputs = execute(PROCESS, inputs).document["outputs"]
-    thin = outputs["sliver"]
+    sound, thin = outputs["slivers"]
+    assert (sound["inner"], thin["inner"]) == ("certified", "analytical")
+    assert sound["certified"] > thin["certified"]
+    assert (sound["cannot_stay"], sound["margin_m"], sound["proof"]) == (0, None, None)
     assert 0 < thin["cannot_stay"] < 0.01 * thin["certified"]
     assert thin["margin_m"] < -1.0
     assert check(thin["proof"]).verdict == "NO_GO"
@@ -196,3 +206,18 @@ def test_bad_inputs_name_the_field(change: dict[str, Any], field: str) -> None:
     with pytest.raises(InvalidInput) as error:
         execute(PROCESS, QUICK | change)
     assert error.value.field == field
+
+
+def test_with_the_sound_certificate_the_chain_holds_from_a_horizon_on(result: Execution) -> None:
+    """No cell of S_certified is out of S_sync from the horizon of containment on, and one is just before."""
+    entry = next(
+        e
+        for e in result.document["outputs"]["horizon_contained_s"]
+        if (e["inner"], e["outer"]) == ("certified", "synchronize")
+    )
+    late = QUICK | {"sets": ["certified", "synchronize", "hj_position"], "containment_up_to_s": 0}
+    found = execute(PROCESS, late | {"horizon_s": entry["horizon_s"]}).document["outputs"]
+    assert [link["cells"] for link in found["chain"]] == [0, 0]
+    assert all(example["inner"] != "certified" for example in found["counter_examples"])
+    sooner = late | {"horizon_s": entry["horizon_s"] - 2.0, "sets": ["certified", "synchronize"]}
+    assert execute(PROCESS, sooner).document["outputs"]["chain"][0]["cells"] > 0

@@ -24,7 +24,7 @@ from safestart.records.comparable import comparable
 from safestart.runtime.progress import Context
 
 SHARDING = process("sweep").sharding
-FILTER: dict[str, Any] = {"controllers": ["filter"], "certificates": ["closed_form"]}
+FILTER: dict[str, Any] = {"controllers": ["filter"], "certificates": ["paper"]}
 
 
 def outputs_of(**asked: Any) -> Any:
@@ -96,7 +96,7 @@ def test_counts_are_those_of_the_records() -> None:
     files = {artifact.name: artifact for artifact in result.artifacts}
     table = pq.read_table(io.BytesIO(files["cases.parquet"].data)).to_pydict()
     assert table["case"] == list(range(240))
-    certified = np.array(table["certified_closed_form"])
+    certified = np.array(table["certified_paper"])
     points = np.stack([table["x_m"], table["y_m"]], axis=1)
     for omega, a_max, point, said in zip(
         table["omega_t_deg_s"], table["a_max_m_s2"], points, certified, strict=True
@@ -104,7 +104,7 @@ def test_counts_are_those_of_the_records() -> None:
         assert bool(certify(Scenario.of(omega, a_max), point).safe) == said
     for name in ("filter", "filter_fine"):
         safe = np.array(table[f"safe_{name}"])
-        cell = outputs["confusion"]["closed_form"][name]
+        cell = outputs["confusion"]["paper"][name]
         counts = [(certified & safe).sum(), (certified & ~safe).sum(), (~certified & safe).sum()]
         assert [cell["tp"], cell["fp"], cell["fn"]] == counts
         assert sum(cell[k] for k in ("tp", "fp", "fn", "tn")) == 240
@@ -128,7 +128,7 @@ def test_sequence_flies_every_exact_go_and_nothing_else() -> None:
     assert (cell["fp"], cell["fn"]) == (0, 0)
     assert cell["tp"] >= 10
     assert cell["tn"] >= 10
-    closed = outputs["confusion"]["closed_form"]["sequence"]
+    closed = outputs["confusion"]["paper"]["sequence"]
     assert closed["fp"] == 0
     assert outputs["undecided"] == 0
     low, high = cell["wilson_95"]["precision"]
@@ -136,22 +136,22 @@ def test_sequence_flies_every_exact_go_and_nothing_else() -> None:
 
 
 def test_the_filter_presets_reach_their_precision() -> None:
-    tuned = outputs_of(**FILTER)["confusion"]["closed_form"]["filter"]
+    tuned = outputs_of(**FILTER)["confusion"]["paper"]["filter"]
     assert tuned["tp"] + tuned["fp"] + tuned["fn"] + tuned["tn"] == 540
     assert tuned["precision"] >= 0.98
     asked = {**FILTER, "preset": "paper", "cases_per_cell": 27}
-    paper = outputs_of(**asked)["confusion"]["closed_form"]["filter"]
+    paper = outputs_of(**asked)["confusion"]["paper"]["filter"]
     assert paper["precision"] == pytest.approx(0.80, abs=0.04)
     assert paper["recall"] == pytest.approx(0.91, abs=0.04)
     # One cause switched off: the closing-speed cap that the braking distance can afford.
     capped = {**asked, "filter": {"closing_factor": 0.6, "braking_share": 0.25}}
-    mended = outputs_of(**capped)["confusion"]["closed_form"]["filter"]
+    mended = outputs_of(**capped)["confusion"]["paper"]["filter"]
     assert mended["precision"] >= 0.99
 
 
 @pytest.mark.slow
 def test_order_and_place_of_the_shards_do_not_matter() -> None:
-    asked = {**FILTER, "cases_per_cell": 500, "certificates": ["closed_form"]}
+    asked = {**FILTER, "cases_per_cell": 500, "certificates": ["paper"]}
     parsed = process("sweep").parse(asked)
     parts = SHARDING.parts(parsed)
     assert len(parts) > 1

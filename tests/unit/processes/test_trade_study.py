@@ -22,11 +22,17 @@ def test_every_operating_point_agrees_with_coverage() -> None:
     cells = execute("coverage", {**asked, "omega_t_deg_s": [1, 3]}).document["outputs"]["cells"]
     for point, cell in zip(points, cells, strict=True):
         assert 100.0 * point["certified_fraction"] == pytest.approx(cell["safe_percent"])
+        assert 100.0 * point["paper_fraction"] == pytest.approx(cell["paper_percent"])
+        assert point["certified_fraction"] <= point["exact_fraction"] + 0.05
         assert point["exact_inner_m2"] <= point["exact_outer_m2"] <= outputs["corridor_area_m2"]
         assert point["exact_fraction"] >= point["flown_fraction"] - 0.05
-        assert point["certified_flown"] >= 0.98
         assert point["mean_delta_v_m_s"] > 0.0
     assert points[0]["exact_fraction"] > points[1]["exact_fraction"]
+    # The tuned filter was made for the starts of the paper's conditions; farther ones ask for a manoeuvre.
+    by_paper = execute("trade-study", asked | {"certificate": "paper"}).document["outputs"]["points"]
+    for one, other in zip(points, by_paper, strict=True):
+        assert other["certified_fraction"] == one["paper_fraction"]
+        assert other["certified_flown"] >= 0.98
     (picture,) = result.artifacts
     with Image.open(io.BytesIO(picture.data)) as image:
         assert min(image.size) > 300

@@ -142,8 +142,7 @@ class Cluster:
                 await asyncio.wait_for(self.stop(job, futures, outcome), LEAVE_TIMEOUT_S)
 
     async def warm_up(self, say: Callable[[str], None]) -> None:
-        """Load the modules in every process, compile each part in one of them and report it, then warm all
-        processes."""
+        """Load the modules in every process, compile each part in one of them, report it, then warm all processes."""
         addresses = list(await self._client.nthreads())
         await self._all([self._client.submit(load, workers=[a], pure=False) for a in addresses])
 

@@ -58,8 +58,7 @@ def throwaway() -> Security:
 
 
 def configured(scheduler: str) -> Security:
-    """The certificates of Dask's configuration; raises ``InvalidInput`` when ``scheduler`` needs them and they are
-    missing."""
+    """The certificates of Dask's configuration; raises ``InvalidInput`` when ``scheduler`` needs missing ones."""
     try:
         security = Security()
         complete = security.get_connection_args("client")["ssl_context"] is not None

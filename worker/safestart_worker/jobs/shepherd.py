@@ -209,8 +209,7 @@ class Shepherd:
         self._say("back in the queue")
 
     async def _end(self, what: str, write: Callable[[], None]) -> None:
-        """Write the end of the job; while the database is unavailable, retry until it is back or the lease is
-        lost."""
+        """Write the end of the job; while the database is unavailable, retry until it is back or the lease is lost."""
         while True:
             try:
                 await asyncio.to_thread(write)

@@ -17,7 +17,8 @@ DIFFERENCES = (
     "Sets: the paper calls its HJ set a tube. Restricted to the corridor a tube is the whole corridor, so nothing "
     "could exceed it, yet its backward/HJ area is 1.31. Ours are fixed-time sets at 40 s of starts at rest in LVLH; "
     "with them the backward row at 3 deg/s comes out as printed.",
-    "Analytical: the region itself reproduces (Table 1). Its ratios differ because the HJ areas do.",
+    "analytical are the paper's conditions, which are not sound; certified stands in their place. The region of "
+    "analytical reproduces (Table 1). Its ratios differ because the HJ areas do.",
     "HJ: ours is solved in LVLH with WENO5; its remaining error is in the column against exact. In the paper's body "
     "frame the default grid with the first-order scheme loses half the set at 3 deg/s and all of it at 5.",
     "Forward: ours asks whether the outer set meets the corridor; the paper asks for a vertex of the cut corridor "
@@ -50,7 +51,7 @@ def register(app: typer.Typer) -> None:
 
     @group.command("table1")
     def table1(as_json: Json = False) -> None:
-        """Table 1: safe fraction of the corridor, 5 tumble rates x 4 thrust levels."""
+        """Table 1: safe fraction of the corridor, 5 tumble rates x 4 thrust levels, and what is certified rightly."""
         document = {"cells": table1_cells()}
         print_json(document) if as_json else _show_table1(document["cells"])
 
@@ -99,7 +100,7 @@ def register(app: typer.Typer) -> None:
 
 
 def table1_cells() -> list[dict[str, float]]:
-    """The 20 cells of Table 1: ``ours`` and ``paper`` in percent."""
+    """The 20 cells of Table 1, percent: ``paper`` printed, ``ours`` by the same conditions, ``certified`` soundly."""
     inputs = {
         "omega_t_deg_s": list(published.TABLE1_SAFE_PERCENT),
         "a_max_m_s2": list(published.TABLE1_THRUST_M_S2),
@@ -111,7 +112,8 @@ def table1_cells() -> list[dict[str, float]]:
         {
             "omega_t_deg_s": cell["omega_t_deg_s"],
             "a_max_m_s2": cell["a_max_m_s2"],
-            "ours": cell["safe_percent"],
+            "certified": cell["safe_percent"],
+            "ours": cell["paper_percent"],
             "paper": paper,
         }
         for cell, paper in zip(cells, printed, strict=True)
@@ -149,13 +151,21 @@ def _show_table1(cells: list[dict[str, float]]) -> None:
     thrusts = published.TABLE1_THRUST_M_S2
     columns: list[tuple[str, Justify]] = [("deg/s", "right")]
     columns += [(f"{thrust:g} m/s²", "right") for thrust in thrusts]
-    table = table_of("Table 1: certified share of the corridor, % (ours / paper)", columns)
+    table = table_of(
+        "Table 1: share of the corridor, %: certified (sound) | the paper's conditions, not sound: computed / printed",
+        columns,
+    )
     for start in range(0, len(cells), len(thrusts)):
         line = cells[start : start + len(thrusts)]
-        table.add_row(f"{line[0]['omega_t_deg_s']:g}", *(f"{c['ours']:.1f} / {c['paper']:.1f}" for c in line))
+        table.add_row(
+            f"{line[0]['omega_t_deg_s']:g}",
+            *(f"{c['certified']:.1f} | {c['ours']:.1f} / {c['paper']:.1f}" for c in line),
+        )
     out.print(table)
     worst = max(abs(cell["ours"] - cell["paper"]) for cell in cells)
-    out.print(f"largest difference: {worst:.2f} percentage points")
+    out.print(
+        f"largest difference of the paper's conditions, computed and printed: {worst:.2f} percentage points"
+    )
 
 
 def show_table2(rows: Iterable[dict[str, Any]]) -> None:

@@ -18,7 +18,7 @@ NOTES = (
     "speed explains the published false positives: with a cap that the braking distance can afford they are gone; "
     "thrust projection and inter-sample violation move precision by a few points.",
     "disk projection off delivers up to sqrt(2) a_max: it also flies starts that nothing certifies.",
-    "sequence flies every start that the exact certificate admits; recall of the closed form falls as the controller "
+    "sequence flies every start that the exact certificate admits; recall of the closed forms falls as the controller "
     "improves. Precision of 1 comes with its 95 % Wilson interval.",
     "Violations are looked for at all times unless the row says otherwise.",
 )
@@ -54,8 +54,8 @@ def table3_document() -> dict[str, Any]:
     with reporting("single causes") as context:
         for count, (name, change) in enumerate(CAUSES):
             inputs = {"controllers": ["filter"], "preset": "paper", "cases_per_cell": CAUSE_CASES, **change}
-            inputs |= {"certificates": ["closed_form"], "worst": 0, "records": 0}
-            found = execute("sweep", inputs).document["outputs"]["confusion"]["closed_form"]
+            inputs |= {"certificates": ["paper"], "worst": 0, "records": 0}
+            found = execute("sweep", inputs).document["outputs"]["confusion"]["paper"]
             causes.append({"cause": name, **next(iter(found.values()))})
             context.step(count + 1, len(CAUSES), name)
     confusion = {
@@ -109,10 +109,10 @@ def show(document: dict[str, Any]) -> None:
     for controller, by_certificate in document["confusion"].items():
         for certificate, cell in by_certificate.items():
             matrices.add_row(certificate.replace("_", " "), controller, *_figures(cell))
-    matrices.add_row("closed form", "as printed", *_figures(document["paper"]["as printed"]))
+    matrices.add_row("paper", "as printed", *_figures(document["paper"]["as printed"]))
     out.print(matrices)
     causes = table_of(
-        "Filter with the paper's gains, closed form: one cause at a time",
+        "Filter with the paper's gains, the paper's conditions: one cause at a time",
         [("cause", "left"), *((name, "right") for name in shown)],
     )
     for cell in document["causes"]:
@@ -123,9 +123,7 @@ def show(document: dict[str, Any]) -> None:
 
 
 def _cell(row: dict[str, Any]) -> str:
-    ours = (
-        f"{row['certified']['closed_form']}/{row['feasible']['filter_paper']}/{row['feasible']['sequence']}"
-    )
+    ours = f"{row['certified']['paper']}/{row['feasible']['filter_paper']}/{row['feasible']['sequence']}"
     return f"{ours} ({'-' if row['paper'] is None else '/'.join(map(str, row['paper']))})"
 
 

@@ -1,8 +1,8 @@
-"""Which sums w = u + d Player 1 can bring about against every d: decided exactly, in rational numbers.
+"""Which sums w = u + d Player 1 can realise against every d: decided exactly, in rational numbers.
 
-For every part of the control, a ball of radius a, the sum lies in it less the most that d can take: |w| + s <= a, s the
-root of the sum of the squares of the disturbance's radii that meet it. Doubles are rationals, so that both sides of the
-squared inequality are known exactly.
+Each part of the control is a ball of radius a. The sum must lie in it with room for d: |w| + s <= a, with s the root of
+the sum of squares of the disturbance's radii that meet this part. Doubles are rationals, so both sides of the squared
+inequality are known exactly.
 """
 
 from __future__ import annotations
@@ -18,9 +18,10 @@ from safestart.collision_avoidance.inputs import meeting
 from safestart.model.scenario import Bools, Floats
 
 INSIDE = 1.0 - 1e-13
-"""Inputs are sought in balls this much smaller, so that the rounding of a hundred steps leaves them admissible."""
+"""The search uses balls smaller by this factor, so that inputs stay admissible after the rounding of a hundred
+steps."""
 _SQUARES = 1.0 - 4e-15
-"""What the rounding of a sum of three squares, and of their limit, may take."""
+"""Allowance for the rounding of a sum of three squares and of their limit."""
 _SMALLEST = 1e-100
 
 
@@ -29,13 +30,13 @@ def fits(square: Fraction, radius: float, others: tuple[float, ...]) -> bool:
     taken = sum((Fraction(e) ** 2 for e in others), Fraction(0))
     whole = Fraction(radius) ** 2
     left = whole + taken - square
-    # (radius - s)^2 >= square and s <= radius, with s = sqrt(taken) brought to the other side and squared.
+    # (radius - s)^2 >= square and s <= radius, with s = sqrt(taken) moved to the other side and squared.
     return taken <= whole and left >= 0 and 4 * whole * taken <= left * left
 
 
 @lru_cache(maxsize=32)
 def inner_radii(game: Game) -> tuple[float, ...] | None:
-    """By part of the control, a radius of sums that Player 1 can surely realise; None where there are none at all."""
+    """By part of the control, a radius of sums that Player 1 can certainly realise; None if there are none."""
     out = []
     for part in game.control.parts:
         others = tuple(other.radius for other in meeting(part, game.disturbance.parts))
@@ -49,12 +50,12 @@ def inner_radii(game: Game) -> tuple[float, ...] | None:
 
 
 def square_limits(radii: tuple[float, ...]) -> Floats:
-    """Limits (parts,) that a sum of squares taken in doubles may reach without the vector leaving its ball."""
+    """Limits (parts,) on sums of squares in doubles that keep the vector in its ball."""
     return np.array([_SQUARES * radius * radius for radius in radii])
 
 
 def realisable(game: Game, inputs: Floats) -> Bools:
-    """Whether Player 1 can bring about all of the sums (..., J, m) against every d, exactly; (...)."""
+    """Whether Player 1 can realise all sums (..., J, m) against every d, exactly; (...)."""
     flat, radii = inputs.reshape(-1, *inputs.shape[-2:]), inner_radii(game)
     found = np.full(len(flat), radii is not None)
     if radii is None:
@@ -62,7 +63,7 @@ def realisable(game: Game, inputs: Floats) -> Bools:
     for part, limit in zip(game.control.parts, square_limits(radii).tolist(), strict=True):
         others = tuple(other.radius for other in meeting(part, game.disturbance.parts))
         pieces = flat[..., part.begin : part.end]
-        # What doubles show to be inside needs no more; only what is left is looked at in rationals.
+        # Doubles settle the clear cases; rationals decide only the rest.
         for k, j in np.argwhere(~((pieces * pieces).sum(axis=-1) <= limit)).tolist():
             piece = pieces[k, j].tolist()
             finite = all(map(math.isfinite, piece))

@@ -1,10 +1,10 @@
 """Certified bounds of the avoid game's value, without a grid: proved unsafe, proved safe, and how far apart they are.
 
-With W the sums that Player 2 can enforce (an outer set of what u + d can be held to), q(t) the drift position and
-R_W(t) the displacements that W can cause, a start is lost if at one time t <= T all of q(t) + R_W(t) lies within the
-keep-out distance: :func:`upper` is the least such distance, V <= upper. With W the sums that Player 1 can realise, any
-w(.) in W whose path keeps away at all times is a witness that it can: :func:`lower` is the distance of the
-best one found, V >= lower. Derivations in docs/theory/collision-avoidance.md.
+Upper bound: let W be a set to which Player 2 can hold the sum u + d, q(t) the drift position and R_W(t) the
+displacements from W. A start is lost if at one time t <= T all of q(t) + R_W(t) lies within the keep-out distance;
+:func:`upper` is the least such distance, V <= upper. Lower bound: let W be the sums that Player 1 can realise. Any w(.)
+in W whose path keeps away at all times is a witness; :func:`lower` is the distance of the best one found, V >= lower.
+Derivations in docs/theory/collision-avoidance.md.
 """
 
 from __future__ import annotations
@@ -28,7 +28,8 @@ MAX_HORIZON_S = 7200.0
 EFFORT = 40
 """Steps of ascent from each of the best three guesses."""
 _SLACK = 1e-9
-"""Relative to the size of a state: rounding of a path of some hundred steps is below a hundredth of this."""
+"""Rounding allowance relative to the size of a state: a path of some hundred steps needs less than a hundredth of
+it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +47,7 @@ def _closing(game: Game, horizon: float) -> _Closing:
     transitions = np.array([game.transition(tau) for tau in grid])
     m = game.channels
     directions, _ = covering(m)
-    # Support of the rate of displacement: sigma_W(M(tau)^T s), M the effect of an impulse on the position.
+    # Support of the displacement's rate: sigma_W(M(tau)^T s), M the effect of an impulse on the position.
     rates = np.empty((fine + 1, len(directions)))
     for j, found in enumerate(transitions):
         rates[j] = game.enforceable.support(directions @ found[:m, m:])
@@ -54,7 +55,8 @@ def _closing(game: Game, horizon: float) -> _Closing:
     sums = np.concatenate(
         [np.zeros((1, rates.shape[1])), np.cumsum(0.5 * h * (rates[1:] + rates[:-1]), axis=0)]
     )
-    # A norm is convex: the trapezoid errs low by no more than the curve leaves its chord, and |M''| <= 6 w.
+    # A norm is convex: the trapezoid's error on the low side is at most the curve's distance from its chord, and |M''|
+    # <= 6 w.
     bend = 0.125 * h * h * 6.0 * game.mean_motion * game.enforceable.radius
     supports = (sums + (grid * bend)[:, None])[:: fine // times]
     drift = np.zeros((times + 1, 1 + m, 2 * m))
@@ -64,7 +66,7 @@ def _closing(game: Game, horizon: float) -> _Closing:
 
 
 def upper(game: Game, states: Floats, times_to_go: Floats | float) -> Floats:
-    """No less than V (m) of states (..., 2 m), for one or several ascending times to go (s): (...) or (times, ...).
+    """Upper bound on V (m) of states (..., 2 m), for one or several ascending times to go (s): (...) or (times, ...).
 
     Raises ``InvalidInput`` for states that are not finite or of the wrong length.
     """
@@ -90,7 +92,7 @@ def _closest_on_a_line(
     states: Floats, drift: Floats, supports: Floats, directions: Floats, widen: float, slack: Floats,
     kept: Floats, out: Floats,
 ) -> None:  # fmt: skip
-    """:func:`closest_certain` for one position, where nobody gets to the other side without passing zero."""
+    """:func:`closest_certain` for one position, where no path changes sides without passing zero."""
     del directions, widen
     side = np.where(states[:, 0] < 0.0, -1.0, 1.0)
     reach = side * (drift[:, 1] @ states.T) + supports[:, :1] + slack
@@ -114,15 +116,15 @@ class Witness:
 def lower(
     game: Game, states: Floats, horizon_s: float, *, goal_m: Floats | float = math.inf, effort: int = EFFORT
 ) -> Floats:
-    """No more than V (m) of states (..., 2 m) over a horizon; -inf where Player 1 can realise nothing.
+    """Lower bound on V (m) of states (..., 2 m) over a horizon; -inf where Player 1 can realise nothing.
 
-    The search for a state ends when it keeps ``goal_m`` (a number or (...)); ``effort`` 0 tries constant inputs only.
+    The search for a state ends when it keeps ``goal_m`` (a number or (...)); ``effort`` 0 tries only constant inputs.
     """
     return _search(game, states, horizon_s, goal_m, effort, keep=False).margin_m
 
 
 def witness(game: Game, states: Floats, horizon_s: float, *, effort: int = EFFORT) -> Witness:
-    """The controls behind :func:`lower`, which can be flown; raises ``InvalidInput`` where Player 1 has none."""
+    """The controls behind :func:`lower`, which can be flown; raises ``InvalidInput`` when Player 1 has none."""
     if game.realisable is None:
         raise invalid("disturbance", "no stronger than the control", game.disturbance.bound)
     return _search(game, states, horizon_s, math.inf, effort, keep=True)
@@ -164,13 +166,13 @@ def _search(
         )
     out -= game.keep_out_m + _SLACK * np.abs(flat).max(axis=1, initial=0.0)
     if keep:
-        # Nothing is claimed of inputs that Player 1 does not have.
+        # Claim nothing for inputs that Player 1 does not have.
         out[~realisable(game, best)] = -np.inf
     return Witness(h, best.reshape(*lead, pieces, m) if keep else best, out.reshape(lead))
 
 
 def _sag(game: Game, inputs: InputSet, h: float) -> Floats:
-    """How far a path leaves its chord: h^2 / 8 of its acceleration, by speed, by distance, and at all.
+    """A path's deviation from its chord: h^2 / 8 of its acceleration, per speed, per distance, and constant.
 
     |p''| <= a with a = 2 w (|v| + h a) + 3 w^2 (|p| + h |v| + h^2 a) + |w|, speed and distance at the piece's start.
     """

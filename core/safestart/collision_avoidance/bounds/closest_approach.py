@@ -1,7 +1,7 @@
 """Where a free motion passes closest to the origin: closed form, everywhere, without a grid.
 
-It serves three times: an adversary that pushes against the miss, a pilot that pushes with it, and a lower bound of the
-game's value for states that no lattice covers (Player 1 coasts, Player 2 pushes all it can).
+It has three uses: an adversary that pushes against the miss, a pilot that pushes with it, and a lower bound of the
+game's value for states outside every lattice (Player 1 coasts, Player 2 pushes as hard as it can).
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from safestart.model.scenario import Floats
 
 TIMES = 120
 _ROUNDING = 1e-9
-"""Relative to the size of a state: rounding of a position is below a hundredth of this."""
+"""Rounding allowance relative to the size of a state: a position needs less than a hundredth of it."""
 
 
 class Miss(NamedTuple):
-    """``vector`` (N, m): position at the closest approach, m; ``time`` (N,) in s; ``slope`` (N, 2 m): what changes
-    its length, by state; ``bound`` (N,): no more than the game's value, m."""
+    """``vector`` (N, m): position at the closest approach, m; ``time`` (N,) in s. ``slope`` (N, 2 m): gradient of its
+    length by the state; ``bound`` (N,): lower bound of the game's value, m."""
 
     vector: Floats
     time: Floats
@@ -31,7 +31,7 @@ class Miss(NamedTuple):
 
 class _Tables(NamedTuple):
     """``times`` (J,); ``rows`` (J, 2 m, 2 m) of the free motion; ``reach`` (J,): how far the disturbance can push the
-    position by then; ``sag`` (2,): what a path leaves its chord by, per speed and per distance at its start."""
+    position by then; ``sag`` (2,): a path's deviation from its chord, per speed and per distance at its start."""
 
     times: Floats
     rows: Floats
@@ -45,10 +45,10 @@ def _tables(game: Game, horizon: float) -> _Tables:
     times = np.linspace(0.0, horizon, TIMES + 1)
     transitions = np.array([game.transition(float(tau)) for tau in times])
     pushes = np.linalg.norm(transitions[:, :m, m:], ord=2, axis=(1, 2))
-    # Between samples the norm of M exceeds the larger of its ends by no more than h^2 / 8 max |M''|, |M''| <= 6 w.
+    # Between samples the norm of M exceeds the larger end by at most h^2 / 8 max |M''|, |M''| <= 6 w.
     larger = np.maximum(pushes[1:], pushes[:-1]) + 0.125 * step * step * 6.0 * w
     reach = np.concatenate([[0.0], np.cumsum(larger * np.diff(times))]) * game.disturbance.radius
-    # |p''| <= 2 w |v| + 3 w^2 |p|, both at most what they are at the start and what the step adds.
+    # |p''| <= 2 w |v| + 3 w^2 |p|, both at most their values at the start plus the step's increase.
     grown = 1.0 - 2.0 * w * step - 3.0 * (w * step) ** 2
     share = 0.125 * step * step / grown if grown > 0.0 else np.inf
     return _Tables(times, transitions, reach, (share * (2.0 * w + 3.0 * w * w * step), share * 3.0 * w * w))
@@ -57,12 +57,12 @@ def _tables(game: Game, horizon: float) -> _Tables:
 def closest(game: Game, states: Floats, to_go: float, horizon: float) -> Miss:
     """Closest approach of states (N, 2 m) within ``to_go`` seconds, at most ``horizon``, to one 120th of it.
 
-    ``bound`` is the least distance of the chords between the samples, less what the path may leave them by and what the
-    disturbance may do until their ends: it holds at all times.
+    ``bound`` is the least distance of the chords between samples, minus the path's deviation from them and the
+    disturbance's effect until their ends; it holds at all times.
     """
     tables, m = _tables(game, horizon), game.channels
     count = max(1, int(np.searchsorted(tables.times, to_go + 1e-9)))
-    # The last chord may end after the time to go: what happens there only lowers the bound.
+    # The last chord may end after the time to go, which can only lower the bound.
     ends = min(count + 1, len(tables.times)) if tables.times[count - 1] < to_go else count
     flown = np.einsum("jik,nk->nji", tables.rows[:ends], states)
     positions = flown[:, :count, :m]

@@ -49,7 +49,7 @@ def closest_certain(
             while last < times and drift[last, 0, 0] <= kept[c]:
                 last += 1
             if last > first:
-                # The most promising time first: the others are mostly dismissed by their floor.
+                # The most promising time first; the floor then excludes most others.
                 begin = first + int(np.argmin(floor[first:last]))
                 for turn in range(first - 1, last):
                     t = begin if turn < first else turn

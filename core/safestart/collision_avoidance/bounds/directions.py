@@ -1,4 +1,4 @@
-"""Unit vectors that cover the circle or the sphere, and how far the farthest direction is from the next of them."""
+"""Unit vectors that cover the circle or the sphere, and the largest gap to any direction."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def covering(dimension: int) -> tuple[Floats, float]:
     height, turn = 1.0 - 2.0 * k / SPHERE, math.pi * (1.0 + math.sqrt(5.0)) * k
     ring = np.sqrt(1.0 - height * height)
     points = np.stack([ring * np.cos(turn), ring * np.sin(turn), height], axis=1)
-    # A direction is farthest from all points over the middle of a facet; its cosine is the facet's distance.
+    # The direction farthest from all points is over the middle of a facet; its cosine is the facet's distance.
     return points, float(1.0 / np.min(-ConvexHull(points).equations[:, -1]))
 
 

@@ -1,4 +1,4 @@
-"""Compiled kernel: controls that keep away from the origin, found by ascent and certified between samples."""
+"""Compiled kernel: find controls that keep away from the origin by ascent, and certify them between samples."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def _fly(
 ) -> float:
     """Fly piecewise constant ``controls`` (J, m); returns a lower bound of the distance over all times.
 
-    ``near`` (J, 2 + m): distance of the chord of every piece, where on it, and its unit direction. Between samples
+    ``near`` (J, 2 + m): distance to the chord of every piece, the place on it, and its unit direction. Between samples
     the path is within a h^2 / 8 of the chord, a the largest acceleration there: ``sag`` (share per speed, per distance,
     constant), already times h^2 / 8.
     """
@@ -86,7 +86,7 @@ def _turn(
         for i in range(m):
             costate[i] += weight * (1.0 - near[j, 1]) * near[j, 2 + i]
         for g in range(len(radii)):
-            # Scaled by the largest entry first: the squares of short slopes would underflow, and lose their length.
+            # Scale by the largest entry first: squares of short slopes would underflow.
             largest = 0.0
             for k in range(parts[g, 0], parts[g, 1]):
                 largest = max(largest, abs(slope[j, k]))
@@ -101,7 +101,7 @@ def _turn(
 
 @compiled(error_model="numpy")
 def _admissible(controls: Floats, parts: Whole, limits: Floats) -> bool:
-    """Whether all ``controls`` (J, m) are surely within their balls: sums of squares in doubles against ``limits``."""
+    """Whether all ``controls`` (J, m) are certainly in their balls: compares sums of squares with ``limits``."""
     for j in range(len(controls)):
         for g in range(len(limits)):
             square = 0.0
@@ -129,12 +129,12 @@ def farthest(
     out: Floats,
     best: Floats,
 ) -> None:
-    """``out`` (N,): distance certainly kept by the best controls found; ``best`` (N or 0, J, m) those controls.
+    """``out`` (N,): certified distance of the best controls found; ``best`` (N or 0, J, m): those controls.
 
     Constant ``guesses`` (G, m) first, then from the best few of them ``effort`` steps of conditional-gradient ascent
     each (steps 2 / (k + 2), so that controls stay in the convex set of ``parts`` and ``radii``) on the softened
-    least distance, with ``blur`` (m) falling. A state is left as soon as it keeps ``goal``. Controls count only
-    where they are within their balls (``limits``, squared, less what rounding may hide).
+    least distance, with ``blur`` (m) falling. The search for a state ends as soon as it keeps ``goal``. Controls count
+    only if they are within their balls (``limits``, squared, minus an allowance for rounding).
     """
     m = guesses.shape[1]
     n = 2 * m

@@ -1,4 +1,4 @@
-"""What Player 2 does: the worst case by the value function or by reading the control, pursuit, chance, nothing."""
+"""Strategies of Player 2: the worst case by the value function or by mirroring the control, pursuit, chance, none."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ TITLES = {
 def adversary(name: str, game: Game, horizon_s: float, count: int, seed: int, hold_steps: int) -> Adversary:
     """The adversary of that name for ``count`` encounters.
 
-    ``worst`` lowers the value as fast as it can; ``mirror`` answers u with -k u, k the most it can, which keeps the sum
-    in the set that certifies the unsafe states; ``pursuit`` pushes against the miss; ``random`` draws from its set's
-    boundary directions and sizes, held for ``hold_steps`` steps.
+    ``worst`` lowers the value as fast as it can; ``mirror`` answers u with -k u with the largest possible k, which
+    keeps the sum in the set that certifies the unsafe states; ``pursuit`` pushes against the miss; ``random`` draws
+    from its set's boundary directions and sizes, held for ``hold_steps`` steps.
     """
     zero = np.zeros((count, game.channels))
     if name == "worst":
@@ -47,12 +47,12 @@ def adversary(name: str, game: Game, horizon_s: float, count: int, seed: int, ho
 
 
 def until(opponent: Adversary, step: int) -> Adversary:
-    """The same adversary up to a step, and nothing from there on."""
+    """The same adversary up to a step, and none afterwards."""
     return lambda moment, command: opponent(moment, command) if moment.step < step else np.zeros_like(command)
 
 
 def _shares(game: Game) -> Floats:
-    """The share k (m,) of every channel of u that Player 2 can take back."""
+    """The share k (m,) of each channel of u that Player 2 can cancel."""
     found = np.zeros(game.channels)
     for own, left in zip(game.control.parts, game.enforceable.parts, strict=True):
         found[own.begin : own.end] = 1.0 - left.radius / own.radius if own.radius > 0.0 else 0.0
@@ -60,7 +60,7 @@ def _shares(game: Game) -> Floats:
 
 
 class _Random:
-    """A push held for some steps, then drawn anew: any direction, any size up to the bound."""
+    """A push held for some steps, then drawn again: any direction, any size up to the bound."""
 
     def __init__(self, game: Game, zero: Floats, rng: np.random.Generator, hold_steps: int) -> None:
         self._game, self._held, self._rng, self._hold = game, zero, rng, hold_steps

@@ -1,4 +1,4 @@
-"""Periods of an encounter, and how much of the game is left in each."""
+"""Periods of an encounter, and the remaining time of the game in each."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from safestart.errors import invalid
 class Clock:
     """``duration_s`` in steps of one control period of ``period_s``; commands and pushes are held for a period.
 
-    ``receding`` keeps the whole horizon ahead at every step (a supervisor on watch); otherwise the game ends with the
-    horizon and the time to go runs down (the game that the value function is about).
+    ``receding`` keeps the whole horizon ahead at every step (a supervisor on watch); otherwise the time to go runs down
+    and the game ends with the horizon (the game of the value function).
     """
 
     period_s: float
@@ -30,5 +30,5 @@ class Clock:
         return math.floor(self.duration_s / self.period_s + 1e-9)
 
     def to_go(self, step: int, horizon_s: float) -> float:
-        """Seconds of the game that are left at the start of a step."""
+        """Remaining seconds of the game at the start of a step."""
         return horizon_s if self.receding else max(horizon_s - step * self.period_s, 0.0)

@@ -1,7 +1,7 @@
 """Closed-loop encounters: N flights at once, exact between samples, and the least separation at all times.
 
-It is the loop of :mod:`safestart.simulation.loop` for many flights in step, with the other player's push; no flight
-ends at a violation, for the separation is what is asked for. Inside, states are in the game's axes.
+It is the loop of :mod:`safestart.simulation.loop` for many flights in step, with the other player's push. No flight
+ends at a violation, as the separation is the result. Inside, states are in the game's axes.
 """
 
 from __future__ import annotations
@@ -36,10 +36,9 @@ def fly(
 ) -> Record:
     """Fly ``starts`` (N, 6), LVLH. Raises ``InvalidInput`` for another shape and ``Cancelled`` between steps.
 
-    ``margin`` (N,) of the record is the separation: the least distance, m, no larger than the true one at any time,
-    sampled or between. Between samples a path leaves its chord by no more than h^2 / 8 of its acceleration, which is
-    subtracted. Of ``delta_v`` the channels of a box add up, of a disk its size counts. The pilot is asked for all
-    flights at once.
+    ``margin`` (N,) of the record is the separation: a lower bound, m, of the true distance at all times. Between
+    samples a path deviates from its chord by at most h^2 / 8 of its acceleration, which is subtracted. ``delta_v`` adds
+    up the channels of a box, or the length for a disk. The pilot commands all flights at once.
     """
     game, m = sight.game, sight.game.channels
     if starts.ndim != 2 or starts.shape[1] != 6:
@@ -60,7 +59,7 @@ def fly(
         u = game.thrust_from_lvlh(thrust)
         total = u + opponent(moment, u)
         after = states @ phi.T + total @ gamma.T
-        # The acceleration changes little within a period: its larger end and a tenth stand for all of it.
+        # The acceleration changes little within a period: its larger end plus a tenth bounds it.
         ends = [np.linalg.norm(x @ matrix.T + total, axis=1) for x in (states, after)]
         sag = 1.1 * np.maximum(*ends) * clock.period_s**2 / 8.0
         least = np.minimum(least, np.maximum(segment_distance(states[:, :m], after[:, :m]) - sag, 0.0))

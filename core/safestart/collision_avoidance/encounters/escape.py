@@ -11,12 +11,12 @@ from safestart.collision_avoidance.game import Game
 from safestart.model.scenario import Floats
 from safestart.simulation.record import Path
 
-# Speeds (m/s) under this are rounding: a free motion without secular drift comes back to where it was.
+# Speeds (m/s) below this are rounding: a free motion without secular drift returns to its start.
 _STILL = 1e-6
 
 
 class Mode(NamedTuple):
-    """An escape: the axis it burns along (tangential, radial) and what the paper says comes of it."""
+    """An escape: its burn axis (tangential, radial) and the outcome that the paper states."""
 
     name: str
     title: str
@@ -34,11 +34,11 @@ MODES = (
 
 @dataclass(frozen=True, slots=True)
 class Escape:
-    """Flight of one mode, and what became of it at the end.
+    """Flight of one mode, and its outcome.
 
-    Over each step the path's thrust is the mean of what was delivered. ``drift_m_s`` is the mean tangential speed after
-    the burn, 0 where the motion repeats with every orbit; ``altitude_m`` the mean radial position; ``overtakes_s`` when
-    it comes back past its start, tangentially (inf: not).
+    Over each step the path's thrust is the mean of the delivered thrust. ``drift_m_s`` is the mean tangential speed
+    after the burn, 0 if the motion repeats with every orbit; ``altitude_m`` the mean radial position; ``overtakes_s``
+    the time at which it passes its start again, tangentially (inf: never).
     """
 
     mode: Mode
@@ -53,7 +53,7 @@ def fly(
 ) -> Escape:
     """Burn at full thrust for ``burn_s`` seconds from ``start`` (6,), LVLH, then drift; Player 2 does nothing.
 
-    In closed form: every state straight from the start, which a burn of any length allows. The mean drift and altitude
+    In closed form: every state comes directly from the start, for a burn of any length. The mean drift and altitude
     follow from the state at the end of the burn: of a free motion the radial position swings about 4 y + 2 vx / w,
     and the mean tangential speed is -1.5 w times that.
     """
@@ -70,7 +70,7 @@ def fly(
         states[k] = game.transition(coast) @ ended
     ended = game.transition(burnt) @ begin + game.held_input(burnt) @ push
     w = game.mean_motion
-    # 4 y + 2 vx / w is the guiding centre's altitude; without rotation the drift is the speed itself.
+    # 4 y + 2 vx / w is the guiding centre's altitude; without rotation the drift equals the speed.
     altitude = 4.0 * ended[1] + 2.0 * ended[2] / w if w > 0.0 else ended[1]
     drift = -1.5 * w * altitude if w > 0.0 else ended[2]
     drift = drift if abs(drift) > _STILL else 0.0

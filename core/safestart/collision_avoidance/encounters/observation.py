@@ -1,4 +1,4 @@
-"""What both players know during an encounter: time, states, and the value function read at them."""
+"""The knowledge of both players during an encounter: time, states, and the value function there."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from safestart.model.scenario import Bools, Floats
 
 
 class Moment:
-    """Step ``step`` of N encounters at ``states`` (N, 2 m): ``to_go`` seconds of the game are left.
+    """Step ``step`` of N encounters at ``states`` (N, 2 m), with ``to_go`` seconds of the game left.
 
-    The value function is read when somebody asks for it, and then once.
+    The value function is read at the first request, and only once.
     """
 
     def __init__(self, sight: Sight, step: int, to_go: float, states: Floats) -> None:
@@ -45,14 +45,14 @@ class Moment:
 
 @dataclass(eq=False)
 class Sight:
-    """Reads a tube at any state: beyond its lattice a closed form stands in, which is no more than the value."""
+    """Reads a tube at any state; outside its lattice it uses a closed-form lower bound of the value."""
 
     game: Game
     tube: Tube
     _last: Moment | None = None
 
     def look(self, step: int, states: Floats, to_go: float) -> Moment:
-        """The moment at states (N, 2 m) with ``to_go`` seconds left. Whoever looks twice sees the same reading."""
+        """The moment at states (N, 2 m) with ``to_go`` seconds left; repeated calls share one reading."""
         last = self._last
         if (
             last is None

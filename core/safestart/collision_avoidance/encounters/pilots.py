@@ -1,7 +1,7 @@
-"""What Player 1 does: evade by the value function, burn an escape mode, follow the PD law, or coast.
+"""Strategies of Player 1: evade by the value function, burn an escape mode, follow the PD law, or coast.
 
-The gradient of a value on a grid does not tell left from right near a head-on course: the two ways out are worth
-the same there and differ by less than a cell. ``certified`` therefore flies the best constant sum u + d whenever
+Near a head-on course the gradient of a gridded value cannot choose between left and right: both ways out have almost
+the same value there. ``certified`` therefore flies the best constant sum u + d whenever
 :func:`~safestart.collision_avoidance.bounds.certified.witness` proves that it keeps the distance, and the gradient
 elsewhere.
 """
@@ -44,7 +44,7 @@ class Watching:
     law: Callable[[Moment], Floats]
 
     def begin(self, state: Floats) -> None:
-        """It remembers nothing."""
+        """Nothing to forget."""
 
     def command(self, k: int, state: Floats) -> Command:
         """See :class:`safestart.control.controller.Controller`."""
@@ -55,10 +55,10 @@ class Watching:
 
 
 def pilot(name: str, sight: Sight, clock: Clock, slot: Slot, fuel_price: float = 0.0) -> Controller:
-    """The pilot of that name, for one state or many; none remembers anything.
+    """The pilot of that name, for one state or many; no pilot has a memory.
 
-    ``hj`` raises the value as fast as it can, and coasts where that is not worth ``fuel_price`` (m per m/s); a
-    mode burns at full thrust all the time; ``pd`` follows the evasive PD law to the slot.
+    ``hj`` raises the value as fast as it can, and coasts if that is not worth ``fuel_price`` (m per m/s); a mode always
+    burns at full thrust; ``pd`` follows the evasive PD law to the slot.
     """
     game = sight.game
     if name == "certified":
@@ -74,7 +74,7 @@ def pilot(name: str, sight: Sight, clock: Clock, slot: Slot, fuel_price: float =
 
 
 def climb(game: Game, moment: Moment, fuel_price: float = 0.0) -> Floats:
-    """The u (N, m) that raises the value fastest; none where that gains no more than the price."""
+    """The u (N, m) that raises the value fastest; zero if the gain is at most the price."""
     slope = moment.gradient[:, game.channels :]
     push = game.control.extreme(slope)
     for part in game.control.parts:
@@ -84,11 +84,11 @@ def climb(game: Game, moment: Moment, fuel_price: float = 0.0) -> Floats:
 
 
 def evade(game: Game, moment: Moment) -> Floats:
-    """Thrust (N, m) for the best constant sum that is proved to keep the distance; the climb where none is."""
+    """Thrust (N, m) for the best constant sum that is proved to keep the distance; without one, by the gradient."""
     push, left = climb(game, moment), game.realisable
     if left is None or moment.to_go <= 0.0:
         return push
-    # What is asked of the sum, stretched to Player 1's own set: whatever d takes, the sum goes at least that way.
+    # The demanded sum, stretched to Player 1's own set: whatever d does, the sum goes at least that way.
     stretch = np.ones(game.channels)
     for own, part in zip(game.control.parts, left.parts, strict=True):
         stretch[part.begin : part.end] = own.radius / part.radius if part.radius > 0.0 else 0.0

@@ -1,4 +1,4 @@
-"""The slot that the PD law of paper 001 holds, and the gains of its Table I; axes (tangential, radial)."""
+"""The slot of paper 001's PD law, and the gains of Table I; axes (tangential, radial)."""
 
 from __future__ import annotations
 

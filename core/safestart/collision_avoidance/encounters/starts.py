@@ -1,6 +1,6 @@
-"""Starts of encounters: near the boundary of the unsafe set from outside, wholly inside it, or on the way to it.
+"""Starts of encounters: just outside the unsafe set, inside it, or on the way to it.
 
-They are looked for in the game's axes and given in LVLH.
+The search uses the game's axes; the results are in LVLH.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ from safestart.model.scenario import Bools, Floats
 from safestart.runtime.progress import Context
 
 BATCH, BATCHES = 20_000, 200
-"""States drawn at a time, and how many times before the search is given up."""
+"""States per draw, and the largest number of draws."""
 
 Accept = Callable[[Floats], Bools]
 
 
 def near_boundary(sight: Sight, count: int, band_m: float, seed: int, context: Context) -> Floats:
-    """``count`` starts (count, 6), LVLH, uniform in the lattice's box, kept if hard and not lost.
+    """``count`` starts (count, 6), LVLH, uniform in the lattice's box, accepted if hard but not lost.
 
-    Kept: 0 < value <= band; a free motion (no one thrusts) that comes within the keep-out distance inside the
-    horizon, so that Player 1 must act; and outside the unsafe set by the tube's answer (proved safe at the state, or a
-    value above the grid error). Raises ``InvalidInput`` where too few are found.
+    Conditions: 0 < value <= band; the free motion (nobody thrusts) comes within the keep-out distance inside the
+    horizon, so that Player 1 must act; the tube's answer is outside the unsafe set (proved safe, or a value above the
+    grid error). Raises ``InvalidInput`` if it finds too few.
     """
     tube = sight.tube
 
@@ -84,7 +84,7 @@ def approaching(
 
 
 def _coasting_lost(sight: Sight, states: Floats) -> Bools:
-    """Outside the keep-out distance, and a free motion comes inside within the horizon, (N,)."""
+    """True if outside the keep-out distance and the free motion comes inside within the horizon, (N,)."""
     game, horizon = sight.game, sight.tube.horizon_s
     lost: Bools = np.linalg.norm(states[:, : game.channels], axis=1) > game.keep_out_m
     near = closest(game, states[lost], horizon, horizon)

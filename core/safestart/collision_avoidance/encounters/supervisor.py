@@ -29,8 +29,8 @@ class Mode(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Guards:
-    """``level_m``: a value at or under it counts as unsafe (the grid error measured); ``clearance_m``: how far above it
-    an evasion ends (X_safe). Raises ``InvalidInput``."""
+    """``level_m``: values up to it count as unsafe (the measured grid error); ``clearance_m``: an evasion ends this far
+    above it (X_safe). Raises ``InvalidInput``."""
 
     level_m: float
     clearance_m: float
@@ -42,12 +42,12 @@ class Guards:
 
 @dataclass(slots=True)
 class Supervisor:
-    """Player 1 under supervision, for many flights in step; ``modes`` (N,) are theirs now.
+    """Player 1 under supervision, for many flights in step; ``modes`` (N,) are their current modes.
 
     Nominal and recovery fly the PD law to the slot. Their guard looks one control period ahead: if the command,
-    held for the period against the worst push, leads to a value at or under the level, the evasion begins now and
-    not a period too late. The evasion ends where the value is above the level by the clearance and the recovery's
-    first period keeps it above. Recovery ends in the slot's box, whose speeds are the guard's epsilons.
+    held for the period against the worst push, leads to a value not above the level, the evasion begins now and not a
+    period too late. The evasion ends when the value exceeds the level by the clearance and the recovery's first period
+    keeps it above. Recovery ends in the slot's box, whose speeds are the guard's epsilons.
     """
 
     sight: Sight
@@ -59,7 +59,7 @@ class Supervisor:
     switches: NDArray[np.int64] = field(default_factory=lambda: np.zeros((3, 3), dtype=np.int64))
 
     def begin(self, state: Floats) -> None:
-        """All flights (N, 6) are nominal; ``switches`` counts on."""
+        """All flights (N, 6) start nominal; ``switches`` keeps its counts."""
         self.modes = np.full(len(state), Mode.NOMINAL, dtype=np.int8)
 
     def command(self, k: int, state: Floats) -> Command:
@@ -71,7 +71,7 @@ class Supervisor:
         ahead = self._ahead(moment, steady)
         threatened = ahead <= self.guards.level_m
         clear = ~threatened & (moment.value > self.guards.level_m + self.guards.clearance_m)
-        # In the order in which a state may pass through them within one step.
+        # In the order in which one step can pass through them.
         self._switch(Mode.RECOVERY, Mode.NOMINAL, self.slot.holds(moment.states))
         self._switch(Mode.EVASIVE, Mode.RECOVERY, clear)
         self._switch(Mode.RECOVERY, Mode.EVASIVE, threatened)

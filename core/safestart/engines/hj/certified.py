@@ -1,9 +1,8 @@
-"""The level set's own error, measured: exact inner and outer sets by support functions, counted against its cells.
+"""Measure the level set's error: compare its cells with exact inner and outer sets by support functions.
 
-The motion is linear and the input a disk, so that membership of a start needs no grid (:mod:`safestart.engines.exact`).
-Its margin is known to ``TOLERANCE`` where it decides: a start with more is in the set, a start with less than
-minus that is not. The exact set takes the motion as it is; the body frame's level set drops a term, and what that costs
-is counted with the grid's error.
+The motion is linear and the input a disk, so membership of a start needs no grid (:mod:`safestart.engines.exact`). Its
+margin is known to ``TOLERANCE`` near zero: a start above it is in the set, a start below its negative is not. The exact
+set uses the full motion; the body frame's level set drops a term, and that error counts with the grid's.
 """
 
 from __future__ import annotations
@@ -23,16 +22,16 @@ TOLERANCE = 1e-6
 
 
 def exact_answer(problem: Problem, context: Context) -> EngineResult:
-    """The exact set of the same problem, computed in silence; it still stops when the job is dismissed."""
+    """The exact set of the same problem, without progress reports; it still stops when the job is dismissed."""
     return Exact().solve(problem, Context(cancelled=context.cancelled))
 
 
 def count_errors(problem: Problem, settings: Settings, field: Floats, exact: EngineResult) -> dict[str, Any]:
-    """What of ``field`` (ny, nx; a start is called safe where it is >= 0) the exact sets refute, JSON-able.
+    """Errors of ``field`` (ny, nx; a start is called safe where it is >= 0) that the exact sets prove, JSON-able.
 
     ``false_safe`` counts starts called safe that are outside the outer set, ``false_unsafe`` starts of the inner
-    set that are not called safe; once ``in_corridor``, once over the whole ``grid``. Of a velocity-aware target the
-    position-only set is an outer bound only: ``inner`` and ``false_unsafe`` are None. All is None where the exact
+    set that are not called safe; once ``in_corridor``, once over the whole ``grid``. For a velocity-aware target the
+    position-only set is only an outer bound: ``inner`` and ``false_unsafe`` are None. All values are None if the exact
     computation failed.
     """
     if exact.code is not ResultCode.OK:

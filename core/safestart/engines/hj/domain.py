@@ -1,8 +1,8 @@
-"""The state box a Hamilton-Jacobi grid has to cover, and when its spacing is too coarse to mean anything.
+"""The state box that a Hamilton-Jacobi grid must cover, and warnings about a too coarse spacing.
 
-State order (x, y, vx, vy) in the frame of the settings, metres and m/s. A box that cuts the motion off ruins the
-answer beyond what a better scheme can repair: in the body frame a start at rest in LVLH runs round a whole circle,
-at speed omega_t r; in LVLH a start at rest in the body frame flies off at that speed.
+State order (x, y, vx, vy) in the frame of the settings, metres and m/s. If the box cuts the motion off, no better
+scheme can repair the answer: in the body frame a start at rest in LVLH moves round a whole circle at speed omega_t r;
+in LVLH a start at rest in the body frame flies off at that speed.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from safestart.errors import invalid
 from safestart.model.scenario import Floats, SetKind
 
 CFL_NUMBER = 0.75
-# Against steps of an eighth of a cell, half a cell changes margins by at most 1.8 m, a whole one by 3.3 m and no
-# limit by 7.6 m (41 x 41 x 15 x 15, spacing 17.6 m, 40 s, 3 to 10 deg/s); the mask by one cell or none.
+# Compared with steps of an eighth of a cell, half a cell changes margins by at most 1.8 m, a whole cell by 3.3 m and no
+# limit by 7.6 m (41 x 41 x 15 x 15, spacing 17.6 m, 40 s, 3 to 10 deg/s), and the mask by at most one cell.
 TURN_CELLS = 0.5
 MAX_STEPS = 200_000
 MIN_SPEED = 1e-3
@@ -63,9 +63,9 @@ def size_domain(problem: Problem, frame: Frame) -> Domain:
     """Box with room for T' = min(T, sqrt(r / a_max)) of full thrust.
 
     r is the radius of the farthest start. Half widths are r + a T'^2 / 2 and omega_t r + a T' in the body frame;
-    in LVLH, with s the speed of the fastest start and n the mean motion, r + s T' + a T'^2 / 2 and s + a T', both
-    with what the gravity gradient 3 n^2 x adds. Past sqrt(r / a_max), when thrust alone moves the chaser by r / 2,
-    a wider box loses more by its spacing than it gains by its padding.
+    in LVLH, with s the speed of the fastest start and n the mean motion, r + s T' + a T'^2 / 2 and s + a T', both plus
+    the effect of the gravity gradient 3 n^2 x. Beyond sqrt(r / a_max), when thrust alone moves the chaser by r / 2, the
+    coarser spacing of a wider box costs more than its padding gains.
     """
     states = start_states(problem, frame)
     a = problem.scenario.chaser.max_acceleration
@@ -77,7 +77,7 @@ def size_domain(problem: Problem, frame: Frame) -> Domain:
     else:
         start = float(np.hypot(states[..., 2], states[..., 3]).max())
         position += start * time
-        # The Coriolis term turns velocities and lengthens none.
+        # The Coriolis term turns velocities but never lengthens them.
         pull = coefficients(problem.scenario.target, frame).gx * position
         position += 0.5 * pull * time * time
         speed = start + (a + pull) * time
@@ -98,11 +98,10 @@ def _rates(problem: Problem, domain: Domain, frame: Frame) -> Floats:
 
 
 def count_steps(problem: Problem, domain: Domain, settings: Settings) -> tuple[int, float]:
-    """Time steps over the horizon and the CFL number they amount to.
+    """Time steps over the horizon and their CFL number.
 
-    The CFL number is 0.75, or less where a tube's target turns: at the farthest start it may move by
-    ``TURN_CELLS`` cells per step, since a step sees it only where the step ends.
-    Raises ``InvalidInput`` when nobody would wait for them.
+    The CFL number is 0.75, or less if a tube's target turns: at the farthest start it may move by ``TURN_CELLS`` cells
+    per step, since a step sees it only at its end. Raises ``InvalidInput`` for too many steps.
     """
     spacing = domain.spacing(settings.shape)
     rate = float((_rates(problem, domain, settings.frame) / spacing).sum())
@@ -122,7 +121,7 @@ def count_steps(problem: Problem, domain: Domain, settings: Settings) -> tuple[i
 
 
 def warnings(problem: Problem, domain: Domain, settings: Settings) -> list[str]:
-    """Say where the grid is too coarse for its answer to mean much; empty when nothing is wrong.
+    """Warnings where the grid is too coarse for a meaningful answer; empty when nothing is wrong.
 
     Thresholds from runs against the exact set: with less than two velocity cells of control authority the
     fixed-time set loses half its cells, and first-order dissipation spreads the value by

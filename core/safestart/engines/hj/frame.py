@@ -1,15 +1,15 @@
-"""The two frames in which the motion towards the tumbling corridor can be gridded.
+"""The two frames for a grid of the motion towards the tumbling corridor.
 
 Seen from the rotating body frame, with J the +90 degree rotation and w = omega_t, CWH (paper 000, eq. 1) is
 
     dv/dt = -2 (w + n) J v + (w^2 + 2 n w + 1.5 n^2) p + 1.5 n^2 Q(2 w t) p + u,
     Q(a) = [[cos a, -sin a], [-sin a, -cos a]].
 
-The corridor stands still there, but the last term turns at 2 w and would make the problem time-varying. It is
-dropped; its size is 1.5 n^2 |p|, 5e-4 m/s^2 at 272 m on a low orbit. Speeds are of the order of w r.
+The corridor is fixed there, but the last term turns at 2 w and would make the problem time-varying. We drop it; its
+size is 1.5 n^2 |p|, 5e-4 m/s^2 at 272 m on a low orbit. Speeds are of the order of w r.
 
-In LVLH axes CWH is time-invariant as it is, and the corridor turns. Starts at rest there have no speed at all, so
-that a velocity axis need hold only what thrust can bring about, at any tumble rate.
+In LVLH axes CWH is time-invariant, and the corridor turns. Starts at rest there have zero speed, so a velocity axis
+need cover only speeds that thrust can reach, at any tumble rate.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ MODEL = {
     "which turns at twice the tumble rate",
     Frame.LVLH: "LVLH, CWH as it is, the corridor turns; nothing dropped",
 }
-"""What the equations of a frame leave out."""
+"""The parts of CWH that a frame's equations drop."""
 
 
 class Coefficients(NamedTuple):

@@ -25,7 +25,7 @@ _SCHEMES = {
 class FusedSolver:
     """Value function on the lattice, stepped backwards in stretches from the horizon (float32).
 
-    ``compile_s`` is what compilation, or loading it from the cache, took.
+    ``compile_s`` is the time for compiling or loading from the cache.
     """
 
     def __init__(
@@ -68,7 +68,7 @@ class FusedSolver:
         )
 
     def advance(self, span: float) -> tuple[bool, float, float]:
-        """Step ``span`` seconds back; returns whether all values are finite, and their least and largest."""
+        """Step ``span`` seconds back; returns whether all values are finite, and the least and largest value."""
         self._march.advance(span)
         low, high = self._march.range()
         return bool(np.isfinite(low)), low, high

@@ -1,4 +1,4 @@
-"""The motion as hj-reachability wants it: time-invariant, affine in a disk of thrust."""
+"""The motion in hj-reachability's form: time-invariant, affine in a disk of thrust."""
 
 from __future__ import annotations
 
@@ -32,6 +32,6 @@ class LinearMotion(hj.ControlAndDisturbanceAffineDynamics):  # type: ignore[misc
         return jnp.array([[0.0, 0.0], [0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 
     def disturbance_jacobian(self, state: Any, time: Any) -> Any:
-        """No disturbance, (4, 1); the interface wants one."""
+        """No disturbance, (4, 1); the interface requires one."""
         del state, time
         return jnp.zeros((4, 1))

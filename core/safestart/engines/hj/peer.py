@@ -1,7 +1,7 @@
-"""The time loop of hj-reachability, compiled ahead of time and kept for every problem of the same shape.
+"""The time loop of hj-reachability, compiled ahead of time and reused for problems of the same shape.
 
-Frame, tumble rate, thrust, corridor and box are arguments of the compiled program, so that a second operating
-point costs no compilation. Arithmetic is float32, JAX's default.
+Frame, tumble rate, thrust, corridor and box are arguments of the compiled program, so a second operating point needs no
+compilation. Arithmetic is float32, JAX's default.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ KEPT_PROGRAMS = 8
 
 
 def _edge(values: Any, width: int) -> Any:
-    """Pad by repeating the last value: no slope across the wall, so nothing can flow in that is not inside.
+    """Pad by repeating the last value: without a slope across the wall nothing can flow in from outside.
 
     With the first-order scheme the update is then a mean of values on the grid, and the value stays between
     the extremes of the target function. The library's ``extrapolate_away_from_zero`` continues the slope
@@ -49,14 +49,14 @@ def make_lattice(domain: Domain, settings: Settings) -> hj.Grid:
 
 
 class Sweep(StrEnum):
-    """What happens to the value on the way back in time."""
+    """How the value is limited on the way back in time."""
 
     END = "end"
-    """Nothing: the corridor counts at the horizon only."""
+    """No limit: the corridor counts only at the horizon."""
     STILL = "still"
-    """It never rises: a tube towards a corridor that stands still (min(0, H) of the library)."""
+    """It never rises: a tube towards a fixed corridor (min(0, H) of the library)."""
     TURNING = "turning"
-    """It is cut off at l(R(-omega_t t) p) after every step: a tube towards a corridor that turns."""
+    """It is cut off at l(R(-omega_t t) p) after every step: a tube towards a turning corridor."""
 
     @classmethod
     def of(cls, kind: SetKind, frame: Frame) -> Sweep:
@@ -67,9 +67,9 @@ class Sweep(StrEnum):
 
 
 class Parameters(NamedTuple):
-    """What one compiled program is given: numbers () and the corridor's ``faces`` (k, 3), all float32.
+    """The arguments of a compiled program: numbers () and the corridor's ``faces`` (k, 3), all float32.
 
-    ``match`` is None for the position-only target, which makes it another program.
+    ``match`` is None for the position-only target, which has its own program.
     """
 
     turn: Any
@@ -102,9 +102,8 @@ def _advance(
 ) -> Any:
     """Value ``span`` seconds earlier, and whether it is finite with its extremes.
 
-    The model has no time in it, so that every stretch may run from 0 to -span: in float32 a clock that has
-    run for an hour cannot resolve a step of a tenth of a millisecond. ``angle`` is how far the corridor has
-    turned at the stretch's later end.
+    The model does not depend on time, so every stretch may run from 0 to -span: after an hour a float32 clock cannot
+    resolve a step of a tenth of a millisecond. ``angle`` is the corridor's turn at the stretch's later end.
     """
 
     def cut(time: Any, value: Any) -> Any:
@@ -132,7 +131,7 @@ _lock = threading.Lock()
 
 
 def _program(settings: Settings, sweep: Sweep, arguments: tuple[Any, ...]) -> tuple[Any, float]:
-    """Compiled :func:`_advance` and the seconds its compilation took (0 when it was there already)."""
+    """Compiled :func:`_advance` and its compilation time in seconds (0 if it was compiled already)."""
     key = (settings.shape, settings.accuracy, sweep, settings.match is None)
     with _lock:
         if key in _programs:
@@ -148,8 +147,8 @@ def _program(settings: Settings, sweep: Sweep, arguments: tuple[Any, ...]) -> tu
 class PeerSolver:
     """Value function on the lattice, stepped backwards in stretches from the horizon.
 
-    ``values`` is the library's array over (x, y, vx, vy), metres; ``compile_s`` what compilation took, with
-    one warm-up stretch of no length, so that :meth:`advance` runs compiled code only.
+    ``values`` is the library's array over (x, y, vx, vy), metres; ``compile_s`` the time for compilation and one
+    warm-up stretch of no length, so that :meth:`advance` only runs compiled code.
     """
 
     def __init__(
@@ -177,13 +176,13 @@ class PeerSolver:
         self.compile_s += time.perf_counter() - begin
 
     def _arguments(self, span: float) -> tuple[Any, ...]:
-        # The angle is reduced in float64: after an hour a float32 angle would be off by centimetres.
+        # Reduce the angle in float64: after an hour a float32 angle would cause errors of centimetres.
         angle = math.fmod(self._tumble_rate * self._time, math.tau)
         scalars = (jnp.asarray(span, jnp.float32), jnp.asarray(angle, jnp.float32))
         return self._lattice, self._parameters, self.values, *scalars
 
     def advance(self, span: float) -> tuple[bool, float, float]:
-        """Step ``span`` seconds back; returns whether all values are finite, and their least and largest."""
+        """Step ``span`` seconds back; returns whether all values are finite, and the least and largest value."""
         self.values, finite, low, high = self._run(*self._arguments(span))
         self._time -= span
         return bool(finite), float(low), float(high)

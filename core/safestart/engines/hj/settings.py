@@ -1,4 +1,4 @@
-"""What the Hamilton-Jacobi engine computes with, once its options meet a problem."""
+"""Settings of the Hamilton-Jacobi engine, derived from its options and a problem."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from safestart.model.scenario import Rest, SetKind
 Shape = tuple[int, int, int, int]
 
 BOUNDARY = "edge"
-"""How the grid is padded: the last value is repeated, so that nothing flows in which is not inside."""
+"""The grid's padding: repeat the last value, so that nothing flows in from outside."""
 PRECISION = "float32"
 """Of the values on the grid; both solvers have it."""
 
@@ -35,13 +35,13 @@ class Settings:
 
     @classmethod
     def of(cls, problem: Problem, options: HamiltonJacobiInput, match: float | None = None) -> Settings:
-        """The options, with the frame that ``auto`` means for this problem."""
+        """The options, with ``auto`` replaced by this problem's frame."""
         nodes = (options.nodes_xy, options.nodes_xy, options.nodes_v, options.nodes_v)
         frame = _best_frame(problem) if options.frame == "auto" else Frame(options.frame)
         return cls(options.accuracy, nodes, frame, options.solver, match)
 
 
 def _best_frame(problem: Problem) -> Frame:
-    # Measured: only there does the body frame come closer to the exact set (docs/theory/hamilton-jacobi.md).
+    # Measurements show that the body frame is closer to the exact set only there (docs/theory/hamilton-jacobi.md).
     corotating_tube = problem.rest is Rest.BODY and problem.kind is SetKind.TUBE
     return Frame.BODY if corotating_tube else Frame.LVLH

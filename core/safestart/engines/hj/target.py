@@ -1,9 +1,9 @@
-"""The target function l: how far a state is from the corridor, standing still or turned, and from co-rotation.
+"""The target function l: a state's distance from the corridor, fixed or turned, and from co-rotation.
 
 The position-only target is the signed distance l(p). The velocity-aware one (paper 000, section 10) is
 max(l(p), tau (|v - omega x p| - match)): at most 0 where the position is in the corridor and the velocity within
-``match`` of the one that a point fixed in the target's body has. The difference of velocities turns with the frame, so
-its length is the same at every time.
+``match`` of that of a point fixed in the target's body. The velocity difference turns with the frame, so its length
+does not depend on time.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from safestart.engines.hj.settings import Settings
 from safestart.model.scenario import CorridorShape, Floats, SetKind
 
 MATCH_S = 30.0
-"""Seconds tau that turn a difference of velocities into metres; the zero level does not depend on it."""
+"""Seconds tau that convert a velocity difference into metres; the zero level does not depend on it."""
 
 
 def signed_distance(shape: CorridorShape, points: Floats) -> Floats:
     """l = max over faces of (A_i p - b_i) / |A_i| in metres, shape (...): negative inside the corridor.
 
-    Exact inside and beside a face; past an edge of the corridor less than the distance, with the same sign.
+    Exact inside and beside a face; beyond an edge of the corridor it is less than the distance, with the same sign.
     """
     corridor = corridor_of(shape)
     distance: Floats = -(corridor.slack(points) / corridor.lengths).min(axis=-1)
@@ -35,7 +35,7 @@ def signed_distance(shape: CorridorShape, points: Floats) -> Floats:
 
 
 def mismatch(states: Floats, tumble_rate: float, frame: Frame, match: float) -> Floats:
-    """tau (|v - omega x p| - match) in metres for states (..., 4); in the body frame v is that difference already."""
+    """tau (|v - omega x p| - match) in metres for states (..., 4); in the body frame v itself is that difference."""
     carried = tumble_rate if frame is Frame.LVLH else 0.0
     x, y, vx, vy = np.moveaxis(states, -1, 0)
     return np.asarray(MATCH_S * (np.hypot(vx + carried * y, vy - carried * x) - match))
@@ -58,9 +58,9 @@ def target_at(problem: Problem, settings: Settings, states: Floats) -> Floats:
 
 @dataclass(frozen=True, slots=True)
 class TargetValues:
-    """l on the nodes of a grid, arrays (nx, ny, nvx, nvy) in metres, and what it allows the value to be.
+    """l on the nodes of a grid, arrays (nx, ny, nvx, nvy) in metres, and the possible range of the value.
 
-    ``terminal`` is l at the horizon, ``first`` l at t = 0; they differ where the corridor turns. The value of a
+    ``terminal`` is l at the horizon, ``first`` l at t = 0; they differ if the corridor turns. The value of a
     fixed-time set stays in the range of ``terminal``; a tube's may also take any lower value that l has on its
     way: ``low`` and ``high`` bound it. With ``match`` in the settings l is the velocity-aware one.
     """
@@ -74,9 +74,9 @@ class TargetValues:
     def of(cls, problem: Problem, domain: Domain, settings: Settings) -> TargetValues:
         """Evaluate on the nodes of a box.
 
-        In LVLH axes the corridor has turned by omega_t t: l(R(-omega_t t) p). Of all points at one distance
-        from the target, the one on the corridor's axis has the least l (l is convex and even in x), and l falls
-        along the axis; so l there, at the distance of the box's corner, is the least that any angle can give.
+        In LVLH axes the corridor has turned by omega_t t: l(R(-omega_t t) p). Of all points at one distance from the
+        target, the one on the corridor's axis has the least l (l is convex and even in x), and l falls along the axis.
+        So l there, at the distance of the box's corner, is the minimum over all angles.
         """
         x, y, _, _ = domain.axes(settings.shape)
         points = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1)

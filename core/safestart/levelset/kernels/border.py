@@ -1,4 +1,4 @@
-"""Compiled part of the sweep: what lies around a run of nodes, beyond the ends of an axis too."""
+"""Compiled part of the sweep: the neighbours of a run of nodes, ghosts beyond the ends of an axis included."""
 
 from __future__ import annotations
 

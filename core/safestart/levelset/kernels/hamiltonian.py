@@ -1,4 +1,4 @@
-"""Compiled part of the sweep: numerical Hamiltonians, and what the players' inputs add."""
+"""Compiled part of the sweep: numerical Hamiltonians, and the players' inputs."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def first_blend(
     length: Word,
     keep: bool,
 ) -> None:
-    """First-order derivatives and Lax-Friedrichs in one pass; quicker where a block has one rate."""
+    """First-order derivatives and Lax-Friedrichs in one pass; faster when a block has one rate."""
     fixed = fo == 0 and ko == 0
     half = src.dtype.type(0.5) * scale
     a, b, c = at[0], at[1], at[2]
@@ -134,7 +134,7 @@ def add_inputs(
             gain, start = entry(where, 3 * axes + begin, index, data)
             p = np.uint64(entries[begin] * length)
             if end == begin + 1 and start == 0 and ball:
-                # The commonest input: one axis, the same gain everywhere.
+                # The most common input: one axis, the same gain everywhere.
                 square = gain * gain
                 if c == groups[g, 2]:
                     for j in range(span):

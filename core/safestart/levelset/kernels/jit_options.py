@@ -1,4 +1,4 @@
-"""How the parts of the compiled sweep are compiled, and the types of what they read."""
+"""Compilation options of the sweep's parts, and the types of their arguments."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from numpy.typing import NDArray
 Indices = NDArray[np.uint64]
 Whole = NDArray[np.int64]
 Word = Any
-"""An index: uint64 where it is used in a loop."""
+"""An index: uint64 inside loops."""
 Value = Any
-"""A number of the arrays' precision."""
+"""A number in the arrays' precision."""
 
 FAST = {"contract", "nsz"}
-"""Fused multiply-add, and -0 as good as 0; nothing that lets NaN be assumed away."""
+"""Allow fused multiply-add and ignore the sign of zero; allow nothing that assumes away NaN."""
 
-# Parts are not cached: what is, with everything it calls, is the entry point (see :mod:`safestart.runtime.stamp`).
+# Parts are not cached; the entry point is, with everything that it calls (see :mod:`safestart.runtime.kernels`).
 part = njit(nogil=True, error_model="numpy", fastmath=FAST)
-"""Compile a function that entry points call."""
+"""Decorator for functions that entry points call."""
 inlined = njit(nogil=True, error_model="numpy", fastmath=FAST, forceinline=True)
-"""The same for what is called for every block: passing a dozen arrays costs as much as their work."""
+"""The same for functions called per block; inlined, as passing a dozen arrays costs as much as the work."""

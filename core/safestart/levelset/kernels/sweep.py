@@ -1,15 +1,15 @@
 """Compiled kernel: one stage of a level-set step, V <- a V0 + b (V + dt H(x, grad V)), over a range of blocks.
 
-Derivatives, numerical Hamiltonian and update are fused: a block (the last one or two axes, kept contiguous) is
-worked through in row buffers that stay in the first cache, by plain loops that the compiler turns into vector code.
-The number of axes, inputs and the scheme are data, so that there is one compilation per precision.
+Derivatives, numerical Hamiltonian and update are fused: plain loops, which the compiler vectorises, process a block
+(the last one or two axes, contiguous) in row buffers that stay in the first cache. The number of axes, inputs and the
+scheme are data, so that each precision needs one compilation.
 
 Memory (see :mod:`safestart.levelset.layout`): ``v`` is flat, blocks follow each other after ``SLACK`` values; inside a
 block the last axis has ``width`` ghost nodes at either end, filled here when a block is done. Stencils along the other
 axes are the same run of nodes, displaced.
 
 Index arithmetic inside loops is uint64: a signed index is checked for wrap-around, which stops vectorisation.
-The parts that it is made of are in the other files named ``..._kernel``.
+The other files of this folder hold its parts.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ def sweep(
     at = np.empty(7, np.uint64)
     index = np.empty(outer, np.int64)
     fused = scheme == FIRST and flux == LAX_FRIEDRICHS
-    # Axes that an input moves: the others need not keep their mean slope.
+    # Axes that an input moves; the others need no mean slope.
     moved = np.zeros(axes, np.bool_)
     for axis in entries:
         moved[axis] = True
@@ -87,7 +87,7 @@ def sweep(
         for j in range(size):
             total[j] = zero
         for axis in range(axes):
-            # Off the block's axes a block is one run; along its second axis every row near an end is its own.
+            # Along outer axes a block is one run; along its second axis each row near an end is a run of its own.
             across = axis < axes - 1
             inner = axis >= outer and across
             count, stride = (ends, pitch) if inner else (shape[axis], strides[axis])
@@ -149,7 +149,7 @@ def sweep(
                 length,
             )
         start = np.uint64(center)
-        # Comparisons are turned so that NaN survives: it must be seen, not cut off.
+        # This order of the comparisons keeps NaN, which must stay visible.
         if a == zero:
             for j in range(size):
                 rise = most if total[j] > most else total[j]

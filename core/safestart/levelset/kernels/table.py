@@ -1,4 +1,4 @@
-"""Compiled part of the sweep: reading a table of :mod:`safestart.levelset.tables`."""
+"""Compiled part of the sweep: read a table of :mod:`safestart.levelset.tables`."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from safestart.model.scenario import Floats
 
 @inlined
 def entry(where: Whole, row: int, index: Whole, data: Floats) -> tuple[float, Word]:
-    """Scalar part of a table for one block, and where its array part starts."""
+    """Scalar part of a table for one block, and the start of its array part."""
     outer = len(index)
     scalar, start = where[row, 0], where[row, 1]
     for k in range(outer):

@@ -1,1 +1,1 @@
-"""Simulated flights of the switched rendezvous: counter-examples, and the independent side of every proof."""
+"""Simulated flights of the switched rendezvous: counter-examples, and an independent check of every proof."""

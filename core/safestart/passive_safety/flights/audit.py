@@ -1,4 +1,4 @@
-"""Audit of a proof: simulated flights and drifts against their sets; the largest excess of any of them."""
+"""Audit of a proof: compare simulated flights and drifts with their sets; returns the largest excess."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def excess(tube: Tube, states: Floats, times: Floats, rows: Floats) -> Floats:
 def outside(points: Floats, gens: Floats, box: Floats) -> Floats:
     """How far (N,) ``points`` (N, 2) leave the zonotopes ``gens`` (N, m, 2) with ``box`` (N, 2) around the origin, m.
 
-    The normals of the generators and the axes are all the normals that such a polygon has: nothing slips by.
+    The normals of the generators and the axes are all normals of such a polygon, so the result is exact.
     """
     normals = np.concatenate(
         [np.stack([-gens[..., 1], gens[..., 0]], axis=-1), np.broadcast_to(np.eye(2), (len(gens), 2, 2))],
@@ -68,7 +68,7 @@ def _powered(question: Question, starts: Floats, crossing: Floats, times: Floats
 
 
 def _drifted(question: Question, starts: Floats, aborts: Floats, after: Floats) -> tuple[Floats, Floats]:
-    """Positions (N, 2) so long ``after`` the abort, and the crossings (N,), inf where the abort came first."""
+    """Positions (N, 2) at times ``after`` the abort, and the crossings (N,), inf where the abort came first."""
     system = question.system
     if system.dynamics is Dynamics.LINEAR:
         crossing = crossing_times(system, starts, float(aborts.max()) + 1.0)
@@ -84,7 +84,7 @@ def powered_excess(question: Question, reach: Reach, count: int, seed: int, time
     random = np.random.default_rng(seed + 1)
     half = times_each // 2
     # Half of the times in the transient that follows the crossing.
-    # Of the linear motion: near enough to choose the times.
+    # Of the linear motion, which is accurate enough to choose the times.
     crossing = crossing_times(question.system, starts, end)[:, None]
     soon = np.where(np.isfinite(crossing), crossing, 0.0) + random.uniform(0.0, 1.5, (count, half))
     times = np.minimum(np.concatenate([random.uniform(0.0, end, (count, half)), soon], axis=1), end)
@@ -93,7 +93,7 @@ def powered_excess(question: Question, reach: Reach, count: int, seed: int, time
     rows = rows_of(seed)
     worst = np.where(far, excess(reach.far, states, times, rows), -np.inf).max(axis=1)
     since = np.where(far, -1.0, times - crossing)
-    # A start is in the branch of the face that it crossed: in one of them, at all times.
+    # A start belongs to the branch of the face that it crossed; at all times it is in at least one branch.
     per_branch = [
         np.max([excess(tube, states, since, rows).max(axis=1) for tube in branch.tubes], axis=0)
         for branch in reach.branches
@@ -138,6 +138,6 @@ def drift_excess(
         for branch in reach.branches
     ]
     if per_branch:
-        # A start is in the branch of the face that it crossed: in one of them.
+        # A start belongs to the branch of the face that it crossed, so to at least one.
         worst = np.maximum(worst, np.min(per_branch, axis=0))
     return float(worst.max())

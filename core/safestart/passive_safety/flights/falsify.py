@@ -1,6 +1,6 @@
 """Counter-examples: the closest drift that a seeded search finds, and the extremes of simulated powered flights.
 
-The search proves nothing and flies the linear motion; a counter-example is believed only after
+The search flies the linear motion and proves nothing; a counter-example counts only after
 :func:`safestart.passive_safety.flights.independent_flight.replay`.
 """
 
@@ -58,7 +58,7 @@ def closest(
     bracket: tuple[float, float] | None = None,
     enough: float = 0.0,
 ) -> Drifting:
-    """Closest drift found over the initial set and the abort ``window`` (min); all corners are tried.
+    """Closest drift found over the initial set and the abort ``window`` (min); tries all corners.
 
     ``bracket``: see :func:`crossing_times`. The search ends early below ``enough`` metres.
     """
@@ -101,7 +101,7 @@ def closest(
 
 @dataclass(frozen=True, slots=True)
 class Powered:
-    """Extremes of the powered flights that were simulated: value, start and time per requirement."""
+    """Extremes of the simulated powered flights: value, start and time per requirement."""
 
     value: float
     start: tuple[float, ...]

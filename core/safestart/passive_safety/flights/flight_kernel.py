@@ -1,4 +1,4 @@
-"""Compiled flights of single starts by the fixed steps of an explicit Runge-Kutta method (its tableau is given)."""
+"""Compiled flights of single starts by fixed steps of an explicit Runge-Kutta method with a given tableau."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def fly(
     """States (N, T, 4) at ``times`` (N, T), ascending per row, of ``starts`` (N, 4); first entries (N,), inf: none.
 
     Engines fail at ``aborts`` (N,). ``gains`` (3, 2, 4): K / m of modes 1, 2 and passive. ``pace`` (3, 3) per mode:
-    first step, how long it is used, step after that, min.
+    first step, its period of use, later step, min.
     """
     count, wanted = times.shape
     states = np.empty((count, wanted, 4))

@@ -1,4 +1,4 @@
-"""Replay of one flight by another library: matrix exponentials, or an adaptive integrator of order 8 (nonlinear)."""
+"""Replay one flight by another library: matrix exponentials, or an adaptive integrator of order 8 (nonlinear)."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def _nonlinear(system: System, start: Floats, abort: float, time: float) -> Floa
 
 
 def _linear(system: System, start: Floats, abort: float, time: float) -> Floats:
-    """By matrix exponentials alone; the crossing by a scan of 0.05 min and Newton's method."""
+    """Uses matrix exponentials, and for the crossing a scan of 0.05 min and Newton's method."""
     powered, far = min(time, abort), matrix(system.motion(Mode.FAR))
     states = np.asarray(start, dtype=np.float64)[None, :]
     power = np.asarray(expm(far * _REPLAY_STEP))

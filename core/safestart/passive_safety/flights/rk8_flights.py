@@ -1,4 +1,5 @@
-"""Simulated flights of either dynamics by a Runge-Kutta method of order 8: the independent side of nonlinear proofs."""
+"""Simulated flights of either dynamics by a Runge-Kutta method of order 8: the independent check of nonlinear
+proofs."""
 
 from __future__ import annotations
 
@@ -27,7 +28,7 @@ _DRIFT_STEP = 0.5
 def simulate(system: System, starts: Floats, aborts: Floats, times: Floats) -> tuple[Floats, Floats]:
     """States (N, T, 4) at ``times`` (N, T) of ``starts`` (N, 4) whose engines fail at ``aborts`` (N,), min; inf: never.
 
-    Second result: first entries (N,) into the guard, inf where none was met.
+    Second result: first entries (N,) into the guard, inf without an entry.
     """
     order = np.argsort(times, axis=1)
     motions = [system.motion(mode) for mode in (Mode.FAR, Mode.NEAR, Mode.PASSIVE)]
@@ -52,7 +53,7 @@ def simulate(system: System, starts: Floats, aborts: Floats, times: Floats) -> t
 
 
 def _pace(system: System) -> Floats:
-    """Steps (3, 3) per mode: fine while the fastest motion lasts, then as long as it stays stable."""
+    """Steps (3, 3) per mode: fine while the fastest motion lasts, then as long as stability allows."""
     pace = np.full((3, 3), _DRIFT_STEP)
     for row, mode in zip(pace, (Mode.FAR, Mode.NEAR), strict=False):
         rate = float(np.abs(np.linalg.eigvals(matrix(system.motion(mode)))).max())

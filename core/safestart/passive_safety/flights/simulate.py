@@ -1,8 +1,8 @@
-"""Exact flights of single starts in the linear motion: the independent side of every proof, and of every search.
+"""Exact flights of single starts in the linear motion: the independent check of every proof and search.
 
-Modes 1 and 2 by their eigenvectors, the drift by its closed form; the crossing by bisection. They use no sets
-and no tables of :mod:`safestart.passive_safety.reach.flow`. A first entry shorter than the scan step (0.1 min) would
-be missed, so these are simulations, not proofs. Of a nonlinear system they fly the linearisation.
+Modes 1 and 2 use their eigenvectors, the drift its closed form, the crossing bisection. They use no sets and no tables
+of :mod:`safestart.passive_safety.reach.flow`. They would miss a first entry shorter than the scan step (0.1 min), so
+these are simulations, not proofs. For a nonlinear system they fly the linearisation.
 """
 
 from __future__ import annotations
@@ -48,9 +48,9 @@ def drifted(dynamics: Dynamics, start: Floats, times: Floats) -> Floats:
 def crossing_times(
     system: System, starts: Floats, horizon: float, bracket: tuple[float, float] | None = None
 ) -> Floats:
-    """First entry (N,) of ``starts`` (N, 4) into the guard, min; inf where none up to ``horizon``.
+    """First entry (N,) of ``starts`` (N, 4) into the guard, min; inf without one up to ``horizon``.
 
-    ``bracket``: times between which every start is known to enter once, instead of the scan.
+    ``bracket``: times between which every start is known to enter once; replaces the scan.
     """
     far = system.motion(Mode.FAR)
     if bracket is None:
@@ -67,7 +67,7 @@ def crossing_times(
     for _ in range(_NEWTONS):
         states = flown(far, starts, at)
         rate = np.einsum("nj,nj->n", gradient(system.guard, states[:, :2]), states[:, 2:])
-        # Where the guard is met tangentially Newton is no help, and the bisection stands.
+        # At a tangential entry Newton's method fails, so keep the bisection.
         height = depth(system.guard, states[:, :2])
         step = np.where(rate < 0.0, -height / np.where(rate < 0.0, rate, 1.0), 0.0)
         at = np.clip(at + step, low, high)

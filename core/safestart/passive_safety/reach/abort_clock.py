@@ -11,7 +11,7 @@ from safestart.model.scenario import Floats
 class Clock:
     """Abort time of a node of a tube: its own time plus ``offset`` + ``gens`` (g,) . xi +- ``radius`` (min).
 
-    The xi are the first symbols of the tube; those that follow are remainders.
+    The xi are the first symbols of the tube; the later ones are remainders.
     """
 
     offset: float

@@ -1,4 +1,4 @@
-"""The error of a chord: how far a solution strays from the linear interpolation of its ends."""
+"""The error of a chord: how far a solution deviates from the linear interpolation of its ends."""
 
 from __future__ import annotations
 

@@ -7,10 +7,10 @@ delta = t_c - t*,
 
 where |delta| <= D. Now h.z(t_c) = b - sag gives delta = d - h.e/(h.f), with d affine in the symbols of the start and in
 the sag; so z(t_c) is the projection of z + e along f onto the plane, shifted by the sag. With d instead of delta, e is
-of second order in the symbols: that part is kept, each product of two symbols as a symbol of its own, in which the time
-of crossing has its share. What is left, |delta - d| |A w| and the like, is of third order: a box, with the deviation of
-the nonlinear motion from the linear one. (Mode 2 soon brings all starts to nearly the same speed; a box of second order
-would not shrink with them.)
+of second order in the symbols. This part is kept: each product of two symbols becomes a new symbol, on which the time
+of crossing depends too. The rest, |delta - d| |A w| and the like, is of third order and becomes a box, together with
+the deviation of the nonlinear motion from the linear one. (Mode 2 soon brings all starts to nearly the same speed; a
+box of second order would not shrink with them.)
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from safestart.passive_safety.reach.rounding import SLACK, UP
 _ROUNDS = 4
 
 REMAINDERS = 4
-"""Generators of the box of remainders, the last ones of a crossing set."""
+"""Number of generators of the box of remainders, the last ones of a crossing set."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,8 +35,8 @@ class Crossing:
     """Crossing set of one plane: ``centre`` (4,), ``gens`` (m, 4), the last four a box of remainders.
 
     Crossing time (min): ``time`` + ``time_gens`` (k,) . xi +- ``time_radius`` with xi those of the first k generators,
-    and in [``first``, ``last``]; k is m - 4 where the remainders are so small that their symbols need not be kept.
-    ``normal`` (2,) points out of the guard; ``name`` says where.
+    and in [``first``, ``last``]; k is m - 4 if the remainders are so small that their symbols need not be kept.
+    ``normal`` (2,) points out of the guard; ``name`` is the face.
     """
 
     name: str
@@ -52,10 +52,10 @@ class Crossing:
 
 @dataclass(frozen=True, slots=True)
 class Passage:
-    """What is known of the flight around the crossing: between ``first`` and ``last`` (min), expanded at ``middle``.
+    """The flight around the crossing: between ``first`` and ``last`` (min), expanded at ``middle``.
 
     ``centre`` (4,) and ``gens`` (g, 4) of mode 1 at time 0; ``second`` and ``third`` (4,) bound |A^2 z| and |A^3 z| in
-    between, ``strays`` (4,) the deviation from the linear motion.
+    between, ``strays`` (4,) bounds the deviation from the linear motion.
     """
 
     motion: Motion
@@ -73,7 +73,7 @@ class Passage:
 class Quadratic:
     """A vector that is quadratic in symbols: ``constant`` (4,), ``linear`` (k, 4), ``products`` (k (k + 1)/2, 4).
 
-    The products are symbols in [-1, 1] of their own: xi_i xi_j, and 2 xi_i^2 - 1.
+    The products are new symbols in [-1, 1]: xi_i xi_j, and 2 xi_i^2 - 1.
     """
 
     constant: Floats
@@ -106,7 +106,7 @@ def first_order(widest: float, passage: Passage, rates: Floats) -> Floats:
 
 
 def remainder(widest: float, stray: float, passage: Passage, rates: Floats, jerk: Floats) -> Floats:
-    """Bound (4,) on e less its second order: |delta| <= ``widest``, |delta - d| <= ``stray`` (min)."""
+    """Bound (4,) on e without its second order: |delta| <= ``widest``, |delta - d| <= ``stray`` (min)."""
     a = matrix(passage.motion)
     result: Floats = (
         stray * (np.abs(rates).sum(axis=0) + (widest + 0.5 * stray) * np.abs(jerk))
@@ -139,12 +139,12 @@ def cross_plane(passage: Passage, name: str, normal: Floats, limit: float, sag: 
     late = SLACK * (1.0 + abs(middle) + widest + (float(np.abs(row) @ known) + abs(limit) + sag) / abs(fall))
     rounded = SLACK * (known + (1.0 + widest) * (pace + widest * np.abs(a) @ pace))
     rounded += late * (pace + widest * np.abs(a) @ pace)
-    # A bound of first order on e, and how late it may make the crossing.
+    # A bound of first order on e, and the delay of the crossing that it allows.
     for _ in range(_ROUNDS):
         error = UP * (first_order(widest, passage, rates) + passage.strays) + rounded
         stray = UP * float(np.abs(row) @ error) / abs(fall) + late
         widest = min(widest, UP * (abs(offset) + float(np.abs(slopes).sum()) + stray))
-    # The expansion may take any affine time; in the middle of the second order it leaves least.
+    # Any affine time is allowed; the middle of the second order leaves the smallest remainder.
     lead = offset - float(row @ second_order(offset, slopes, rates, jerk).constant) / fall
     bent = second_order(lead, slopes, rates, jerk)
     least = abs(offset - lead - float(row @ bent.constant) / fall) + float(
@@ -154,16 +154,17 @@ def cross_plane(passage: Passage, name: str, normal: Floats, limit: float, sag: 
     for _ in range(_ROUNDS):
         finer = UP * (remainder(widest, closer, passage, rates, jerk) + passage.strays) + rounded
         closer = min(closer, UP * (least + float(np.abs(row) @ finer) / abs(fall)) + late)
-    # Sets so wide that the second order is no help get the box of first order alone, large enough to keep its symbols.
+    # Sets so wide that the second order does not help get only the box of first order, large enough to keep its
+    # symbols.
     spare = np.zeros(REMAINDERS)
     curve = Quadratic(np.zeros(4), np.zeros((len(slopes), 4)), np.zeros((0, 4)))
     if closer < stray:
         curve, error, spare = bent, finer, np.zeros(0)
     project = np.eye(4) - np.outer(flow, row) / fall
-    # A second helping of round-off for the projection itself, whose entries are |f| |h| / |h f| at most.
+    # Additional round-off for the projection, whose entries are at most |f| |h| / |h f|.
     stretch = np.abs(np.eye(4)) + np.outer(np.abs(flow), np.abs(row)) / abs(fall)
     box = UP * (np.abs(project) @ error) + SLACK * (stretch @ (known + pace + abs(limit) + sag))
-    # A symbol moves the state by w and, since it moves the time, along f: together in the plane, but for the sag.
+    # A symbol moves the state by w and, through the time, along f; apart from the sag the sum lies in the plane.
     symbols = spread + slopes[:, None] * flow
     count = len(slopes)
     bends, shifts = curve.whole @ project.T, curve.whole @ row / fall

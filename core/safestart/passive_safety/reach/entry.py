@@ -1,9 +1,9 @@
-"""When mode 1 ends: the period in which every start enters the guard, proved, and the crossing sets.
+"""When mode 1 ends: a proved period in which every start enters the guard, and the crossing sets.
 
 Octagon: each face that may be the crossed one gets its own branch; a start's true entry is in at least one of them.
 Circle: one branch. With the outward normal h at the nominal crossing and s the component of the position across it,
 |p| = R means h.p = sqrt(R^2 - s^2) where h.p > 0, hence h.p in R - [0, s_max^2/(R + sqrt(R^2 - s_max^2))]: a plane with
-a sag, which is one more symbol; the crossing set found bounds s, and bounds it closer on the next round.
+a sag, which is one more symbol; the crossing set bounds s, more tightly in each round.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _HAIR = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """When mode 1 ends: ``first`` .. ``last`` (min), its ``branches``; ``reason`` where that was not proved.
+    """When mode 1 ends: ``first`` .. ``last`` (min), its ``branches``; ``reason`` if that was not proved.
 
     Without branches and without a reason no start enters before the tube ends.
     """
@@ -52,7 +52,7 @@ def rows_of(faces: Floats) -> Floats:
 def find_entry(tube: Tube, centre: Floats, gens: Floats, horizon: float, guard: Guard) -> Entry:
     """Entry of the mode-1 ``tube`` (of the starts ``centre`` (4,), ``gens`` (g, 4)) into the ``guard``.
 
-    ``horizon`` (min): entries later than that do not matter.
+    ``horizon`` (min): later entries do not matter.
     """
     faces, limits = supports(guard)
     rows = rows_of(faces)
@@ -79,7 +79,7 @@ def _through_faces(tube: Tube, centre: Floats, gens: Floats, first: int, last: i
     low, high = tube.time(first), tube.time(last)
     above = tube.upper(rows)
     branches = []
-    # A start enters where its last face is met, and every face that may be met between first and last is a branch.
+    # A start enters when it meets its last face; every face that may be met between first and last is a branch.
     for face in np.flatnonzero((above[first:last] >= FACE_LIMITS).any(axis=0)):
         fall = tube.upper((rows[face] @ matrix(tube.motion))[None, :])[first:last]
         if not (fall < 0.0).all():
@@ -116,7 +116,7 @@ def _through_circle(tube: Tube, centre: Floats, gens: Floats, first: int, last: 
 def _passage(tube: Tube, centre: Floats, gens: Floats, first: int, last: int, heights: Floats) -> Passage:
     """``heights`` (last - first + 1,) of the nominal start over the guard, to expand near its root."""
     low, high = tube.time(first), tube.time(last)
-    # The nominal root, roughly: any time of the period would do, this one keeps the remainder small.
+    # The approximate nominal root: any time of the period is valid, and this one keeps the remainder small.
     middle = float(np.interp(0.0, -heights, np.linspace(low, high, last - first + 1)))
     second, third = tube.second[first:last].max(axis=0), tube.third[first:last].max(axis=0)
     return Passage(tube.motion, centre, gens, low, middle, high, second, third, tube.noise[last])

@@ -1,7 +1,7 @@
 """Matrix exponentials with proved error: tables of e^{At} on a uniform time grid, from ball arithmetic.
 
 Entries are computed as balls of 200 bits (Arb, through python-flint) from the exact decimal matrix and rounded once,
-so each double below is within one unit in the last place (and 1e-30) of the truth; nothing accumulates with time.
+so each double below is within one unit in the last place (and 1e-30) of the truth; errors do not grow with time.
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ def growth(motion: Motion, width: Fraction) -> Floats:
         a, most = _balls(motion), np.zeros((4, 4))
         for k in range(_PIECES):
             middle = width * (2 * k + 1) / (2 * _PIECES)
-            # A hair wider than half a piece, so that the pieces overlap whatever the rounding of the radius.
+            # Slightly wider than half a piece, so that the pieces overlap despite the rounding of the radius.
             radius = float(width) / (2 * _PIECES) * 1.001
             phi = (a * flint.arb(_ball(middle).mid(), radius)).exp()
             upper = [[float(phi[i, j].abs_upper()) for j in range(4)] for i in range(4)]

@@ -1,12 +1,12 @@
 """Nonlinear relative motion as the linear one plus a bounded disturbance, with radii found and proved automatically.
 
-With a = -mu q/|q|^3, |D^2 a [v, v]| <= 6 mu |v|^2/|q|^4; so what the linearisation at the target leaves out is
+With a = -mu q/|q|^3, |D^2 a [v, v]| <= 6 mu |v|^2/|q|^4; so the linearisation at the target leaves out
 
     |w| <= 3 mu rho^2/(r - rho)^4     (Lagrange's remainder, rho the distance from the target, r the orbit radius),
 
-and the state is e^{At} z_0 + e(t), |e(t)| <= int_0^t |e^{As} B| ds . sup |w|. The radius in sup |w| holds e itself: a
-trial radius is accepted where the motion that it permits stays strictly inside it, which by continuity the true
-motion then does.
+and the state is e^{At} z_0 + e(t), |e(t)| <= int_0^t |e^{As} B| ds . sup |w|. The radius in sup |w| includes e itself.
+A trial radius is accepted when the motion that it permits stays strictly inside it; by continuity the true motion then
+does too.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from safestart.passive_safety.reach.flow import flow_table, growth
 from safestart.passive_safety.reach.rounding import UP
 
 UNBOUNDED = 1e30
-"""Stands for a deviation (m, m/min) that could not be bounded: no requirement can be proved with it."""
+"""Stands for an unbounded deviation (m, m/min), with which no requirement can be proved."""
 
 _SUM_UP = 1.0 + 2.0**-38
 """Covers the roundings of a running sum of up to 16 000 terms."""
@@ -64,7 +64,7 @@ def deviation(per_unit: Floats, radius: Floats) -> Floats:
     for _ in range(_TRIALS):
         strays = per_unit * gravity_remainder(trial)[..., None]
         needed = UP * (radius + np.hypot(strays[..., 0], strays[..., 1]))
-        # A radius is accepted with all before it: the sup of |w| up to a time needs them.
+        # A radius is accepted only with all earlier ones, which the sup of |w| up to a time needs.
         found = np.logical_and.accumulate(needed < trial, axis=-1)
         if found.all():
             break

@@ -1,8 +1,8 @@
 """After an abort: is the drift apart from the target for every start, every abort time and every time after it?
 
-Passive starts are taken in bins: of the abort time in mode 1, of the time since crossing in mode 2 (a set at a fixed
-time cannot be pulled back through mode 2, which forgets its past). A bin is one zonotope: interpolation between its
-two ends adds one symbol, the abort time is one more coordinate. A bin and a piece of the time after the abort make a
+Passive starts are grouped in bins: of the abort time in mode 1, of the time since crossing in mode 2 (a set at a fixed
+time cannot be pulled back through mode 2, which forgets its past). A bin is one zonotope: interpolation between its two
+ends adds one symbol, and the abort time is one more coordinate. A bin and a piece of the time after the abort form a
 cell; a cell that is not proved apart is quartered, down to the grid of the tube.
 """
 
@@ -32,10 +32,10 @@ DRIFT_LEVELS = 4
 """Coarsest piece: 2^4 finest."""
 
 MAX_CELLS = 20_000
-"""Cells of one level beyond which the proof is given up."""
+"""The proof is given up beyond this many cells of one level."""
 
 FEW_CELLS = 48
-"""So few doubtful cells get the dearer test, with time as third axis, before they are quartered."""
+"""At most this many doubtful cells get the slower test, with time as third axis, before they are quartered."""
 
 Cells = NDArray[np.intp]
 
@@ -65,7 +65,7 @@ class Bins:
 class Drift:
     """Outcome: ``clearance`` is a proved max-norm distance (m) from the target's centre; ``open`` cells remain.
 
-    ``gave_up``: some of these are not of the finest grid, and were left because they were too many.
+    ``gave_up``: some of these are not of the finest grid and stay open because they were too many.
 
     Rows of ``open``: (first, last) abort time, (first, last) time after the abort, min. ``cells`` were tried.
     Rows of ``leaves``: bin level, drift level, bin, piece, and 1 where the cell is proved apart, else 0.
@@ -79,7 +79,7 @@ class Drift:
 
 
 def sweep(low: tuple[Floats, Floats], high: tuple[Floats, Floats], bend: Floats) -> tuple[Floats, Floats]:
-    """What the motion along a bin adds to the mean of its ends (centres (B, 4), generators (B, g, 4)).
+    """The motion along a bin, relative to the mean of its ends (centres (B, 4), generators (B, g, 4)).
 
     One generator (B, 4) for the centre, and a box (B, 4) for the generators and for ``bend``.
     """
@@ -99,10 +99,10 @@ def make_bins(tube: Tube, clock: Clock, level: int, blocks: Cells) -> Bins:
     move, extra = sweep((low, first), (high, last), bend)
     centre, spread = 0.5 * (low + high), 0.5 * (first + last)
     rounded = SLACK * (np.abs(centre) + np.abs(spread).sum(axis=1) + np.abs(move))
-    # Remainders have no share in the clock: they go into the box, where they cost nothing.
+    # Remainders do not affect the clock, so they go into the box at no cost.
     known = len(clock.gens)
     extra = UP * (extra + np.abs(spread[:, known:]).sum(axis=1))
-    # The deviation held in the noise grows along the tube, so that its end covers the bin.
+    # The deviation in the noise grows along the tube, so the value at the bin's end covers the bin.
     box = UP * (extra + np.maximum(tube.noise[i], tube.noise[j]) + rounded)
     count = len(blocks)
     late = np.zeros((count, 1, 4))

@@ -21,14 +21,14 @@ PHASES = (
     (Fraction(2, 5), Fraction(1, 40)),
     (Fraction(8, 5), Fraction(1, 4)),
 )
-"""Mode 2, start and step (min): a transient of 3 seconds; what is left of it; the slow motion, to the end."""
+"""Mode 2, start and step (min): a transient of 3 seconds; its remainder; the slow motion, to the end."""
 _FIRST_TRY = 160.0
 _BEYOND = 60.0
 
 
 @dataclass(frozen=True, slots=True)
 class Branch:
-    """Mode 2 after one crossing: ``tubes``, one after the other, over the time since the crossing."""
+    """Mode 2 after one crossing: consecutive ``tubes`` over the time since the crossing."""
 
     crossing: Crossing
     tubes: tuple[Tube, ...]
@@ -54,7 +54,7 @@ class Reach:
 
 
 def reach(question: Question) -> Reach:
-    """Reach tubes until the engines fail for good or the horizon ends; see ``Entry.reason`` where that failed."""
+    """Reach tubes until the end of the abort window or of the horizon; ``Entry.reason`` explains a failure."""
     centre, gens = question.set()
     system = question.system
     far, near = system.motion(Mode.FAR), system.motion(Mode.NEAR)

@@ -1,11 +1,11 @@
-"""One inflation for all round-off of double arithmetic in this package, and why it is enough.
+"""One inflation for all round-off of double arithmetic in this package, and the proof that it is enough.
 
 Lemma (running-error bound): a sum of products evaluated in doubles, in any order, with at most n roundings on the way
 from an input to the result, is wrong by at most gamma_n times the sum of the absolute values of its terms, gamma_n =
 n u / (1 - n u), u = 2^-53; underflow is out of reach (all magnitudes of interest are above 1e-200).
 
-No set is propagated step by step, and every stage adds its own inflation before the next one begins, taking the doubles
-that it got as exact. The longest way of each stage, with g <= 24 generators of a tube and m <= 27 of a cell:
+No set is propagated step by step. Every stage takes its input doubles as exact and adds its own inflation before the
+next stage begins. The longest way of each stage, with g <= 24 generators of a tube and m <= 27 of a cell:
 
     node of a tube          entry of e^{At} 1, product 1, sum of four 3                                      5
     support of a node       product 1, sum of four 3, sum over g + 1 sets 25, noise 2                       31

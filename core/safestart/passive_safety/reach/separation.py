@@ -1,4 +1,4 @@
-"""Is a zonotope apart from the target's box? By separating directions: exact in the plane, and with time as third axis.
+"""Is a zonotope apart from the target's box? Separating directions are exact, also with time as third axis.
 
 For a convex polygon or polyhedron given by generators the candidates for a separating plane are the normals of the
 faces of the difference set: in the plane perpendicular to one generator, in space to two. Any direction is sound.
@@ -34,7 +34,7 @@ def planar_clearance(centre: Floats, gens: Floats, box: Floats) -> Floats:
     along = np.abs(np.matmul(normals, centre[:, :, None])[:, :, 0])
     size = np.matmul(np.abs(normals), (np.abs(centre) + np.abs(gens).sum(axis=1) + box)[:, :, None])[:, :, 0]
     room = along - reach - SLACK * size
-    # A generator of no length gives no direction.
+    # A generator of length 0 gives no direction.
     result: Floats = np.where(length > 0.0, room / np.where(length > 0.0, length, 1.0), -np.inf).max(axis=1)
     return result
 
@@ -47,7 +47,7 @@ def _pairs(count: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
 def timed_clearance(
     centre: Floats, gens: Floats, box: Floats, clock: Floats, clock_gens: Floats, window: tuple[float, float]
 ) -> Floats:
-    """The same for those members only whose clock ``clock`` (N,) + ``clock_gens`` (N, m) . w lies in ``window``.
+    """The same for only those members whose clock ``clock`` (N,) + ``clock_gens`` (N, m) . w lies in ``window``.
 
     Members of the third dimension: (x, y, clock). The window is exact, not an over-approximation by a box.
     """
@@ -68,7 +68,7 @@ def timed_clearance(
     slack = SLACK * np.matmul(np.abs(normals), size[:, :, None])[:, :, 0]
     room = along - reach - half * np.abs(normals[:, :, 2]) - slack
     length = np.abs(normals[:, :, :2]).sum(axis=2)
-    # A direction along the clock alone either proves that nothing is inside the window or says nothing.
+    # A direction along the clock alone either proves that the window is empty or proves nothing.
     tiny = length <= 1e-9 * np.abs(normals).sum(axis=2)
     alone = np.where(room > 0.0, np.inf, -np.inf)
     result: Floats = np.where(tiny, alone, room / np.where(tiny, 1.0, length)).max(axis=1)

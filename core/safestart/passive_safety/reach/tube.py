@@ -2,9 +2,9 @@
 
 A set is {c + sum_j xi_j g_j : |xi_j| <= 1}; the xi_j keep their meaning along the tube. Between two nodes a solution
 is the linear interpolation of its end points plus an error of at most h^2/8 sup |z''| per component, and z'' = A^2 z
-is itself a solution, so sup |z''| <= E_h |A^2 z_k| with E_h an entrywise bound on |e^{As}|, 0 <= s <= h. Taking A^2 z_k
-as a set of its own keeps the cancellation that a norm of A^2 would lose (mode 2 is stiff). What nonlinear dynamics add
-is a box around this linear motion.
+is itself a solution, so sup |z''| <= E_h |A^2 z_k| with E_h an entrywise bound on |e^{As}|, 0 <= s <= h. Treating A^2
+z_k as a set keeps the cancellation that a norm of A^2 would lose (mode 2 is stiff). Nonlinear dynamics add a box around
+this linear motion.
 """
 
 from __future__ import annotations
@@ -48,11 +48,11 @@ class Tube:
 
     @property
     def bend(self) -> Floats:
-        """What is added to the hull of nodes k and k+1, (n, 4)."""
+        """The inflation of the hull of nodes k and k+1, (n, 4)."""
         return interpolation.chord_error(self.step, self.second)
 
     def until(self, time: float) -> Tube:
-        """The tube up to ``time`` (min) at least: a view of its first nodes."""
+        """The tube up to at least ``time`` (min): a view of its first nodes."""
         steps = min(self.steps, max(0, math.ceil((time - self.start) / self.step + 1e-9)))
         nodes = slice(0, steps + 1)
         return replace(
@@ -71,7 +71,7 @@ class Tube:
     def upper(self, rows: Floats) -> Floats:
         """Upper bounds (n, r) of ``rows`` (r, 4) times the state, over each segment; rounded outwards.
 
-        The greater of both nodes and ``bend``; where that is more than a hair of the width, a closer bound on the
+        The greater of both nodes plus ``bend``; if ``bend`` is a notable part of the width, a tighter bound on the
         excess: a value that only rises or only falls is greatest at a node; a convex one stays below its chord; and one
         that leaves a node at a rate of at most p and is concave by c at least gains at most p^2 / 2c. Rates and
         curvatures of a row r are rows themselves, r A and r A^2; ``third`` says how far they stray between nodes.
@@ -110,7 +110,7 @@ class Tube:
 _PLACES = np.eye(2, 4)
 
 _NOTABLE = 1e-2
-"""Share of the width of a set from which on the chord's error is looked at more closely."""
+"""Share of the width of a set above which the chord's error gets a tighter bound."""
 
 
 def propagate(
@@ -149,7 +149,7 @@ def propagate(
     )
     if not is_nonlinear(motion):
         return tube
-    # At node k the segments before it count; at node 0 the start.
+    # At node k the earlier segments count; at node 0 the start.
     reached = np.concatenate([[max(past, float(np.hypot(*size[:2])))], np.maximum(past, tube.radius())])
     strays = deviation(influence(motion, start, step, steps), reached)
     return replace(tube, noise=UP * (tube.noise + strays))

@@ -1,4 +1,4 @@
-"""Compiled bounds of linear rows over the segments of a tube; how they are found is told by :meth:`Tube.upper`."""
+"""Compiled bounds of linear rows over the segments of a tube; :meth:`Tube.upper` explains the method."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def _over(
     h: float,
     slack: float,
 ) -> float:
-    """Closer bound on what a row exceeds its greater end of segment ``k`` by; ``sway`` bounds its third derivative."""
+    """Tighter bound on a row's excess over its greater end of segment ``k``; ``sway`` bounds its third derivative."""
     low, high = np.empty((2, 2)), np.empty((2, 2))
     for order in range(2):
         for end in range(2):
@@ -76,7 +76,7 @@ def upper(
 
     ``derivatives`` (2, r, 4): rows of the first and second derivative; ``terms`` (2, r, 4): the sums of absolute values
     behind their entries. ``noise`` (n+1, 4), ``bend`` and ``third`` (n, 4): see ``Tube``; ``h``: step, min.
-    ``notable``: share of the width from which on the error of the chord is looked at; ``slack``: relative round-off.
+    ``notable``: share of the width above which the chord's error gets a tighter bound; ``slack``: relative round-off.
     """
     nodes, count = len(centre), len(rows)
     up = 1.0 + slack

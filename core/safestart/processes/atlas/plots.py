@@ -1,4 +1,4 @@
-"""Picture of an atlas: closed form inside the proved polygon, what is proved out of reach, the strip between."""
+"""Picture of an atlas: the closed form inside the proved GO polygon, the proved NO_GO region, the strip between."""
 
 from __future__ import annotations
 
@@ -9,14 +9,20 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Polygon
 
 from safestart.atlas.atlas import Atlas
-from safestart.closed_form.paper import certify_grid
+from safestart.closed_form.by_name import ClosedForm, map_of
 from safestart.engines.registry import engine_spec
+from safestart.engines.spec import LineStyle
 from safestart.model.scenario import Grid, Scenario
 from safestart.processes.base import Artifact
 from safestart.processes.plotting import draw_corridor, figure, png
 
 _GO, _NO_GO = "#56B4E9", "#E69F00"
 _FINE = 400
+
+_FORMS: tuple[tuple[ClosedForm, str, LineStyle], ...] = (
+    ("certified", "certified", "-"),
+    ("paper", "analytical", "--"),
+)
 
 
 def atlas_map(scenario: Scenario, grid: Grid, atlas: Atlas) -> Artifact:
@@ -35,17 +41,26 @@ def atlas_map(scenario: Scenario, grid: Grid, atlas: Atlas) -> Artifact:
             Polygon(corners, facecolor=_GO, alpha=0.75, edgecolor=engine_spec("exact").colour, linewidth=1.2)
         )
         axes.plot(*atlas.deepest.start, marker="+", color="black", markersize=9, linestyle="none")
-    certified = certify_grid(scenario, fine).margin
-    line = axes.contour(
-        x, y, certified, levels=[0.0], colors=[engine_spec("analytical").colour], linewidths=2.0
-    )
-    line.set_clip_path(outline)
+    for form, engine, style in _FORMS:
+        margin, colour = map_of(form, scenario, fine).margin, engine_spec(engine).colour
+        line = axes.contour(x, y, margin, levels=[0.0], colors=[colour], linestyles=[style], linewidths=2.0)
+        line.set_clip_path(outline)
     share = f"{100 * atlas.relative_gap:.2f} %"
     drawing.legend(
         handles=[
             Patch(color=_GO, alpha=0.75, label=f"GO, proved: {atlas.inner_area:.0f} m²"),
             Patch(color=_NO_GO, alpha=0.35, label=f"NO_GO, proved (undecided between: {share})"),
-            Line2D([], [], color=engine_spec("analytical").colour, linewidth=2, label="closed form"),
+            *(
+                Line2D(
+                    [],
+                    [],
+                    color=engine_spec(engine).colour,
+                    linestyle=style,
+                    linewidth=2,
+                    label=engine_spec(engine).title,
+                )
+                for _, engine, style in _FORMS
+            ),
             Line2D(
                 [],
                 [],

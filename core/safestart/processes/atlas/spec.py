@@ -36,7 +36,7 @@ class AtlasOutputs(WireModel):
     )
     verdict_cells: dict[str, int] = Field(description="Cells of the corridor by verdict.")
     certified_outside: int = Field(
-        description="Cells that the closed form certifies and the atlas proves NO_GO."
+        description="Cells that the paper's conditions, which are not sound, certify and the atlas proves NO_GO."
     )
     message: str
 
@@ -62,7 +62,9 @@ SPEC = ProcessSpec(
                 Column("Cells proved GO", "verdict_cells.GO"),
                 Column("Cells proved NO_GO", "verdict_cells.NO_GO"),
                 Column("Cells undecided", "verdict_cells.UNDECIDED"),
-                Column("Cells certified by the closed form and proved NO_GO", "certified_outside"),
+                Column(
+                    "Cells of the paper's conditions (not sound) that are proved NO_GO", "certified_outside"
+                ),
                 Column("Largest margin [m]", "deepest_margin_m"),
                 Column("at x [m]", "deepest_start_m.0"),
                 Column("at y [m]", "deepest_start_m.1"),

@@ -70,7 +70,7 @@ def overlay_map(problem: Problem, results: Mapping[str, EngineResult]) -> Artifa
 
 
 def _level(result: EngineResult) -> Floats:
-    """Field whose zero level outlines the region: the margin, or +-0.5 per cell where there is none."""
+    """Field whose zero level outlines the region: the margin, or +-0.5 per cell without a margin."""
     assert result.mask is not None
     return np.where(result.mask, 0.5, -0.5) if result.margin is None else result.margin
 

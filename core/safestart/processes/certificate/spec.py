@@ -1,20 +1,22 @@
-"""certificate: the closed-form safe-start region of one operating point on a grid."""
+"""certificate: the safe-start region of one operating point on a grid, in closed form."""
 
 from __future__ import annotations
 
 from pydantic import Field
 
+from safestart.closed_form.by_name import ClosedForm
 from safestart.model.scenario import Rest
 from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.views import Column, Facts
-from safestart.processes.wire import GridInput, ScenarioInput
+from safestart.processes.wire import Certificate, GridInput, ScenarioInput
 
 _CELL_S = 1.5e-7
 
 
 class CertificateInputs(ScenarioInput):
-    """One operating point, a grid and the frame in which starts are at rest."""
+    """One operating point, a grid, the frame in which starts are at rest, and which closed form is asked."""
 
+    certificate: Certificate = "certified"
     grid: GridInput = Field(default_factory=GridInput)
     rest: Rest = Field(Rest.LVLH, description="Frame in which the starts are at rest.")
 
@@ -22,21 +24,28 @@ class CertificateInputs(ScenarioInput):
 class CertificateOutputs(WireModel):
     """The region: mask and margin, row-major ``[iy][ix]``."""
 
-    r_sync_m: float | None = Field(description="Synchronization range limit, m; null when there is none.")
+    certificate: ClosedForm = Field(description="The closed form that was asked.")
+    r_sync_m: float | None = Field(
+        description="The paper's synchronization range limit, m; null when there is none."
+    )
     r_sync_reason: str | None = Field(None, description="Why r_sync_m is null.")
     safe_fraction: float = Field(description="Share of the corridor's grid points that are certified.")
+    paper_safe_fraction: float = Field(description="The same by the paper's conditions, which are not sound.")
     x_m: list[float]
     y_m: list[float]
     mask: list[list[bool]]
-    margin_m: list[list[float]]
+    margin_m: list[list[float]] = Field(
+        description="certified: least distance to every face for ever where positive. paper: smallest margin, m."
+    )
 
 
 SPEC = ProcessSpec(
     id="certificate",
     title="Closed-form safe-start certificate",
     description=(
-        "Certifies every point of a body-frame grid at once: synchronization radius, safe fraction of the corridor, "
-        "mask and margin in metres. The paper's conditions; not a proof next to the range limit."
+        "Certifies every point of a body-frame grid at once: safe fraction of the corridor, mask and margin in metres, "
+        "by explicit manoeuvres with a proof; what is not certified is undecided. The paper's conditions, which are "
+        "not sound, by certificate=paper; their share stands beside."
     ),
     inputs=CertificateInputs,
     outputs=CertificateOutputs,
@@ -48,7 +57,8 @@ SPEC = ProcessSpec(
         Facts(
             (
                 Column("Certified share of the corridor", "safe_fraction"),
-                Column("Synchronization radius [m]", "r_sync_m"),
+                Column("The same by the paper's conditions, not sound", "paper_safe_fraction"),
+                Column("Synchronization radius of the paper [m]", "r_sync_m"),
                 Column("Why there is none", "r_sync_reason"),
             )
         ),

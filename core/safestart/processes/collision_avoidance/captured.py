@@ -1,4 +1,4 @@
-"""Slices of the capture set by flight, and the level set of the same counted against flights."""
+"""Slices of the capture set by flight, and a level set of the same slices compared with flights."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from safestart.runtime.progress import Context
 
 HALF_WIDTH_M, SPEED_M_S, POINTS = 2000.0, 8.0, 61
 BEYOND = 1.3
-"""Flown for so many horizons, so that the edge of the set can be drawn between the points."""
-# Coarse on purpose: it runs next to the flights to show what a grid makes of the paper's thin box.
+"""Fly for this many horizons, so that the set's edge can be interpolated between points."""
+# Coarse on purpose: it only shows, beside the flights, how badly a grid resolves the paper's thin box.
 _SHAPE, _STATES = (21, 21, 13, 13), 4000
 
 
 @dataclass(frozen=True, slots=True)
 class Captured:
-    """``times`` (S, POINTS, POINTS): arrival from [x, y] at rest but for the slice's radial speed, inf: none.
+    """``times`` (S, POINTS, POINTS): arrival from [x, y] with only the slice's radial speed; inf: no arrival.
 
-    Captured are those within ``horizon``; ``times`` go beyond it.
+    Points with a time within ``horizon`` are captured; ``times`` go beyond it.
     """
 
     x: Floats
@@ -47,7 +47,7 @@ class Captured:
         return found
 
     def arrays(self) -> dict[str, Floats]:
-        """For the NPZ."""
+        """Arrays for the NPZ."""
         return {"capture_x_m": self.x, "capture_y_m": self.y, "capture_time_s": self.times}
 
 

@@ -26,9 +26,9 @@ from safestart.runtime.progress import Context
 from safestart.simulation.record import Path, Record
 
 CLEARANCE = 0.1
-"""Share of the keep-out distance above the grid error at which an evasion ends."""
+"""An evasion ends at the grid error plus this share of the keep-out distance."""
 SHOWN = 12
-"""Flights whose paths are kept for the pictures."""
+"""Number of flights with paths kept for the pictures."""
 RANDOM_HOLD_S = 10.0
 
 
@@ -42,7 +42,7 @@ class Flown:
     notes: list[str] = field(default_factory=list)
 
     def drawn(self, draw: Callable[[], Floats]) -> Floats | None:
-        """Starts, or None with a note where the problem has too few of them."""
+        """Starts, or None with a note when the problem has too few."""
         try:
             return draw()
         except InvalidInput as error:
@@ -74,7 +74,7 @@ class Flown:
 
 
 def encounters(inputs: CollisionAvoidanceInputs, sight: Sight, slot: Slot, context: Context) -> Flown:
-    """Fly everything the inputs ask for."""
+    """Fly all encounters of the inputs."""
     flown = Flown()
     quiet = Context(cancelled=context.cancelled)
     game, count, seed = sight.game, inputs.encounters, inputs.seed
@@ -83,7 +83,7 @@ def encounters(inputs: CollisionAvoidanceInputs, sight: Sight, slot: Slot, conte
     clock = Clock(inputs.period_s, inputs.horizon_s)
     sets: dict[str, tuple[Floats | None, Sequence[str]]] = {
         "outside": (flown.drawn(lambda: near_boundary(sight, count, inputs.band_m, seed, quiet)), inputs.adversaries),
-        # Only these two play for the loss of a start that is proved lost.
+        # Only these two adversaries force the loss from a start that is proved lost.
         "inside": (
             flown.drawn(lambda: certified_unsafe(sight, count, seed + 1, quiet)),
             [name for name in inputs.adversaries if name in ("worst", "mirror")],
@@ -128,7 +128,7 @@ def _supervised(
     flown: Flown,
     quiet: Context,
 ) -> None:
-    """Flights on the way to a close pass: Player 2 acts at first, then the chaser is to come back to its slot."""
+    """Flights towards a close pass: first Player 2 acts, then the chaser must return to its slot."""
     game, count = sight.game, inputs.supervised
     radius = 1.5 * max(float(np.hypot(*slot.centre[:2])), 3.0 * game.keep_out_m)
     speed = float(sight.tube.lattice.high[-1])

@@ -1,4 +1,4 @@
-"""The states asked about: bounds first, in the plane or in space, then the grid where it reaches."""
+"""Verdicts on the requested states: first the bounds, in the plane or in space, then the grid inside its box."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from safestart.processes.wire import finite
 from safestart.runtime.progress import Context
 
 _FINER = 4
-"""Nodes per axis of the normal motion's grid, of two axes, for one of the plane's, of four."""
+"""Nodes per axis of the normal motion's grid (two axes) for each node per axis of the plane's (four axes)."""
 
 
 def judge(
     inputs: CollisionAvoidanceInputs, tube: Tube, in_space: Game, context: Context
 ) -> list[dict[str, Any]]:
-    """One row per state, in their order. The bounds are of the avoid game, whichever players were drawn."""
+    """One row per state, in their order. The bounds are those of the avoid game, whatever the players."""
     rows: list[dict[str, Any]] = [{}] * len(inputs.states)
     for length, game in ((4, tube.game), (6, in_space)):
         chosen = [k for k, state in enumerate(inputs.states) if len(state) == length]
@@ -46,19 +46,19 @@ def judge(
 
 
 def _space(tube: Tube, game: Game, context: Context) -> SpaceTube:
-    """The plane's tube is there; the normal motion's is small."""
+    """Needs the plane's tube; solves the small one of the normal motion."""
     nodes = (_FINER * tube.settings.shape[0], _FINER * tube.settings.shape[1])
     settings = replace(tube.settings, shape=nodes)
     return SpaceTube(game, tube, solve_tube(game.restricted(2, 3), tube.horizon_s, settings, context))
 
 
 def _answers(reader: Tube | SpaceTube, states: Floats, least: Floats, most: Floats) -> Floats:
-    """:class:`Answer` by the bounds; the grid is asked where they leave it open and it reaches."""
+    """:class:`Answer` by the bounds, or by the grid for undecided states inside its box."""
     found = np.where(
         most <= 0.0, Answer.PROVED_UNSAFE, np.where(least > 0.0, Answer.PROVED_SAFE, Answer.UNDECIDED)
     )
     parts = (reader,) if isinstance(reader, Tube) else (reader.plane, reader.normal)
-    # Of a grid that failed, or of other players, nothing can be read.
+    # A failed grid, or one of other players, has no answer.
     if any(part.failure or part.settings.players is not Players.AVOID for part in parts):
         return np.asarray(found, dtype=np.int8)
     open_ = (found == Answer.UNDECIDED) & reader.covers(states)

@@ -31,7 +31,8 @@ _POINTS = 141
 
 @dataclass(frozen=True, slots=True)
 class Slice:
-    """Positions over the lattice's box at one velocity: level-set value, and the certified bounds (None: not asked)."""
+    """Positions over the lattice's box at one velocity: level-set value, and the certified bounds (None: not
+    computed)."""
 
     velocity: tuple[float, float]
     axis: Floats
@@ -41,7 +42,7 @@ class Slice:
 
 
 def slices(inputs: CollisionAvoidanceInputs, tube: Tube) -> list[Slice]:
-    """One slice per velocity asked for; those outside the lattice's box are left out."""
+    """One slice per requested velocity; slices outside the lattice's box are left out."""
     found = []
     axis = np.linspace(tube.lattice.low[0], tube.lattice.high[0], _POINTS)
     for vx, vy in inputs.slices_m_s:
@@ -59,7 +60,7 @@ def slices(inputs: CollisionAvoidanceInputs, tube: Tube) -> list[Slice]:
 
 
 def unsafe_picture(inputs: CollisionAvoidanceInputs, drawn: Sequence[Slice], tube: Tube) -> Artifact:
-    """Where separation cannot be kept, by velocity: proved (filled) and the level set alone (line)."""
+    """Where separation cannot be kept, by velocity: proved (filled) and by the level set alone (line)."""
     drawing = figure(0.6 + 4.3 * max(1, len(drawn)), 5.6)
     panels = drawing.subplots(1, max(1, len(drawn)), sharex=True, sharey=True, squeeze=False)[0]
     reach = max((_extent(one) for one in drawn), default=1.0)
@@ -67,7 +68,7 @@ def unsafe_picture(inputs: CollisionAvoidanceInputs, drawn: Sequence[Slice], tub
         x = one.axis
         if one.above is not None and one.below is not None:
             state = np.where(one.above <= 0.0, 2.0, np.where(one.below > 0.0, 0.0, 1.0))
-            # Cells, not contours: between lost and safe there is no third kind to draw.
+            # Cells, not contours: no values lie between lost and safe.
             shades = ListedColormap(["white", OPEN, LOST])
             axes.pcolormesh(x, x, state.T, cmap=shades, vmin=0.0, vmax=2.0, alpha=0.55, shading="nearest")
         if np.isfinite(one.raw).all() and one.raw.min() < 0.0 < one.raw.max():
@@ -104,14 +105,14 @@ def unsafe_picture(inputs: CollisionAvoidanceInputs, drawn: Sequence[Slice], tub
 
 
 def _extent(one: Slice) -> float:
-    """Half-width of a picture that shows all of what is not safe."""
+    """Half-width of a picture that shows the whole region that is not safe."""
     unsafe = one.raw <= 0.0 if one.above is None else (one.above <= 0.0) | (one.raw <= 0.0)
     far = np.abs(one.axis)[unsafe.any(axis=0) | unsafe.any(axis=1)].max(initial=0.0)
     return float(min(1.5 * far, one.axis[-1]) or one.axis[-1])
 
 
 def capture_picture(inputs: CollisionAvoidanceInputs, taken: Captured) -> Artifact:
-    """Time to the recovery slot by position, at rest but for a radial speed (Fig. 3)."""
+    """Time to the recovery slot by position, with only a radial speed (Fig. 3)."""
     count = len(taken.times)
     drawing = figure(1.6 + 4.0 * count, 4.7)
     panels = drawing.subplots(1, count, sharex=True, sharey=True, squeeze=False)[0]
@@ -160,7 +161,7 @@ def capture_space_picture(inputs: CollisionAvoidanceInputs, game: Game, slot: Sl
             times = arrival_times(game, slot, RECOVERY, states, longest).T
             left = inputs.capture_horizon_s - np.minimum(times, longest)
             if (left > 0.0).any():
-                # A rim of not captured closes the outlines at the picture's edge.
+                # A rim of uncaptured points closes the outlines at the picture's edge.
                 rim = np.pad(left, 1, constant_values=-1e-3)
                 wide = [np.concatenate([[v[0] - 1.0], v, [v[-1] + 1.0]]) for v in (x, y)]
                 level: Any = {"zdir": "z", "offset": speed}

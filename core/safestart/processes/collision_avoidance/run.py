@@ -48,7 +48,7 @@ NOTES = [
 
 
 def game_of(inputs: CollisionAvoidanceInputs, *, in_space: bool = False) -> Game:
-    """The game in SI units; a disk in the plane is a cylinder's section in space, which keeps z decoupled."""
+    """The game in SI units; the planar disk is the section of a cylinder in space, so that z stays decoupled."""
     shape = {"box": "box", "disk": "cylinder" if in_space else "disk"}[inputs.shape]
     numbers = {"box": 3 if in_space else 2, "disk": 1, "cylinder": 2}[shape]
 

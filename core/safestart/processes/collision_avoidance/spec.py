@@ -24,7 +24,7 @@ MAX_NODES = 3_000_000
 
 
 class BoxInput(WireModel):
-    """Half-widths of the box of states that the grid covers; absent ones are sized from the problem."""
+    """Half-widths of the box of states that the grid covers; missing ones follow from the problem."""
 
     position_m: float = Field(450.0, gt=0, le=100_000, description="Half-width of x and y, m.")
     speed_m_s: float = Field(6.0, gt=0, le=100, description="Half-width of the speeds, m/s.")
@@ -56,7 +56,7 @@ class SlotInput(WireModel):
 
 
 class CollisionAvoidanceInputs(WireModel):
-    """Game, grid, recovery, and the encounters to fly; the defaults are the paper's where it has any."""
+    """Game, grid, recovery, and the encounters to fly; the defaults are the paper's if it gives any."""
 
     mean_motion_rad_s: float = Field(1.1e-3, ge=0, le=MAX_MEAN_MOTION, description="Mean motion, rad/s.")
     keep_out_m: float = Field(100.0, gt=0, le=10_000, description="Separation to be kept (d_FCC), m.")
@@ -124,7 +124,7 @@ class CollisionAvoidanceInputs(WireModel):
 
 
 class JudgedRow(WireModel):
-    """What is known of one of the states asked about."""
+    """The verdict on one of the requested states."""
 
     state: list[float]
     answer: Literal["PROVED_UNSAFE", "UNSAFE", "UNDECIDED", "SAFE", "PROVED_SAFE"] = Field(
@@ -153,7 +153,7 @@ class EncounterRow(WireModel):
 
 
 class RequirementRow(WireModel):
-    """One statement about the encounters; HELD, BROKEN, or UNDECIDED where nothing was flown."""
+    """One statement about the encounters; HELD, BROKEN, or UNDECIDED without flights."""
 
     requirement: str
     verdict: Literal["HELD", "BROKEN", "UNDECIDED"]
@@ -165,7 +165,7 @@ class RequirementRow(WireModel):
 
 
 class EscapeRow(WireModel):
-    """What one escape mode comes to: one burn, then free motion."""
+    """The outcome of one escape mode: one burn, then free motion."""
 
     mode: str
     paper_says: str
@@ -183,7 +183,7 @@ class CaptureRow(WireModel):
 
 
 class CollisionAvoidanceOutputs(WireModel):
-    """Verdicts, encounters, and what is known of the sets."""
+    """Verdicts, encounters, and results on the sets."""
 
     failure: str = Field(
         description="Why the value cannot be trusted; empty otherwise. Then nothing is called safe."

@@ -8,16 +8,26 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.patches import Patch
 
+from safestart.closed_form.by_name import ClosedForm
 from safestart.model.scenario import Bools, CorridorShape, Grid
 from safestart.processes.base import Artifact
 from safestart.processes.plotting import draw_corridor, figure, png
 
+_TITLES: dict[ClosedForm, str] = {
+    "certified": "certified start at rest, by thrust",
+    "paper": "start at rest that meets the paper's conditions (not sound), by thrust",
+}
 _MAX_PANELS = 6
 _MAX_LEVELS = 6
 
 
 def coverage_map(
-    shape: CorridorShape, grid: Grid, rates: Sequence[float], thrusts: Sequence[float], masks: Bools
+    name: ClosedForm,
+    shape: CorridorShape,
+    grid: Grid,
+    rates: Sequence[float],
+    thrusts: Sequence[float],
+    masks: Bools,
 ) -> Artifact:
     """Panels of at most six tumble rates, spread over the list; the least thrust is drawn last, on top."""
     panels = _spread(len(rates), _MAX_PANELS)
@@ -38,7 +48,7 @@ def coverage_map(
         panel.set_axis_off()
     drawing.legend(
         handles=[Patch(color=c, label=f"{thrusts[k]:g} m/s²") for c, k in zip(colours, levels, strict=True)],
-        title="certified start at rest, by thrust",
+        title=_TITLES[name],
         loc="outside lower center",
         ncols=len(levels),
         frameon=False,

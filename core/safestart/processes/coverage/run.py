@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from safestart.closed_form.paper import certify_grid
+from safestart.closed_form.by_name import map_of
+from safestart.closed_form.paper import range_limit
 from safestart.model.scenario import Bools, Chaser, Scenario, Target
 from safestart.processes.base import ProcessOutput
 from safestart.processes.coverage.plots import coverage_map
@@ -26,14 +27,17 @@ def run(inputs: CoverageInputs, context: Context) -> ProcessOutput:
     for i, rate in enumerate(rates):
         for k, thrust in enumerate(thrusts):
             target = Target(math.radians(rate), inputs.mean_motion_rad_s)
-            region = certify_grid(Scenario(target, Chaser(thrust), shape), grid)
+            scenario = Scenario(target, Chaser(thrust), shape)
+            region = map_of(inputs.certificate, scenario, grid)
+            paper = region if inputs.certificate == "paper" else map_of("paper", scenario, grid)
             masks[i, k] = region.mask
             cells.append(
                 {
                     "omega_t_deg_s": rate,
                     "a_max_m_s2": thrust,
                     "safe_percent": 100.0 * region.safe_fraction,
-                    "r_sync_m": finite(region.range_limit),
+                    "paper_percent": 100.0 * paper.safe_fraction,
+                    "r_sync_m": finite(range_limit(scenario)),
                 }
             )
             context.step(len(cells), len(rates) * len(thrusts) + 1, f"{rate:g} deg/s, {thrust:g} m/s^2")
@@ -45,5 +49,5 @@ def run(inputs: CoverageInputs, context: Context) -> ProcessOutput:
         "omega_t_deg_s": np.array(rates),
         "a_max_m_s2": np.array(thrusts),
     }
-    picture = coverage_map(shape, grid, rates, thrusts, masks)
+    picture = coverage_map(inputs.certificate, shape, grid, rates, thrusts, masks)
     return ProcessOutput({"cells": cells}, (picture, npz("masks.npz", arrays)))

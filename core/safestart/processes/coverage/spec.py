@@ -9,7 +9,7 @@ from pydantic import Field
 from safestart.model.scenario import MAX_MEAN_MOTION
 from safestart.processes.base import ProcessSpec, WireModel
 from safestart.processes.views import Column, Rows
-from safestart.processes.wire import CorridorInput, GridInput, Thrust, TumbleRate
+from safestart.processes.wire import Certificate, CorridorInput, GridInput, Thrust, TumbleRate
 
 Rates = Annotated[list[TumbleRate], Field(min_length=1, max_length=50)]
 Thrusts = Annotated[list[Thrust], Field(min_length=1, max_length=50)]
@@ -23,6 +23,7 @@ class CoverageInputs(WireModel):
     grid: GridInput = Field(default_factory=lambda: GridInput(nx=401, ny=401, y_max_m=150.0))
     mean_motion_rad_s: float = Field(1.1e-3, ge=0, le=MAX_MEAN_MOTION, description="Mean motion, rad/s.")
     corridor: CorridorInput = Field(default_factory=CorridorInput)
+    certificate: Certificate = "certified"
 
 
 class CoverageCell(WireModel):
@@ -31,7 +32,10 @@ class CoverageCell(WireModel):
     omega_t_deg_s: float
     a_max_m_s2: float
     safe_percent: float = Field(description="Certified share of the corridor, percent.")
-    r_sync_m: float | None
+    paper_percent: float = Field(
+        description="Share by the paper's conditions, which are not sound, percent: Table 1."
+    )
+    r_sync_m: float | None = Field(description="The paper's synchronization range limit, m.")
 
 
 class CoverageOutputs(WireModel):
@@ -55,7 +59,8 @@ SPEC = ProcessSpec(
                 Column("tumble rate [deg/s]", "omega_t_deg_s"),
                 Column("thrust [m/s²]", "a_max_m_s2"),
                 Column("certified [%]", "safe_percent"),
-                Column("synchronization radius [m]", "r_sync_m"),
+                Column("by the paper's conditions, not sound [%]", "paper_percent"),
+                Column("synchronization radius of the paper [m]", "r_sync_m"),
             ),
         ),
     ),

@@ -1,4 +1,4 @@
-"""The answer of go-no-go: what a method says of the starts, beside the paper's conditions there, as documents."""
+"""The answer of go-no-go as documents: a method's verdicts on the starts beside the paper's conditions."""
 
 from __future__ import annotations
 
@@ -11,7 +11,10 @@ from safestart.processes.wire import NO_SYNC_LIMIT, finite
 
 
 class Verdicts(NamedTuple):
-    """What a method says of S starts, a list of S each; None where the question has no such column."""
+    """A method's results for S starts, each a list of S; None when the question has no such column.
+
+    ``decided_by`` names what decided each start; without it the method itself decided all.
+    """
 
     verdict: list[str]
     margin_m: Sequence[float | None]
@@ -19,10 +22,11 @@ class Verdicts(NamedTuple):
     end_s: list[float | None] | None = None
     examples: list[list[dict[str, Any]]] | None = None
     proof: list[dict[str, Any] | None] | None = None
+    decided_by: list[str | None] | None = None
 
 
 class Answer(NamedTuple):
-    """Question, conditions and verdicts; its two documents are written here and nowhere else."""
+    """Question, conditions and verdicts; only this class writes the two documents."""
 
     inputs: GoNoGoInputs
     conditions: Conditions
@@ -40,6 +44,7 @@ class Answer(NamedTuple):
             "r_sync_reason": NO_SYNC_LIMIT if limit is None else None,
             "faces": list(found.faces),
             "verdict": said.verdict,
+            "decided_by": self.decided_by(),
             "margin_m": said.margin_m,
             "face_margins_m": found.face_margin,
             "range_margin_m": [finite(value) for value in found.range_margin],
@@ -57,6 +62,7 @@ class Answer(NamedTuple):
         limit = finite(found.limit)
         return {
             "verdict": said.verdict[0],
+            "decided_by": self.decided_by()[0],
             "margin_m": said.margin_m[0],
             "range_margin_m": finite(found.range_margin[0]),
             "binding": found.binding[0],
@@ -72,3 +78,10 @@ class Answer(NamedTuple):
             "question": inputs.question,
             "rest": inputs.rest.value,
         }
+
+    def decided_by(self) -> list[str | None]:
+        """What decided each start, None for those that nothing decided."""
+        said = self.verdicts
+        if said.decided_by is not None:
+            return said.decided_by
+        return [None if word == "UNDECIDED" else self.inputs.method for word in said.verdict]

@@ -1,4 +1,4 @@
-"""Atlases for go-no-go: in memory, on the shelf by content key, or built when enough starts ask for it."""
+"""Atlases for go-no-go: from memory, from the cache by content key, or built when enough starts need one."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from safestart.runtime.cache import Shelf
 from safestart.runtime.progress import Context
 
 CUTS_M = (50.0, 150.0, 500.0, 1500.0, 5000.0, MAX_RANGE)
-"""Far ends an atlas may have: few, so that questions about different starts find the same one."""
+"""Possible far ends of an atlas: few, so that questions about different starts share one atlas."""
 _IN_MEMORY = 64
 
 _kept: OrderedDict[str, Atlas] = OrderedDict()
@@ -23,9 +23,9 @@ _lock = threading.Lock()
 
 
 def atlas_for(question: Question, farthest: float, context: Context, *, make: bool) -> Atlas | None:
-    """The atlas that reaches ``farthest`` metres along y; None when there is none and ``make`` is False.
+    """The atlas that reaches ``farthest`` metres along y; None when none exists and ``make`` is False.
 
-    It is looked for on the shelf of ``context``; one that is being made is given up when that says so (``Cancelled``).
+    It is looked up in the cache of ``context``, which can also cancel a construction (``Cancelled``).
     """
     cut = next(
         (c for c in CUTS_M if c >= farthest and c > question.scenario.corridor.hold_radius), CUTS_M[-1]
@@ -56,6 +56,6 @@ def _from(shelf: Shelf, key: str, question: Question, cut: float) -> Atlas | Non
     try:
         atlas = unpack(data)
     except InvalidInput:
-        # What cannot be read is computed again, and so is what answers another question than the key says.
+        # Compute again when the cached file is unreadable or answers another question than its key.
         return None
     return atlas if (atlas.question, atlas.y_max) == (question, cut) else None

@@ -1,4 +1,4 @@
-"""The paper's conditions at every start: what every method's answer shows beside its own verdict."""
+"""The paper's conditions at every start; each method's answer shows them beside its own verdict."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from safestart.processes.go_no_go.spec import GoNoGoInputs
 
 class Conditions(NamedTuple):
     """Faces and range limit (m, inf without one), and over the starts, in metres: smallest margin, margin after erosion
-    by face, range margin, what gives the smallest margin, and the faces that the start itself is outside of.
+    by face, range margin, the binding condition, and the faces that the start itself violates.
     """
 
     faces: tuple[str, ...]
@@ -29,12 +29,12 @@ class Conditions(NamedTuple):
 
 
 def conditions_of(inputs: GoNoGoInputs) -> Conditions:
-    """Conditions at every start; the same bits for a start alone, in plain floats, as among others."""
+    """Conditions at every start; a single start, computed in plain floats, gets the same bits as among others."""
     return _alone(inputs) if len(inputs.states) == 1 else _together(inputs)
 
 
 def points_of(inputs: GoNoGoInputs) -> Floats:
-    """The starts (S, 2) or (S, 3), body frame, m; raises ``InvalidInput`` where planar and spatial ones are mixed."""
+    """The starts (S, 2) or (S, 3), body frame, m; raises ``InvalidInput`` when planar and spatial ones are mixed."""
     spatial = [state.z_m is not None for state in inputs.states]
     if any(spatial) and not all(spatial):
         raise invalid("states", "z_m in every state or in none", f"z_m in {sum(spatial)} of {len(spatial)}")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from safestart.processes.costs import FIRST_S, program_s, region_s
-from safestart.processes.go_no_go.method_registry import METHODS
+from safestart.processes.go_no_go.method_registry import method_of
 from safestart.processes.go_no_go.question_fields import QuestionFields
 
 _CLOSED_FORM_S = 4e-6
@@ -16,7 +16,7 @@ MOST_PROGRAMS = 1000
 
 def cost(inputs: QuestionFields, starts: int) -> float:
     """Seconds of one core, roughly, for so many starts."""
-    if METHODS[inputs.method].at_once:
+    if method_of(inputs.method).at_once:
         return _CLOSED_FORM_S * starts
     horizon = inputs.within_s if inputs.question == "synchronize" else inputs.horizon_s
     one = program_s(horizon) * (_UNCERTAIN if inputs.uncertain or inputs.disturbance_m_s2 else 1.0)

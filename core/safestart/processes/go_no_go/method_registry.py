@@ -1,4 +1,4 @@
-"""The methods by name, as on the wire; one line each. Light: the module of a method is imported when it is asked."""
+"""The methods by wire name; one line each. Light to import: a method's module is imported at its first use."""
 
 from __future__ import annotations
 
@@ -15,49 +15,79 @@ Decide = Callable[..., Any]
 
 @dataclass(frozen=True, slots=True)
 class Method:
-    """A way to answer.
+    """A method to answer.
 
-    ``text`` is what the wire says of it. ``decide`` names the function, ``module:function``, from inputs, the paper's
-    conditions at every start, and a context to :class:`Verdicts`; it raises ``InvalidInput`` for what it does not know.
-    ``proves``: a GO and a NO_GO come with proof documents when asked for. ``at_once``: one start takes microseconds,
-    so that a service may answer it on its event loop.
+    ``text`` describes it on the wire. ``decide`` names the function, ``module:function``, from inputs, the paper's
+    conditions at every start, and a context to :class:`Verdicts`; it raises ``InvalidInput`` for unsupported inputs.
+    ``proves``: GO and NO_GO come with proof documents on request. ``sound``: every GO can be flown. ``at_once``: one
+    start takes microseconds, so that a service may answer it on its event loop. ``first`` names a function that is
+    tried before on a single start, from inputs and conditions to :class:`Verdicts` in microseconds, or None.
     """
 
     name: str
     text: str
     decide: str
     proves: bool = True
+    sound: bool = False
     at_once: bool = False
+    first: str = ""
 
 
 _HERE = "safestart.processes.go_no_go.methods"
 _ALL = (
     Method(
-        "closed_form",
-        "the paper's conditions, at once",
-        f"{_HERE}.closed_form:decide",
+        "certified",
+        "explicit manoeuvres with a proof, at once; GO is for ever, what is not certified is UNDECIDED",
+        f"{_HERE}.certified:decide",
+        proves=False,
+        sound=True,
+        at_once=True,
+    ),
+    Method(
+        "paper",
+        "the conditions of paper 000, at once; NOT SOUND, a GO may be impossible to fly",
+        f"{_HERE}.paper:decide",
         proves=False,
         at_once=True,
     ),
-    Method("exact", "cone programs, proved either way", f"{_HERE}.exact:decide"),
+    Method("exact", "cone programs, proved either way", f"{_HERE}.exact:decide", sound=True),
     Method(
         "auto",
-        "the same verdicts, by an atlas where there is one or where there are many planar starts at rest in LVLH",
+        "certified where that says GO, else an atlas where there is one or where there are many planar starts at rest "
+        "in LVLH, else exact",
         f"{_HERE}.auto:decide",
+        sound=True,
+        first=f"{_HERE}.certified:go_at_once",
     ),
 )
 
 METHODS = {method.name: method for method in _ALL}
-DEFAULT, PROVING = "closed_form", "exact"
-"""The method when none is named, and when a proof is wanted of one that has none."""
+RENAMED = {"closed_form": "paper"}
+"""Deprecated names, still accepted."""
+DEFAULT, PROVING = "auto", "exact"
+"""The default method, and the method for a proof when the named one has none."""
+UNPROVED = tuple(name for name in (*METHODS, *RENAMED) if not METHODS[RENAMED.get(name, name)].sound)
+"""Names of methods whose GO may be impossible to fly."""
 
 if TYPE_CHECKING:
     MethodName = str
 else:
-    MethodName = Literal[tuple(METHODS)]
+    MethodName = Literal[(*METHODS, *RENAMED)]
+
+
+def method_of(name: str) -> Method:
+    """The method called ``name``, by its present or a deprecated name."""
+    return METHODS[RENAMED.get(name, name)]
 
 
 @cache
 def decide_by(name: str) -> Decide:
     """Import and return the function of a method."""
-    return load(METHODS[name].decide)
+    return load(method_of(name).decide)
+
+
+@cache
+def first_of(name: str) -> Decide | None:
+    """Import and return what a method asks of one start before, None where it asks nothing."""
+    first = method_of(name).first
+    return load(first) if first else None

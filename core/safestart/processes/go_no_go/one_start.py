@@ -1,4 +1,4 @@
-"""One start, flat: the question as a query string or a command line asks it, and its answer without arrays."""
+"""One start: the flat question of a query string or a command line, and its answer without arrays."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from safestart.processes.base import WireModel
 from safestart.processes.flat import Flat
 from safestart.processes.go_no_go.method_registry import MethodName
 from safestart.processes.go_no_go.question_fields import QuestionKind
-from safestart.processes.go_no_go.spec import GoNoGoInputs, StateInput
+from safestart.processes.go_no_go.spec import DECIDED_BY, GoNoGoInputs, StateInput
 from safestart.processes.go_no_go.uncertainty import Member
 from safestart.processes.wire import CorridorInput
 
@@ -22,16 +22,23 @@ class GoNoGoAnswer(WireModel):
     """The verdict on one start, with every margin it rests on."""
 
     verdict: Literal["GO", "NO_GO", "UNDECIDED"]
+    decided_by: str | None = Field(description=DECIDED_BY)
     margin_m: float | None = Field(
-        description="Closed form: smallest margin, m; GO needs it positive. Exact: the proved bound."
+        description="certified, exact, atlas: the proved bound, m. paper: smallest margin, m; its GO needs it positive."
     )
-    range_margin_m: float | None = Field(description="r_sync minus range, m; null without a limit.")
-    binding: str = Field(description="What gives the smallest margin: a face or 'range'.")
+    range_margin_m: float | None = Field(
+        description="The paper's conditions (not sound): r_sync minus range, m; null without a limit."
+    )
+    binding: str = Field(
+        description="The paper's conditions: what gives the smallest margin, a face or 'range'."
+    )
     violated_faces: list[str] = Field(
         description="Faces of the corridor that the start itself is outside of."
     )
     reason: str = Field(description="The verdict in a sentence.")
-    face_margins_m: dict[str, float] = Field(description="Margin after erosion by face, m.")
+    face_margins_m: dict[str, float] = Field(
+        description="The paper's conditions (not sound): margin after erosion by face, m."
+    )
     end_s: float | None = Field(
         None, description="When the flight of a GO is at rest in the hold ball (synchronize), s."
     )
@@ -44,9 +51,11 @@ class GoNoGoAnswer(WireModel):
     )
     proof_url: str | None = Field(
         None,
-        description="Where a service gives the proof document alone; null for closed_form and UNDECIDED.",
+        description="Where a service gives the exact answer's proof document alone; null for paper and UNDECIDED.",
     )
-    r_sync_m: float | None = Field(description="Synchronization range limit, m; null when there is none.")
+    r_sync_m: float | None = Field(
+        description="The paper's synchronization range limit, m; null when there is none."
+    )
     r_sync_reason: str | None = Field(description="Why r_sync_m is null.")
     method: MethodName
     question: QuestionKind

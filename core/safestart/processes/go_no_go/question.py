@@ -1,4 +1,4 @@
-"""The exact question that a request poses, and its answer in a sentence."""
+"""The exact question of a request, and its answer in a sentence."""
 
 from __future__ import annotations
 

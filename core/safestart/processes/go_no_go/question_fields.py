@@ -1,4 +1,4 @@
-"""What may be asked of one start beyond the closed form: the exact questions, as they appear on the wire."""
+"""The exact questions about one start, beyond the closed form, as they appear on the wire."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from safestart.model.scenario import MAX_RANGE
-from safestart.processes.go_no_go.method_registry import DEFAULT, METHODS, MethodName
+from safestart.processes.go_no_go.method_registry import DEFAULT, METHODS, RENAMED, MethodName
 from safestart.processes.go_no_go.uncertainty import HalfWidths
 from safestart.processes.wire import Horizon
 
@@ -15,10 +15,16 @@ QuestionKind = Literal["stay", "synchronize"]
 
 
 class QuestionFields(HalfWidths):
-    """Method and exact question; all but the method is for the methods that prove."""
+    """Method and exact question; only the proving methods accept fields other than the method."""
 
     method: MethodName = Field(
-        DEFAULT, description=" ".join(f"{method.name}: {method.text}." for method in METHODS.values())
+        DEFAULT,
+        description=" ".join(
+            [
+                *(f"{method.name}: {method.text}." for method in METHODS.values()),
+                *(f"{old}: deprecated name of {new}." for old, new in RENAMED.items()),
+            ]
+        ),
     )
     question: QuestionKind = Field(
         "stay",

@@ -1,11 +1,11 @@
-"""Run go-no-go: the paper's conditions at every start, and the verdicts of the method asked for."""
+"""Run go-no-go: the verdicts of the requested method, and the paper's conditions at every start beside them."""
 
 from __future__ import annotations
 
 from safestart.processes.base import ProcessOutput
 from safestart.processes.go_no_go.answer import Answer
 from safestart.processes.go_no_go.conditions import conditions_of
-from safestart.processes.go_no_go.method_registry import decide_by
+from safestart.processes.go_no_go.method_registry import decide_by, first_of, method_of
 from safestart.processes.go_no_go.spec import GoNoGoInputs
 from safestart.runtime.progress import Context
 
@@ -17,5 +17,22 @@ def run(inputs: GoNoGoInputs, context: Context) -> ProcessOutput:
 
 def answer(inputs: GoNoGoInputs, context: Context) -> Answer:
     """The answer, for one start or many."""
+    if len(inputs.states) == 1:
+        found = at_once(inputs, context)
+        if found is not None:
+            return found
     conditions = conditions_of(inputs)
     return Answer(inputs, conditions, decide_by(inputs.method)(inputs, conditions, context))
+
+
+def at_once(inputs: GoNoGoInputs, context: Context) -> Answer | None:
+    """The answer on one start where it takes microseconds; None where it takes longer."""
+    if method_of(inputs.method).at_once:
+        conditions = conditions_of(inputs)
+        return Answer(inputs, conditions, decide_by(inputs.method)(inputs, conditions, context))
+    first = first_of(inputs.method)
+    if first is None:
+        return None
+    conditions = conditions_of(inputs)
+    verdicts = first(inputs, conditions)
+    return None if verdicts is None else Answer(inputs, conditions, verdicts)

@@ -10,13 +10,17 @@ from pydantic.dataclasses import dataclass
 from safestart.model.scenario import MAX_RANGE, Rest
 from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.go_no_go.cost import cost
-from safestart.processes.go_no_go.method_registry import MethodName
+from safestart.processes.go_no_go.method_registry import UNPROVED, MethodName
 from safestart.processes.go_no_go.question_fields import QuestionFields, QuestionKind
 from safestart.processes.go_no_go.uncertainty import Member
 from safestart.processes.views import Column, Facts, Findings
 from safestart.processes.wire import ScenarioInput
 
 MAX_STATES = 100_000
+DECIDED_BY = (
+    "What decided: certified (the theorem of docs/theory/certified.md: for ever), exact or atlas (proved for "
+    "horizon_s), families (half-widths), tube (disturbance), paper (not sound); null when UNDECIDED."
+)
 
 
 # A dataclass with slots: 100 000 of them take a quarter of the memory of models.
@@ -46,19 +50,27 @@ class GoNoGoOutputs(WireModel):
     method: MethodName
     question: QuestionKind
     rest: Rest
-    r_sync_m: float | None = Field(description="Synchronization range limit, m; null when there is none.")
+    r_sync_m: float | None = Field(
+        description="The paper's synchronization range limit, m; null when there is none."
+    )
     r_sync_reason: str | None = Field(None, description="Why r_sync_m is null.")
     faces: list[str] = Field(description="Names of the corridor's faces, in the order of face_margins_m.")
     verdict: list[Literal["GO", "NO_GO", "UNDECIDED"]]
+    decided_by: list[str | None] = Field(description=DECIDED_BY)
     margin_m: list[float | None] = Field(
-        description="closed_form: smallest margin of each state, m; GO needs it positive. exact, auto: proved bound on "
-        "the margin (distance to every face; limits in metres, see docs), from below for GO, from above for NO_GO."
+        description="certified, exact, atlas: proved bound on the margin (distance to every face; limits in metres, "
+        "see docs), from below for GO, from above for NO_GO. paper: smallest margin of each state, m; its GO needs it "
+        "positive."
     )
     face_margins_m: list[list[float]] = Field(
-        description="Closed form: margin after erosion per state and face, m."
+        description="The paper's conditions (not sound): margin after erosion per state and face, m."
     )
-    range_margin_m: list[float | None] = Field(description="r_sync minus range, m; null without a limit.")
-    binding: list[str] = Field(description="What gives the smallest margin: a face or 'range'.")
+    range_margin_m: list[float | None] = Field(
+        description="The paper's conditions: r_sync minus range, m; null without a limit."
+    )
+    binding: list[str] = Field(
+        description="The paper's conditions: what gives the smallest margin, a face or 'range'."
+    )
     violated_faces: list[list[str]] = Field(
         description="Faces of the corridor that the start itself is outside of."
     )
@@ -81,9 +93,9 @@ SPEC = ProcessSpec(
     id="go-no-go",
     title="Go/no-go for starts at rest",
     description=(
-        "Answers at once, by the paper's closed form (directional erosion and synchronization range), whether a "
-        "chaser at rest may start its approach. NO_GO means not certified. GO is no proof: a sliver of certified "
-        "starts, about 3 m wide next to the range limit, cannot stay in the corridor. Methods exact and auto prove."
+        "May a chaser at rest start its approach? No GO without a proof: by default a certificate in closed form "
+        "answers at once where it says GO, for ever, and the exact answer or an atlas decides the others. The paper's "
+        "conditions (method paper) are not sound: their GO may be impossible to fly."
     ),
     inputs=GoNoGoInputs,
     outputs=GoNoGoOutputs,
@@ -95,7 +107,15 @@ SPEC = ProcessSpec(
         Table(
             "states",
             (
-                *("verdict", "margin_m", "face_margins_m", "range_margin_m", "binding", "violated_faces"),
+                *(
+                    "verdict",
+                    "decided_by",
+                    "margin_m",
+                    "face_margins_m",
+                    "range_margin_m",
+                    "binding",
+                    "violated_faces",
+                ),
                 *("reason", "end_s"),
             ),
         ),
@@ -106,21 +126,22 @@ SPEC = ProcessSpec(
             "states",
             word="verdict",
             columns=(
+                Column("decided by", "decided_by"),
                 Column("margin [m]", "margin_m"),
                 Column("why", "reason"),
-                Column("binding", "binding"),
+                Column("binding in the paper's conditions", "binding"),
                 Column("faces violated at the start", "violated_faces"),
                 Column("at rest after [s]", "end_s"),
             ),
             basis="method",
-            unproved=("closed_form",),
+            unproved=UNPROVED,
         ),
         Facts(
             (
                 Column("Method", "method"),
                 Column("Question", "question"),
                 Column("At rest in", "rest"),
-                Column("Synchronization radius [m]", "r_sync_m"),
+                Column("Synchronization radius of the paper [m]", "r_sync_m"),
                 Column("Why there is none", "r_sync_reason"),
                 Column("Faces", "faces"),
             )

@@ -1,4 +1,4 @@
-"""What is uncertain about a question, as it appears on the wire: half-widths of intervals and of the start box."""
+"""The uncertainty of a question, as it appears on the wire: half-widths of intervals and of the start box."""
 
 from __future__ import annotations
 

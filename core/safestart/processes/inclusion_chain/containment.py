@@ -1,4 +1,4 @@
-"""From which horizon on every certified start is in another set; and the certified starts that cannot stay at all."""
+"""The horizon from which every certified start is in another set, and the certified starts that cannot stay."""
 
 from __future__ import annotations
 
@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from safestart.atlas.atlas import Atlas
 from safestart.atlas.survey import build
-from safestart.closed_form.paper import certify_grid
+from safestart.closed_form.by_name import ClosedForm, map_of
 from safestart.engines.exact import containment_horizon
 from safestart.exact.answer import Verdict
 from safestart.exact.decide import decide
@@ -19,13 +20,20 @@ from safestart.processes.wire import DT_S
 from safestart.runtime.progress import Context
 
 _FINE = 401
+FORMS: dict[str, ClosedForm] = {"certified": "certified", "analytical": "paper"}
+"""Closed forms by the name of their set."""
 
 
-def in_synchronize(inputs: ChainInputs, starts: Floats, context: Context) -> dict[str, Any]:
-    """Smallest horizon at which `synchronize` is GO for every start (P, 2); it may end at any time, so the set grows.
+def fine_atlas(inputs: ChainInputs) -> Atlas:
+    """Who can stay for the horizon, for :func:`sliver`."""
+    return build(question_of("stay", inputs), inputs.grid.y_max_m)
 
-    Each start is asked at the horizon that the ones before it needed, and only one that fails there is bisected; the
-    farthest go first, since they need the longest.
+
+def in_synchronize(inputs: ChainInputs, inner: str, starts: Floats, context: Context) -> dict[str, Any]:
+    """Smallest horizon at which `synchronize` is GO for every start (P, 2); its end is free, so the set grows.
+
+    Each start is tried at the horizon that the earlier ones needed and bisected only if it fails there; the farthest
+    starts come first, as they need the longest.
     """
     last = round(inputs.containment_up_to_s / DT_S)
     ordered = starts[np.argsort(-np.hypot(starts[:, 0], starts[:, 1]), kind="stable")]
@@ -44,6 +52,7 @@ def in_synchronize(inputs: ChainInputs, starts: Floats, context: Context) -> dic
     shown = never[0] if never else decides
     contained = len(ordered) > 0 and not never
     return {
+        "inner": inner,
         "outer": "synchronize",
         "horizon_s": needed * DT_S if contained else None,
         "up_to_s": inputs.containment_up_to_s,
@@ -53,13 +62,14 @@ def in_synchronize(inputs: ChainInputs, starts: Floats, context: Context) -> dic
     }
 
 
-def in_exact_position(inputs: ChainInputs, starts: Floats) -> dict[str, Any]:
+def in_exact_position(inputs: ChainInputs, inner: str, starts: Floats) -> dict[str, Any]:
     """First horizon from ``horizon_s`` on at which the exact fixed-time position set holds every start."""
     bound = inputs.containment_up_to_s
     found = None
     if len(starts) and bound >= inputs.horizon_s:
         found = containment_horizon(inputs.scenario(), starts, dt=DT_S, bound=bound, start=inputs.horizon_s)
     return {
+        "inner": inner,
         "outer": "exact_position",
         "horizon_s": found,
         "up_to_s": bound,
@@ -69,17 +79,18 @@ def in_exact_position(inputs: ChainInputs, starts: Floats) -> dict[str, Any]:
     }
 
 
-def sliver(inputs: ChainInputs) -> dict[str, Any]:
-    """Starts of a 401 x 401 grid that the closed form certifies and an atlas proves unable to stay for the horizon."""
+def sliver(inputs: ChainInputs, inner: str, atlas: Atlas) -> dict[str, Any]:
+    """Starts of a 401 x 401 grid that a closed form certifies and an atlas proves unable to stay for the horizon."""
     scenario = inputs.scenario()
     grid = Grid(_FINE, _FINE, inputs.grid.y_max_m)
-    mask = certify_grid(scenario, grid).mask
+    mask = map_of(FORMS[inner], scenario, grid).mask
     starts = grid.points(scenario.corridor)[mask]
     question = question_of("stay", inputs)
-    upper = build(question, grid.y_max).bounds(starts)[1] if len(starts) else np.empty(0)
+    upper = atlas.bounds(starts)[1] if len(starts) else np.empty(0)
     gone = upper < 0.0
     worst = starts[int(np.argmin(upper))] if gone.any() else None
     return {
+        "inner": inner,
         "certified": len(starts),
         "cannot_stay": int(gone.sum()),
         **_place(worst),

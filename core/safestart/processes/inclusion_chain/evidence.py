@@ -1,4 +1,4 @@
-"""Where one set is not inside another: shares, the worst cell of each pair, and what proves it."""
+"""Where one set is not inside another: shares, the worst cell of each pair, and the proof."""
 
 from __future__ import annotations
 
@@ -19,8 +19,9 @@ from safestart.processes.wire import finite
 
 _IN = {
     "tube": "a plan keeps {:.2f} m to every face of the tightened corridor",
-    "analytical_tube": "certified in the tightened scenario by {:.2f} m",
-    "analytical": "certified by the closed form with {:.2f} m",
+    "analytical_tube": "meets the paper's conditions in the tightened scenario by {:.2f} m",
+    "certified": "a known manoeuvre stays for ever with {:.2f} m to every face",
+    "analytical": "meets the paper's conditions, which are not sound, by {:.2f} m",
     "synchronize": "a thrust history reaches the hold point co-rotating with {:.2f} m to spare",
     "stay": "a thrust history stays with {:.2f} m to every face",
     "hj_match": "value function {:.2f} m inside",
@@ -29,8 +30,9 @@ _IN = {
 }
 _OUT = {
     "tube": "no plan fits the tube: proved {:.2f} m short",
-    "analytical_tube": "not certified in the tightened scenario: {:.2f} m short",
-    "analytical": "not certified: {:.2f} m short, which proves nothing",
+    "analytical_tube": "misses the paper's conditions in the tightened scenario: {:.2f} m short",
+    "certified": "not certified: {:.2f} m short, which proves nothing",
+    "analytical": "misses the paper's conditions: {:.2f} m short, which proves nothing",
     "synchronize": "no thrust history arrives co-rotating in time: proved {:.2f} m short",
     "stay": "no thrust history stays: proved {:.2f} m outside a face",
     "hj_match": "value function {:.2f} m outside, an error of unknown sign",
@@ -40,20 +42,19 @@ _OUT = {
 
 
 def pairs(regions: Mapping[str, Region]) -> dict[str, dict[str, float | None]]:
-    """[inner][outer]: share of the inner cells that are out of the outer set; None for empty or failed sets."""
+    """[inner][outer]: share of the inner cells outside the outer set; None for empty or failed sets."""
     return {a: {b: fraction(one, other) for b, other in regions.items()} for a, one in regions.items()}
 
 
 def fraction(inner: Region, outer: Region) -> float | None:
-    """Cells known in the inner and known out of the outer set, as a share of the inner; undecided cells count as no
-    violation."""
+    """Share of the inner set's cells that are known to be outside the outer set; undecided cells do not count."""
     if inner.code is not ResultCode.OK or outer.code is not ResultCode.OK:
         return None
     return ratio(int((inner.inside & outer.outside).sum()), int(inner.inside.sum()))
 
 
 def counter_example(inner: Region, outer: Region, points: Floats) -> dict[str, Any] | None:
-    """The cell of the inner set farthest out of the outer one, both margins, a proof; None where there is none."""
+    """The cell of the inner set farthest outside the outer one, both margins, a proof; None without such a cell."""
     cells = inner.inside & outer.outside
     if not cells.any():
         return None

@@ -1,4 +1,4 @@
-"""What a reader of a chain must know to read its table rightly."""
+"""Notes that a reader needs to interpret a chain's table."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from safestart.processes.inclusion_chain.spec import ChainInputs
 
 
 def notes(inputs: ChainInputs, regions: Mapping[str, Region], document: Mapping[str, Any]) -> list[str]:
-    """Sentences about the sets, drawn from the result itself."""
+    """Sentences about the sets, derived from the result."""
     out = []
     for link in document["chain"]:
         share = link["violation_fraction"]
@@ -24,8 +24,8 @@ def notes(inputs: ChainInputs, regions: Mapping[str, Region], document: Mapping[
             )
     if "tube" in regions:
         out.append(
-            "tube asks to stay for the horizon against every disturbance and is no subset of the closed form, which "
-            "also asks to match the rotation; analytical_tube is the closed form of the tightened scenario and is one."
+            "tube asks to stay for the horizon against every disturbance and is no subset of S_ana, which also "
+            "asks to match the rotation; analytical_tube is S_ana of the tightened scenario and is one."
         )
     if "hj_position" in regions:
         out.append(
@@ -39,18 +39,24 @@ def notes(inputs: ChainInputs, regions: Mapping[str, Region], document: Mapping[
         )
     for entry in document["horizon_contained_s"]:
         if entry["horizon_s"] is not None:
-            out.append(f"Every certified start is in {entry['outer']} at {entry['horizon_s']:g} s.")
+            out.append(f"Every start of {entry['inner']} is in {entry['outer']} at {entry['horizon_s']:g} s.")
         elif entry["cells_never"]:
             out.append(
-                f"{entry['cells_never']} certified starts are not in {entry['outer']} at {entry['up_to_s']:g} s either."
+                f"{entry['cells_never']} starts of {entry['inner']} are not in {entry['outer']} "
+                f"at {entry['up_to_s']:g} s either."
             )
-    thin = document["sliver"]
-    if thin and thin["cannot_stay"]:
-        out.append(
-            f"Of {thin['certified']} certified starts of a fine grid {thin['cannot_stay']} are proved unable to stay "
-            f"{inputs.horizon_s:g} s: the closed form is not sound next to its range limit."
-        )
+    for thin in document["slivers"]:
+        if thin["inner"] == "analytical" and thin["cannot_stay"]:
+            out.append(
+                f"Of {thin['certified']} starts of a fine grid that meet the paper's conditions "
+                f"{thin['cannot_stay']} are proved unable to stay {inputs.horizon_s:g} s: the conditions are not sound."
+            )
+        elif thin["inner"] == "certified":
+            out.append(
+                f"Of {thin['certified']} certified starts of a fine grid {thin['cannot_stay']} are proved unable to "
+                f"stay {inputs.horizon_s:g} s."
+            )
     out.extend(
         f"{r.name}: {r.code.value}, {r.message}" for r in regions.values() if r.code is not ResultCode.OK
     )
-    return out
+    return list(dict.fromkeys(out))

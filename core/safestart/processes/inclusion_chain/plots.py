@@ -17,31 +17,33 @@ from safestart.engines.spec import LineStyle
 from safestart.model.scenario import Floats
 from safestart.processes.base import Artifact
 from safestart.processes.inclusion_chain.regions import Region
-from safestart.processes.inclusion_chain.spec import CHAIN, ChainInputs
+from safestart.processes.inclusion_chain.spec import CHAIN, PAPER_CHAIN, ChainInputs
 from safestart.processes.plotting import draw_corridor, figure, png
 
 _LABELS = {
     "tube": "S_tube (stays, disturbed)",
-    "analytical_tube": "closed form, tightened",
-    "analytical": "S_ana (closed form)",
+    "analytical_tube": "paper's, tightened",
+    "certified": "S_certified (sound)",
+    "analytical": "S_ana (paper's, not sound)",
     "synchronize": "S_sync (reach and co-rotate)",
     "stay": "stays, undisturbed",
     "hj_match": "HJ, velocity-aware",
     "hj_position": "S_HJpos (tube)",
     "exact_position": "position, exact at T",
 }
-# Okabe and Ito: told apart without colour vision, and by the line.
+# Colours of Okabe and Ito, distinct for colour-blind readers; line styles differ too.
 _STYLES: dict[str, tuple[str, LineStyle]] = {
     "hj_position": ("#999999", "-"),
     "exact_position": (engine_spec("exact").colour, ":"),
     "stay": ("#CC79A7", "--"),
     "tube": ("#0072B2", "-"),
     "hj_match": (engine_spec("hamilton_jacobi").colour, "-."),
-    "synchronize": ("#E69F00", "-"),
-    "analytical_tube": ("#009E73", ":"),
-    "analytical": (engine_spec("analytical").colour, "-"),
+    "synchronize": ("#882255", "-"),
+    "analytical_tube": (engine_spec("analytical").colour, ":"),
+    "analytical": (engine_spec("analytical").colour, "--"),
+    "certified": (engine_spec("certified").colour, "-"),
 }
-_FILLED = ("hj_position", "tube", "synchronize", "analytical")
+_FILLED = ("hj_position", "tube", "synchronize", "certified")
 _FULL = LinearSegmentedColormap.from_list("violation", ["#FFFFFF", "#FBE3CF", "#E68A45", "#B04A00"])
 
 
@@ -60,7 +62,7 @@ def chain_map(inputs: ChainInputs, regions: Mapping[str, Region], document: Mapp
             continue
         cells = int(region.inside.sum())
         label = f"{_LABELS[name]}: {cells} cells"
-        width = 2.0 if name in CHAIN else 1.4
+        width = 2.0 if name in CHAIN + PAPER_CHAIN else 1.4
         if cells:
             level = _level(region)
             if name in _FILLED:

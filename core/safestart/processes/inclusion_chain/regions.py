@@ -1,4 +1,4 @@
-"""The sets of the chain on one grid: who is in, who is out, and by how much."""
+"""The sets of the chain on one grid: cells inside, cells outside, and their margins."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from safestart.atlas.survey import build
-from safestart.closed_form.paper import certify_grid
+from safestart.closed_form.by_name import ClosedForm, map_of
 from safestart.disturbance.tube import Disturbance, Tube, tube_of
 from safestart.engines.base import Engine, Problem, ResultCode
 from safestart.engines.exact import Exact
@@ -29,8 +29,8 @@ from safestart.runtime.progress import Context
 class Region:
     """A set on the grid, arrays (ny, nx); cells neither ``inside`` nor ``outside`` are undecided.
 
-    ``margin`` in metres, NaN where unknown: for questions the proved bound the verdict rests on. ``question`` decides
-    single starts with a proof. Unless ``code`` is OK both masks are empty.
+    ``margin`` in metres, NaN where unknown; for questions it is the proved bound behind the verdict. ``question``
+    decides single starts with a proof. Unless ``code`` is OK both masks are empty.
     """
 
     name: str
@@ -70,11 +70,14 @@ def _failed(name: str, shape: tuple[int, ...], code: ResultCode, message: str, *
 
 def _analytical(name: str, inputs: ChainInputs, corridor: Bools, context: Context) -> Region:
     context.step(0, 1)
-    return _closed_form(name, inputs.scenario(), inputs, corridor)
+    form: ClosedForm = "certified" if name == "certified" else "paper"
+    return _closed_form(name, form, inputs.scenario(), inputs, corridor)
 
 
-def _closed_form(name: str, scenario: Scenario, inputs: ChainInputs, corridor: Bools) -> Region:
-    found = certify_grid(scenario, inputs.grid.grid())
+def _closed_form(
+    name: str, form: ClosedForm, scenario: Scenario, inputs: ChainInputs, corridor: Bools
+) -> Region:
+    found = map_of(form, scenario, inputs.grid.grid())
     inside = found.mask & corridor
     return Region(name, inside, corridor & ~inside, found.margin, 0.0)
 
@@ -92,12 +95,12 @@ def _tube(inputs: ChainInputs) -> tuple[Tube, dict[str, Any]]:
 def _tightened(name: str, inputs: ChainInputs, corridor: Bools, context: Context) -> Region:
     tube, detail = _tube(inputs)
     if tube.question is None:
-        # Nothing is left for a plan: the set is empty, and known to be.
+        # The tube leaves no room for a plan, so the set is known to be empty.
         none = np.zeros(corridor.shape, dtype=np.bool_)
         margin = np.full(corridor.shape, np.nan)
         return Region(name, none, corridor, margin, 0.0, ResultCode.OK, tube.reason, None, detail)
     if name == "analytical_tube":
-        found = _closed_form(name, tube.question.scenario, inputs, corridor)
+        found = _closed_form(name, "paper", tube.question.scenario, inputs, corridor)
         return Region(name, found.inside, found.outside, found.margin, 0.0, detail=detail)
     return _by_atlas(name, tube.question, inputs, corridor, context, detail)
 
@@ -147,7 +150,7 @@ def _one_by_one(
     context: Context,
     detail: dict[str, Any],
 ) -> Region:
-    """Decide what is open; ``inside``, ``outside`` and ``margin`` are filled in place."""
+    """Decide the open cells; fills ``inside``, ``outside`` and ``margin`` in place."""
     left = np.argwhere(corridor & ~inside & ~outside)
     reasons: dict[str, int] = {}
     for k, (row, column) in enumerate(left.tolist()):
@@ -187,6 +190,7 @@ def _engine(name: str, inputs: ChainInputs, corridor: Bools, context: Context) -
 _SETS: dict[str, Callable[[str, ChainInputs, Bools, Context], Region]] = {
     "tube": _tightened,
     "analytical_tube": _tightened,
+    "certified": _analytical,
     "analytical": _analytical,
     "synchronize": _synchronize,
     "stay": _stay,

@@ -1,4 +1,4 @@
-"""Run inclusion-chain: compute the sets, compare every pair, show what contradicts the chain."""
+"""Run inclusion-chain: compute the sets, compare every pair, show where they contradict the chain."""
 
 from __future__ import annotations
 
@@ -12,22 +12,28 @@ from safestart.constraints.corridor import corridor_of
 from safestart.engines.base import ResultCode
 from safestart.model.scenario import Bools, Floats
 from safestart.processes.base import Artifact, ProcessOutput
-from safestart.processes.inclusion_chain.containment import in_exact_position, in_synchronize, sliver
+from safestart.processes.inclusion_chain.containment import (
+    FORMS,
+    fine_atlas,
+    in_exact_position,
+    in_synchronize,
+    sliver,
+)
 from safestart.processes.inclusion_chain.evidence import counter_example, fraction, pairs
 from safestart.processes.inclusion_chain.notes import notes
 from safestart.processes.inclusion_chain.plots import chain_map, violation_table
 from safestart.processes.inclusion_chain.regions import Region, region_of
-from safestart.processes.inclusion_chain.spec import CHAIN, ChainInputs
+from safestart.processes.inclusion_chain.spec import CHAIN, PAPER_CHAIN, ChainInputs
 from safestart.processes.plotting import npz
 from safestart.runtime.progress import Context
 
-# Shares of the progress bar, roughly the share of the time.
+# Shares of the progress bar, roughly those of the time.
 _WEIGHTS = {"hj_match": 20.0, "hj_position": 20.0, "synchronize": 40.0}
 _CONTAINMENT, _FINISH = 20.0, 4.0
 
 
 def run(inputs: ChainInputs, context: Context) -> ProcessOutput:
-    """Sets, table, counter-examples, containment, pictures. A set that fails keeps its row and has no measures."""
+    """Sets, table, counter-examples, containment, pictures. A failed set keeps its row, without measures."""
     scenario, grid = inputs.scenario(), inputs.grid.grid()
     points = grid.points(scenario.corridor)
     corridor = corridor_of(scenario.corridor).contains(points)
@@ -59,7 +65,7 @@ def run(inputs: ChainInputs, context: Context) -> ProcessOutput:
         "violation_fraction": table,
         "counter_examples": examples,
         "horizon_contained_s": contained,
-        "sliver": thin,
+        "slivers": thin,
     }
     document["notes"] = notes(inputs, regions, document)
     context.step(total - 1.0, total, "pictures")
@@ -68,17 +74,19 @@ def run(inputs: ChainInputs, context: Context) -> ProcessOutput:
 
 def _containment(
     inputs: ChainInputs, regions: Mapping[str, Region], points: Floats, context: Context
-) -> tuple[list[dict[str, Any]], dict[str, Any] | None]:
-    certified = regions.get("analytical")
-    if certified is None:
-        return [], None
-    starts, out = points[certified.inside], []
-    if inputs.containment_up_to_s > 0.0:
+) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
+    forms = [name for name in FORMS if name in regions]
+    out = []
+    for k, name in enumerate(forms if inputs.containment_up_to_s > 0.0 else ()):
+        starts = points[regions[name].inside]
         if "synchronize" in regions:
-            out.append(in_synchronize(inputs, starts, context))
+            out.append(in_synchronize(inputs, name, starts, context.part(k, 1, len(forms), name)))
         if "exact_position" in regions:
-            out.append(in_exact_position(inputs, starts))
-    return out, sliver(inputs)
+            out.append(in_exact_position(inputs, name, starts))
+    if not forms:
+        return out, []
+    atlas = fine_atlas(inputs)
+    return out, [sliver(inputs, name, atlas) for name in forms]
 
 
 def _row(region: Region, corridor: Bools, cell_area: float) -> dict[str, Any]:
@@ -97,15 +105,21 @@ def _row(region: Region, corridor: Bools, cell_area: float) -> dict[str, Any]:
 
 
 def _links(regions: Mapping[str, Region]) -> list[dict[str, Any]]:
-    there = [name for name in CHAIN if name in regions]
+    claimed = {
+        (whose, *link): None
+        for whose, chain in (("ours", CHAIN), ("paper", PAPER_CHAIN))
+        if whose == "ours" or not regions.keys().isdisjoint(("tube", "analytical"))
+        for link in pairwise(name for name in chain if name in regions)
+    }
     return [
         {
+            "whose": whose,
             "inner": inner,
             "outer": outer,
             "violation_fraction": (share := fraction(regions[inner], regions[outer])),
             "cells": None if share is None else int((regions[inner].inside & regions[outer].outside).sum()),
         }
-        for inner, outer in pairwise(there)
+        for whose, inner, outer in claimed
     ]
 
 

@@ -14,6 +14,7 @@ from safestart.processes.wire import DISTINCT, DT_S, LONGEST_S, GridInput, Horiz
 SetName = Literal[
     "tube",
     "analytical_tube",
+    "certified",
     "analytical",
     "synchronize",
     "stay",
@@ -22,8 +23,10 @@ SetName = Literal[
     "exact_position",
 ]
 ALL_SETS: tuple[SetName, ...] = get_args(SetName)
-CHAIN: tuple[SetName, ...] = ("tube", "analytical", "synchronize", "hj_position")
-"""Eq. (12), innermost first."""
+CHAIN: tuple[SetName, ...] = ("certified", "synchronize", "hj_position")
+"""Eq. (12) with the sound certificate in the place of S_ana, innermost first."""
+PAPER_CHAIN: tuple[SetName, ...] = ("tube", "analytical", "synchronize", "hj_position")
+"""Eq. (12) as the paper has it."""
 
 
 class ChainInputs(ScenarioInput):
@@ -78,8 +81,9 @@ class SetRow(WireModel):
 
 
 class ChainLink(WireModel):
-    """One inclusion of eq. (12)."""
+    """One inclusion of eq. (12), with the sound certificate (``whose``: ours) or as printed (paper)."""
 
+    whose: Literal["ours", "paper"]
     inner: SetName
     outer: SetName
     violation_fraction: float | None
@@ -104,8 +108,9 @@ class CounterExample(WireModel):
 
 
 class Containment(WireModel):
-    """From which horizon on the certified set is contained in another."""
+    """From which horizon on a closed form's set is contained in another."""
 
+    inner: SetName
     outer: SetName
     horizon_s: float | None = Field(description="null: not up to up_to_s, or nothing is certified.")
     up_to_s: float
@@ -118,8 +123,9 @@ class Containment(WireModel):
 
 
 class Sliver(WireModel):
-    """Starts of a fine grid that the closed form certifies and of which none can stay, whatever the horizon grid."""
+    """Starts of a fine grid that a closed form certifies, and those of them that cannot stay."""
 
+    inner: SetName
     certified: int
     cannot_stay: int
     x_m: float | None
@@ -141,7 +147,7 @@ class ChainOutputs(WireModel):
     )
     counter_examples: list[CounterExample]
     horizon_contained_s: list[Containment]
-    sliver: Sliver | None
+    slivers: list[Sliver]
     notes: list[str]
 
 
@@ -149,9 +155,10 @@ SPEC = ProcessSpec(
     id="inclusion-chain",
     title="Inclusion chain of the safe-start sets",
     description=(
-        "Computes S_tube, S_ana, S_sync and S_HJpos (paper 000, eq. 12) at one horizon on one grid, with the velocity-"
-        "aware HJ target, and says for every pair which share of the one lies outside the other, with a counter-"
-        "example and, where there is one, its proof; and the horizon at which the certified set is contained."
+        "Computes S_tube, S_ana, S_sync and S_HJpos (paper 000, eq. 12) at one horizon on one grid, the sound "
+        "certificate in the place of S_ana and S_ana, which is not sound, beside it, with the velocity-aware HJ "
+        "target. For every pair: which share of the one lies outside the other, with a counter-example and, where "
+        "there is one, its proof; and the horizon at which the certified set is contained."
     ),
     inputs=ChainInputs,
     outputs=ChainOutputs,
@@ -161,6 +168,7 @@ SPEC = ProcessSpec(
             "The chain of eq. (12)",
             "chain",
             (
+                Column("certificate", "whose"),
                 Column("inner", "inner"),
                 Column("outer", "outer"),
                 Column("share of the inner set outside the outer one", "violation_fraction"),
@@ -182,16 +190,19 @@ SPEC = ProcessSpec(
             ),
             explore=True,
         ),
-        Facts(
+        Rows(
+            "Certified starts of a fine grid that cannot stay",
+            "slivers",
             (
-                Column("Certified starts of the fine grid", "sliver.certified"),
-                Column("of which none can stay", "sliver.cannot_stay"),
-                Column("worst at x [m]", "sliver.x_m"),
-                Column("y [m]", "sliver.y_m"),
-                Column("margin [m]", "sliver.margin_m"),
-                Column("Corridor cells", "corridor_cells"),
-            )
+                Column("certified by", "inner"),
+                Column("starts", "certified"),
+                Column("of which cannot stay", "cannot_stay"),
+                Column("worst at x [m]", "x_m"),
+                Column("y [m]", "y_m"),
+                Column("margin [m]", "margin_m"),
+            ),
         ),
+        Facts((Column("Corridor cells", "corridor_cells"),)),
         Rows(
             "Sets",
             "sets",
@@ -209,6 +220,7 @@ SPEC = ProcessSpec(
             "Horizon from which on the certified set is contained",
             "horizon_contained_s",
             (
+                Column("inner", "inner"),
                 Column("outer", "outer"),
                 Column("horizon [s]", "horizon_s"),
                 Column("looked up to [s]", "up_to_s"),

@@ -1,1 +1,1 @@
-"""The passive-safety process: is the switched rendezvous safe, and until when may it be aborted?"""
+"""The passive-safety process: is the switched rendezvous safe, and until when can it be aborted?"""

@@ -172,7 +172,7 @@ def _contact(axes: Axes, answer: Verification, example: Mapping[str, Any]) -> li
 
 
 def _thrust(axes: Axes, reach: Reach) -> None:
-    """Over the time since the mode began: all that is to be seen is in the first minutes of each."""
+    """Over the time since the mode began, because the thrust changes only in the first minutes of each mode."""
     for name, tube in _named(reach):
         near = name != "mode1"
         times = tube.start + tube.step * np.arange(tube.steps)

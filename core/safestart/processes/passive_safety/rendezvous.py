@@ -1,4 +1,4 @@
-"""What flies, as it appears on the wire: dynamics, gains and guard of the switched rendezvous. Light to import."""
+"""The switched rendezvous as it appears on the wire: dynamics, gains and guard. Light to import."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ TargetBox = Annotated[float, Field(gt=0, le=100, description="Half-width of the 
 
 
 class BrysonInput(WireModel):
-    """Largest values wanted in one mode, of which Bryson's rule makes Q and R."""
+    """Largest desired values in one mode, from which Bryson's rule makes Q and R."""
 
     x_m: float = Field(gt=0, le=1e6, description="Radial position, m.")
     y_m: float = Field(gt=0, le=1e6, description="Along-track position, m.")

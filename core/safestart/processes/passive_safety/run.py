@@ -25,7 +25,7 @@ _UNITS = {
     "velocity": ("m/s", 1.0 / MINUTE),
     "velocity_disc": ("m/s", 1.0 / MINUTE),
 }
-"""Requirement -> unit on the wire, and what one unit of the model is in it."""
+"""Requirement -> unit on the wire, and the size of one model unit in it."""
 
 NOTES = [
     "SAFE is a proof for the chosen model; round-off is included, differences between model and spacecraft are not.",
@@ -51,7 +51,7 @@ def run(inputs: PassiveSafetyInputs, context: Context) -> ProcessOutput:
     base = question_of(inputs)
     windows: list[tuple[float, float] | None] = [(w[0], w[1]) for w in inputs.abort_windows_min] or [None]
     total = len(windows) + 3.0
-    # What runs inside has no measure of its progress; it is asked to stop all the same.
+    # The verifier cannot measure its progress, but it can be asked to stop.
     quiet = Context(cancelled=context.cancelled)
     answers: list[Verification] = []
     for window in windows:

@@ -35,7 +35,7 @@ class SpreadInput(WireModel):
 
 
 class PassiveSafetyInputs(RendezvousInputs):
-    """Starts, horizon, abort windows, the target's box, and what flies."""
+    """Starts, horizon, abort windows, the target's box, and the rendezvous."""
 
     centre: StartInput = Field(default_factory=lambda: StartInput.model_validate({}))
     half_widths: SpreadInput = Field(default_factory=lambda: SpreadInput.model_validate({}))

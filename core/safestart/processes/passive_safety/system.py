@@ -1,4 +1,4 @@
-"""From the wire to the verifier's system: metres and minutes."""
+"""Convert the wire's rendezvous to the verifier's system, in metres and minutes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ MINUTE = 60.0
 
 
 def system_of(inputs: RendezvousInputs) -> System:
-    """What flies."""
+    """The switched system."""
     design = Design(_limits(inputs.mode_1), _limits(inputs.mode_2)) if inputs.gains == "bryson" else None
     return System(Dynamics(inputs.model), design, Guard(inputs.guard))
 

@@ -1,1 +1,1 @@
-"""The safe-abort-map process: from which starts may the switched rendezvous be aborted, and until when?"""
+"""The safe-abort-map process: from which starts can the switched rendezvous be aborted, and until when?"""

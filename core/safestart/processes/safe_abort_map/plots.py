@@ -21,7 +21,7 @@ _STEPS = 12
 
 
 def arrays(document: dict[str, Any]) -> dict[str, Floats]:
-    """Starts (N,) in m and both limits (N,) in min, NaN where there is none."""
+    """Starts (N,) in m and both limits (N,) in min, NaN without a limit."""
     names = ("x_m", "y_m", "safe_abort_until_min", "all_proved_until_min")
     return {name: np.array(document[name], dtype=np.float64) for name in names}
 
@@ -46,7 +46,7 @@ def map_picture(inputs: SafeAbortMapInputs, document: dict[str, Any]) -> Artifac
             norm=BoundaryNorm(levels, _STEPS),
         )
         shown.set_edgecolor("face")
-        shown.set_linewidth(1.0)  # so that a small box is seen
+        shown.set_linewidth(1.0)  # so that a small box stays visible
         place.add_collection(shown, autolim=True)
         frame(place, Guard(inputs.guard))
         place.autoscale_view()
@@ -65,7 +65,7 @@ def map_picture(inputs: SafeAbortMapInputs, document: dict[str, Any]) -> Artifac
 
 
 def _boxes(inputs: SafeAbortMapInputs, document: dict[str, Any]) -> Floats:
-    """Corners (N, 4, 2) of the box of each start: what the proofs are about, and no more."""
+    """Corners (N, 4, 2) of the box of each start, which is all that the proofs cover."""
     half = inputs.half_width_m
     places = np.stack([np.array(document["x_m"]), np.array(document["y_m"])], axis=-1).reshape(-1, 1, 2)
     corners: Floats = places + half * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])

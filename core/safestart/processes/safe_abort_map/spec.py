@@ -26,7 +26,7 @@ class ArcInput(WireModel):
 
 
 class SquareInput(WireModel):
-    """Starts on a grid; those that are not wholly outside the guard are left out of the map."""
+    """Starts on a grid; starts that are not wholly outside the guard are left out of the map."""
 
     x_from_m: float = Field(-1000.0, ge=-2000, le=2000)
     x_to_m: float = Field(1000.0, ge=-2000, le=2000)
@@ -70,7 +70,7 @@ class SafeAbortMapInputs(RendezvousInputs):
 
 
 class SafeAbortMapOutputs(WireModel):
-    """Per start, in the order ring by ring or row by row; null where the start is not wholly outside the guard."""
+    """Per start, ring by ring or row by row; null when the start is not wholly outside the guard."""
 
     x_m: list[float]
     y_m: list[float]

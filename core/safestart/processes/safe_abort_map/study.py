@@ -1,4 +1,4 @@
-"""The starts of a safe-abort map and what is known of each. Light: the service shows what is known so far."""
+"""The starts of a safe-abort map and their outcomes. Light to import: the service shows partial results."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def _linspace(first: float, last: float, count: int) -> list[float]:
 
 
 def study_of(inputs: SafeAbortMapInputs) -> Study:
-    """Both limits of each start (unknown inside the guard), and what ended the proof of its powered flight."""
+    """Both limits of each start (unknown inside the guard), and the reason that ended its proof of powered flight."""
     outcome = [*(Column(name, Kind.NUMBER) for name in LIMITS), Column("reason", Kind.TEXT)]
     tally = Each({"starts": Listed(LIMITS), "reasons": Values("reason")})
     return Study(design_of(inputs), outcome, tally, inputs.starts_per_shard)
@@ -59,7 +59,7 @@ def split(inputs: SafeAbortMapInputs) -> list[dict[str, Any]]:
 
 
 def summary(inputs: SafeAbortMapInputs, documents: Iterable[dict[str, Any]]) -> dict[str, Any]:
-    """What the shards at hand say; starts without an answer are null."""
+    """The result of the given shards; starts without an answer are null."""
     starts = places(inputs)
     total = study_of(inputs).total(documents)
     found = total.said["starts"]

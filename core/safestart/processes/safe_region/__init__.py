@@ -1,1 +1,1 @@
-"""The safe-region process: the exact region of starts between its proved polygons, at once."""
+"""The safe-region process: the exact region of starts between its proved polygons, answered at once."""

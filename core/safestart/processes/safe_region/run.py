@@ -1,4 +1,4 @@
-"""Run safe-region: the atlas of the operating point, cut to the corridor shown."""
+"""Run safe-region: the atlas of the operating point, clipped to the shown corridor."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def run(inputs: SafeRegionInputs, context: Context) -> ProcessOutput:
         raise invalid("y_max_m", f"more than corridor.r_h_m, {shape.hold_radius:g}", inputs.y_max_m)
     question = Question(scenario, DT_S, round(inputs.horizon_s / DT_S))
     atlas = atlas_for(question, inputs.y_max_m, context, make=True)
-    assert atlas is not None  # made where there was none
+    assert atlas is not None  # built if none existed
     corridor = corridor_of(shape)
     half = shape.x0 + shape.c_x * (inputs.y_max_m - shape.hold_radius)
     box = np.array(

@@ -1,4 +1,4 @@
-"""Flying the starts of one scenario with one controller: compiled where that is possible, else one after another."""
+"""Fly the starts of one scenario with one controller: in a compiled loop if possible, else one after another."""
 
 from __future__ import annotations
 
@@ -27,20 +27,20 @@ from safestart.simulation.plant import plant_of
 from safestart.simulation.record import Record
 from safestart.simulation.starts import start_states
 
-# Flights between two looks at a dismissal, some 10 ms.
+# Flights between two checks for a dismissal, some 10 ms.
 CHUNK = 500
 NODES = 6
 
 
 @dataclass(frozen=True, slots=True)
 class Outcome(Record):
-    """M flights without paths; ``verdict`` (M,) is the exact answer where the controller knew it, else UNASKED."""
+    """M flights without paths; ``verdict`` (M,) is the exact answer if the controller knew it, else UNASKED."""
 
     verdict: Verdicts = field(default_factory=lambda: np.empty(0, np.int8))
 
     @classmethod
     def of(cls, flown: Record, verdict: Verdicts) -> Outcome:
-        """The flights with what their controller knew of the starts."""
+        """The flights, with the controller's verdicts on the starts."""
         return cls(
             flown.margin,
             flown.violated_at,
@@ -54,7 +54,7 @@ class Outcome(Record):
 
 
 def gains_of(inputs: SweepInputs) -> Gains:
-    """The preset with the settings that the request changes."""
+    """The preset, with the request's changes."""
     asked = inputs.filter
     changed = {
         "closing_factor": asked.closing_factor,
@@ -67,7 +67,7 @@ def gains_of(inputs: SweepInputs) -> Gains:
 
 
 def truth_from(inputs: SweepInputs) -> Truth:
-    """The flown world's settings."""
+    """The settings of the simulated world."""
     asked = inputs.truth
     return truth_of(
         asked.check,
@@ -151,7 +151,7 @@ def _one_by_one(inputs: SweepInputs, controller: str, cases: Cases, poll: Callab
     for row in range(len(cases.points)):
         flown = fly_one(inputs, controller, cases, row, pilot)
         verdict = start_verdict(flown.paths[0].commands)
-        # A plan made from a noisy state says nothing about the start itself.
+        # A plan from a noisy state proves nothing about the start itself.
         verdicts.append(of(verdict) if verdict is not None and known else UNASKED)
         flights.append(flown)
         poll(row + 1)

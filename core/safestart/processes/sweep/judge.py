@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from safestart.atlas.survey import build
-from safestart.closed_form.paper import certify
+from safestart.closed_form.by_name import ClosedForm, go_of
 from safestart.exact.answer import GUARD, Verdict
 from safestart.exact.decide import decide
 from safestart.exact.question import Question
@@ -13,20 +13,21 @@ from safestart.model.scenario import Floats
 from safestart.processes.sweep.cases import Cases
 from safestart.processes.wire import DT_S
 
-# From here on an atlas, which costs as much as some hundred answers, is the cheaper way to the same verdicts.
+# For at least this many starts an atlas, which costs some hundred answers, gives the same verdicts for less.
 WORTH_AN_ATLAS = 400
 
 GO, NO_GO, UNDECIDED, UNASKED = 1, 0, -1, -2
 Verdicts = np.ndarray[tuple[int], np.dtype[np.int8]]
 
 
-def closed_form(cases: Cases) -> Verdicts:
-    """GO or NO_GO."""
-    return certify(cases.scenario, cases.points).safe.astype(np.int8)
+def closed_form(name: ClosedForm, cases: Cases) -> Verdicts:
+    """GO, or NO_GO for what is not certified."""
+    return go_of(name, cases.scenario, cases.points).astype(np.int8)
 
 
 def exact(cases: Cases, steps: int, most: int) -> Verdicts:
-    """Verdict for the first ``most`` starts; the others are UNASKED. What an atlas leaves open is solved singly."""
+    """Verdict for the first ``most`` starts; the others are UNASKED. Starts that an atlas leaves open are solved
+    singly."""
     question = Question(cases.scenario, DT_S, steps)
     out: Verdicts = np.full(len(cases.points), UNASKED, dtype=np.int8)
     out[:most] = UNDECIDED

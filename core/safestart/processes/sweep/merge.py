@@ -1,4 +1,4 @@
-"""The end of a sweep: sums, records, the worst flights once more with their trajectories, pictures."""
+"""Merge a sweep: sums, records, the worst flights flown again with their trajectories, pictures."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def merge(inputs: SweepInputs, parts: Sequence[Part], context: Context) -> Proce
 
 
 def _path(inputs: SweepInputs, controller: str, case: dict[str, Any]) -> Path:
-    """Fly a case once more, as in its shard."""
+    """Fly a case again, as in its shard."""
     cases = _single(inputs, case)
     path = fly_one(inputs, controller, cases, 0).paths[0]
     return case, path.times, path.seen_from(spin_of(cases.scenario.target))[:, :2]

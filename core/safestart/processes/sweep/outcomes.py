@@ -17,8 +17,9 @@ def table_of(study: Study, cases: Cases, verdicts: dict[str, Verdicts], flown: d
     none, every = np.zeros(count, np.bool_), np.ones(count, np.bool_)
     certified = np.logical_or.reduce([none, *(verdict == GO for verdict in verdicts.values())])
     wrong = none
-    if "closed_form" in verdicts and "exact" in verdicts:
-        wrong = (verdicts["closed_form"] == GO) & (verdicts["exact"] == NO_GO)
+    if "exact" in verdicts:
+        closed = [verdicts[name] == GO for name in ("certified", "paper") if name in verdicts]
+        wrong = np.logical_or.reduce([none, *closed]) & (verdicts["exact"] == NO_GO)
     values = {
         "case": cases.numbers,
         "omega_t_deg_s": np.full(count, cases.omega_t_deg_s),

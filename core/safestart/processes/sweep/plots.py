@@ -16,7 +16,8 @@ from safestart.processes.sweep.spec import SweepInputs
 Path = tuple[dict[str, Any], Floats, Floats]
 """A worst case with the times (T,) and body-frame positions (T, 2) of its flight."""
 NAMES = {
-    "closed_form": "closed form",
+    "certified": "certified",
+    "paper": "paper (not sound)",
     "exact": "exact",
     "filter": "filter",
     "filter_fine": "filter, 0.5 s",

@@ -51,8 +51,8 @@ def _verdicts(
 ) -> dict[str, Verdicts]:
     out: dict[str, Verdicts] = {}
     for certificate in inputs.certificates:
-        if certificate == "closed_form":
-            out[certificate] = judge.closed_form(cases)
+        if certificate != "exact":
+            out[certificate] = judge.closed_form(certificate, cases)
             continue
         known = [outcome.verdict for outcome in flown.values() if (outcome.verdict != UNASKED).all()]
         out[certificate] = known[0] if known else judge.exact(cases, inputs.steps, asked)

@@ -1,4 +1,4 @@
-"""Shards of a sweep: runs of cases that depend on the inputs alone. Light: the service counts them."""
+"""Shards of a sweep: runs of cases that depend only on the inputs. Light to import: the service counts them."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from safestart.processes.sweep.spec import SweepInputs
 
 # Cases per shard: a second or so of work.
 FAST, SLOW = 10_000, 50
-# Cases drawn together, whatever is flown: part of the answer. A shard holds whole draws.
+# Cases per random draw. It affects the answer; a shard holds whole draws.
 DRAWN, DRAWN_OWN = 50, 100
 
 
 def split(inputs: SweepInputs) -> list[dict[str, Any]]:
     """Parts ``{"inputs", "number", "pieces"}``; a piece ``[cell, first, count]`` is a run of cases.
 
-    ``first`` counts within the cell (grid) or over all cases. Operating points vary slowest; one is cut only where it
+    ``first`` counts within the cell (grid) or over all cases. Operating points vary slowest; one is cut only when it
     has more cases than a shard holds.
     """
     if inputs.distribution != "grid":

@@ -1,4 +1,4 @@
-"""What is known of each start of a sweep, what is counted, what the outputs say. Light: the service answers with it."""
+"""The outcome of each start of a sweep, the tallies, and the outputs. Light to import: the service uses it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from safestart.campaign.tally import Flagged, Known, Rows, Tally, Total
 from safestart.processes.sweep.spec import SweepInputs
 from safestart.processes.sweep.split import DRAWN_OWN
 
-# Of the false GOs of the closed form, this many are kept with their numbers.
+# Number of the closed forms' false GOs that are kept with their case numbers.
 FALSE_GO_KEPT = 20
 
 
@@ -44,11 +44,11 @@ def study_of(inputs: SweepInputs) -> Study:
 
 
 def outcome_of(inputs: SweepInputs) -> list[Column]:
-    """The start, one verdict per certificate (unknown: not asked), what each controller flew.
+    """The start, one verdict per certificate (unknown: not asked), and the flight of each controller.
 
-    Not recorded: ``cell`` (unknown outside a grid); ``undecided``: the exact answer is; ``false_go``: the closed form
-    certifies what exact proves NO_GO; ``watched``: certified by any, or by none asked; ``spared_...``: not one of the
-    certified starts that violated.
+    Not recorded: ``cell`` (unknown outside a grid); ``undecided``: the exact answer is UNDECIDED; ``false_go``: a
+    closed form certifies a start that exact proves NO_GO; ``watched``: certified by any, or by none asked;
+    ``spared_...``: not one of the certified starts that violated.
     """
     columns = [Column(name, Kind.NUMBER) for name in ("omega_t_deg_s", "a_max_m_s2", "x_m", "y_m")]
     columns += [Column(f"certified_{name}", Kind.FLAG) for name in inputs.certificates]
@@ -64,7 +64,7 @@ def outcome_of(inputs: SweepInputs) -> list[Column]:
 
 
 def tally_of(inputs: SweepInputs) -> Each:
-    """Counts, impulse, cells, and the rows that are kept."""
+    """Counts, impulse, cells, and the kept rows."""
     certificates: list[str] = [*inputs.certificates]
     flown: list[str] = [*inputs.controllers]
     evaluated: dict[str, Tally] = {name: Known(f"certified_{name}") for name in certificates}
@@ -115,7 +115,7 @@ def _impulse(spread: dict[str, Any]) -> dict[str, Any]:
 
 
 def _start(inputs: SweepInputs, row: dict[str, Any], controller: str | None = None) -> dict[str, Any]:
-    """A kept row as it goes on the wire; without a controller nothing was flown."""
+    """A kept row in its wire form; without a controller nothing was flown."""
     return {
         **{name: row[name] for name in ("case", "omega_t_deg_s", "a_max_m_s2", "x_m", "y_m")},
         "margin_m": row[f"margin_m_{controller}"] if controller else None,
@@ -125,7 +125,7 @@ def _start(inputs: SweepInputs, row: dict[str, Any], controller: str | None = No
 
 
 def notes(inputs: SweepInputs) -> list[str]:
-    """What was asked of which starts, and what the figures do not say."""
+    """Notes: which starts were asked what, and what the figures leave out."""
     said = [
         "Flown without violation means: inside the rotating corridor for the flight time. Reaching the hold point, or "
         "staying longer, is not asked for.",

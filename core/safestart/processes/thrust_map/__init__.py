@@ -1,1 +1,1 @@
-"""The thrust-map process: what more thrust buys, at once."""
+"""The thrust-map process: the effect of more thrust, answered at once."""

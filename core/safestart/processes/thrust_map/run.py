@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from safestart.attitude.body_frame import body_to_lvlh
-from safestart.closed_form.paper import certify, certify_grid
+from safestart.closed_form.by_name import ClosedForm, go_of, map_of
 from safestart.exact.answer import Verdict
 from safestart.exact.decide import decide
 from safestart.exact.question import Question
@@ -24,22 +24,28 @@ _CELLS = 61
 def run(inputs: ThrustMapInputs, context: Context) -> ProcessOutput:
     """Evaluate every pair and bisect every rate."""
     grid = Grid(_CELLS, _CELLS, inputs.y_max_m)
-    share, required = [], []
+    share: dict[ClosedForm, list[list[float]]] = {"certified": [], "paper": []}
+    needed: dict[ClosedForm, list[float | None]] = {"certified": [], "paper": []}
+    proved = []
     for k, rate in enumerate(inputs.omega_t_deg_s):
-        share.append(
-            [
-                100.0 * certify_grid(_scenario(inputs, rate, thrust), grid, inputs.rest).safe_fraction
-                for thrust in inputs.a_max_m_s2
-            ]
-        )
-        required.append(_required(inputs, rate))
+        for name in share:
+            scenarios = [_scenario(inputs, rate, thrust) for thrust in inputs.a_max_m_s2]
+            share[name].append(
+                [100.0 * map_of(name, one, grid, inputs.rest).safe_fraction for one in scenarios]
+            )
+            needed[name].append(_certified(name, inputs, rate))
+        if inputs.certificate == "paper":
+            proved.append(_proved(inputs, rate, needed["paper"][-1]))
         context.step(k + 1, len(inputs.omega_t_deg_s), f"{rate:g} deg/s")
     return ProcessOutput(
         {
+            "certificate": inputs.certificate,
             "omega_t_deg_s": inputs.omega_t_deg_s,
             "a_max_m_s2": inputs.a_max_m_s2,
-            "safe_percent": share,
-            "required_a_max_m_s2": required,
+            "safe_percent": share[inputs.certificate],
+            "required_a_max_m_s2": proved or needed["certified"],
+            "paper_safe_percent": share["paper"],
+            "paper_required_a_max_m_s2": needed["paper"],
         }
     )
 
@@ -49,22 +55,29 @@ def _scenario(inputs: ThrustMapInputs, rate: float, thrust: float) -> Scenario:
     return Scenario(target, Chaser(thrust), inputs.corridor.shape())
 
 
-def _required(inputs: ThrustMapInputs, rate: float) -> float | None:
-    """Bisection on the logarithm: more thrust takes away neither the certificate nor the proof of a flight."""
-    start = np.array([[0.0, inputs.stand_off_m]])
+def _certified(name: ClosedForm, inputs: ThrustMapInputs, rate: float) -> float | None:
+    """Bisection on the logarithm for where the closed form starts to say GO.
 
-    def certified(thrust: float) -> bool:
-        return bool(certify(_scenario(inputs, rate, thrust), start, inputs.rest).safe[0])
+    More thrust takes nothing away from the paper's conditions. The certificate may choose another manoeuvre with more
+    thrust, so that below what is found there may be a thrust that is certified, too.
+    """
+    start = np.array([[0.0, inputs.stand_off_m]])
+    return _least(
+        lambda thrust: bool(go_of(name, _scenario(inputs, rate, thrust), start, inputs.rest)[0]),
+        MIN_ACCELERATION,
+        1e-6,
+    )
+
+
+def _proved(inputs: ThrustMapInputs, rate: float, found: float | None) -> float | None:
+    """Where the paper's conditions call too little enough, more, so that a flight of :data:`PROVED_FOR_S` is proved."""
+    start = np.array([0.0, inputs.stand_off_m])
 
     def stays(thrust: float) -> bool:
-        scenario = _scenario(inputs, rate, thrust)
-        at, velocity = body_to_lvlh(start[0], np.zeros(2), _turning(inputs, rate), 0.0)
-        question = Question(scenario, DT_S, round(PROVED_FOR_S / DT_S))
+        at, velocity = body_to_lvlh(start, np.zeros(2), _turning(inputs, rate), 0.0)
+        question = Question(_scenario(inputs, rate, thrust), DT_S, round(PROVED_FOR_S / DT_S))
         return decide(question, np.concatenate([at, velocity]), verdict_only=True).verdict is Verdict.GO
 
-    found = _least(certified, MIN_ACCELERATION, 1e-6)
-    # The paper's conditions know neither the mean motion nor a narrow corridor's geometry: what they call enough may
-    # be proved too little. From there on the proof decides.
     return found if found is None or stays(found) else _least(stays, found, 1e-4)
 
 
@@ -74,7 +87,8 @@ def _turning(inputs: ThrustMapInputs, rate: float) -> float:
 
 
 def _least(enough: Callable[[float], bool], low: float, tolerance: float) -> float | None:
-    """Smallest thrust from ``low`` on that is enough, from above to a relative ``tolerance``; None: none is."""
+    """Smallest sufficient thrust from ``low`` on, rounded up within a relative ``tolerance``; None: no thrust
+    suffices."""
     if enough(low):
         return low
     high = MAX_ACCELERATION

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from pydantic import Field, model_validator
 
+from safestart.closed_form.by_name import ClosedForm
 from safestart.model.scenario import MAX_MEAN_MOTION, Rest
 from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.costs import FIRST_S
 from safestart.processes.coverage.spec import Rates, Thrusts
 from safestart.processes.views import Column, Rows
-from safestart.processes.wire import CorridorInput
+from safestart.processes.wire import Certificate, CorridorInput
 
 PROVED_FOR_S = 60.0
-"""How long a start that the required thrust is named for is proved to stay, s."""
+"""How long a start is proved to stay with the thrust that certificate=paper calls required, s."""
 
 
 _RATE_S, _SHARE_S = 4e-3, 2e-4
@@ -31,6 +32,7 @@ class ThrustMapInputs(WireModel):
     rest: Rest = Field(Rest.LVLH, description="Frame in which the starts are at rest.")
     mean_motion_rad_s: float = Field(1.1e-3, ge=0, le=MAX_MEAN_MOTION, description="Mean motion, rad/s.")
     corridor: CorridorInput = Field(default_factory=CorridorInput)
+    certificate: Certificate = "certified"
 
     @model_validator(mode="after")
     def _inside(self) -> ThrustMapInputs:
@@ -40,14 +42,22 @@ class ThrustMapInputs(WireModel):
 
 
 class ThrustMapOutputs(WireModel):
-    """``safe_percent[rate][thrust]``; ``required_a_max_m_s2[rate]``."""
+    """``safe_percent[rate][thrust]``; ``required_a_max_m_s2[rate]``; those of ``paper`` beside."""
+
+    certificate: ClosedForm = Field(description="The closed form that was asked.")
 
     omega_t_deg_s: list[float]
     a_max_m_s2: list[float]
     safe_percent: list[list[float]] = Field(description="Certified share of the corridor, percent.")
     required_a_max_m_s2: list[float | None] = Field(
-        description="Smallest thrust for which the start (0, stand_off_m) is certified and a thrust history is proved "
-        "to keep it in the corridor for 60 s; null: none up to 10 m/s^2."
+        description="Thrust with which the start (0, stand_off_m) is certified, a little less does not do. certified: "
+        "a known manoeuvre stays for ever. paper: some thrust is proved to stay for 60 s. null: none up to 10 m/s^2."
+    )
+    paper_safe_percent: list[list[float]] = Field(
+        description="Share by the paper's conditions, which are not sound, percent."
+    )
+    paper_required_a_max_m_s2: list[float | None] = Field(
+        description="Smallest thrust that meets the paper's conditions there; not sound, the start may be lost with it."
     )
 
 
@@ -55,9 +65,9 @@ SPEC = ProcessSpec(
     id="thrust-map",
     title="What more thrust buys",
     description=(
-        "Certified share of the corridor for each pair of tumble rate and thrust, and for each tumble rate the "
-        "smallest thrust that certifies a start on the corridor's axis at the wanted stand-off and is proved to keep "
-        "it in the corridor for 60 s. The share is that of the paper's conditions; not a proof next to the range limit."
+        "Certified share of the corridor for each pair of tumble rate and thrust, and for each tumble rate the thrust "
+        "that certifies a start on the corridor's axis at the wanted stand-off: a known manoeuvre keeps it in the "
+        "corridor for ever. The paper's conditions, not sound, stand beside, or are asked by certificate=paper."
     ),
     inputs=ThrustMapInputs,
     outputs=ThrustMapOutputs,
@@ -69,8 +79,11 @@ SPEC = ProcessSpec(
         + _SHARE_S * len(inputs.a_max_m_s2) * len(inputs.omega_t_deg_s)
     ),
     tables=(
-        Table("safe_percent", ("safe_percent",), axes=("omega_t_deg_s", "a_max_m_s2")),
-        Table("required_a_max_m_s2", ("omega_t_deg_s", "required_a_max_m_s2")),
+        Table("safe_percent", ("safe_percent", "paper_safe_percent"), axes=("omega_t_deg_s", "a_max_m_s2")),
+        Table(
+            "required_a_max_m_s2",
+            ("omega_t_deg_s", "required_a_max_m_s2", "paper_required_a_max_m_s2"),
+        ),
     ),
     views=(
         Rows(
@@ -79,6 +92,7 @@ SPEC = ProcessSpec(
             (
                 Column("tumble rate [deg/s]", "omega_t_deg_s"),
                 Column("required thrust [m/s²]", "required_a_max_m_s2"),
+                Column("by the paper's conditions, not sound [m/s²]", "paper_required_a_max_m_s2"),
             ),
         ),
         Rows(
@@ -88,6 +102,7 @@ SPEC = ProcessSpec(
                 Column("tumble rate [deg/s]", "omega_t_deg_s"),
                 Column("thrust [m/s²]", "a_max_m_s2"),
                 Column("certified [%]", "safe_percent"),
+                Column("by the paper's conditions, not sound [%]", "paper_safe_percent"),
             ),
         ),
     ),

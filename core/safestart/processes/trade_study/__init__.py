@@ -1,1 +1,1 @@
-"""The trade-study process: what tumble rate and thrust allow."""
+"""The trade-study process: the effect of tumble rate and thrust."""

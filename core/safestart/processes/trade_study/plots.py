@@ -12,16 +12,17 @@ from safestart.processes.plotting import figure, png
 from safestart.processes.trade_study.spec import TradeStudyInputs
 
 MAPS = (
-    ("certified_fraction", "certified, closed form [%]", 100.0),
+    ("certified_fraction", "{} [%]", 100.0),
     ("exact_fraction", "exact: proved GO [% of the area]", 100.0),
     ("flown_fraction", "flown by the filter [%]", 100.0),
     ("mean_delta_v_m_s", "mean impulse of the safe flights [m/s]", 1.0),
 )
+_CERTIFIED = {"certified": "certified for ever", "paper": "the paper's conditions, not sound"}
 _MOST_WRITTEN = 12
 
 
 def heat_maps(inputs: TradeStudyInputs, points: Sequence[Mapping[str, Any]]) -> Artifact:
-    """Four maps over tumble rate (across) and thrust (up); grey where there is no value."""
+    """Four maps over tumble rate (across) and thrust (up); grey without a value."""
     rates, thrusts = inputs.omega_t_deg_s, inputs.a_max_m_s2
     drawing = figure(2.0 * (1.9 + 0.52 * min(len(rates), 14)), 2.0 * (1.2 + 0.36 * min(len(thrusts), 14)))
     written = max(len(rates), len(thrusts)) <= _MOST_WRITTEN
@@ -34,7 +35,7 @@ def heat_maps(inputs: TradeStudyInputs, points: Sequence[Mapping[str, Any]]) -> 
         most = 100.0 if scale == 100.0 else None
         panel.set_facecolor("#DDDDDD")
         image = panel.imshow(values, origin="lower", aspect="auto", cmap="viridis", vmin=0.0, vmax=most)
-        panel.set_title(title, fontsize=10)
+        panel.set_title(title.format(_CERTIFIED[inputs.certificate]), fontsize=10)
         every = [max(1, len(axis) // 8) for axis in (rates, thrusts)]
         panel.set_xticks(range(0, len(rates), every[0]), [f"{rate:g}" for rate in rates[:: every[0]]])
         panel.set_yticks(range(0, len(thrusts), every[1]), [f"{thrust:g}" for thrust in thrusts[:: every[1]]])

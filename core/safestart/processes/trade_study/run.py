@@ -12,7 +12,7 @@ import numpy as np
 from safestart.atlas.survey import build
 from safestart.campaign.case import Case
 from safestart.campaign.part import Part
-from safestart.closed_form.paper import certify
+from safestart.closed_form.by_name import go_of
 from safestart.constraints.corridor import corridor_of
 from safestart.control.forecast import flight_plan
 from safestart.control.gains import preset
@@ -51,7 +51,8 @@ def operating_point(inputs: TradeStudyInputs, case: Case, context: Context) -> d
         start_states(scenario, points, Rest.LVLH),
         Truth(CONTINUOUS),
     )
-    certified = certify(scenario, points).safe
+    certified = go_of(inputs.certificate, scenario, points)
+    paper = go_of("paper", scenario, points)
     context.step(1, 2, "atlas")
     atlas = build(Question(scenario, DT_S, steps), inputs.grid.y_max_m)
     impulse = flights.delta_v[flights.safe]
@@ -59,6 +60,7 @@ def operating_point(inputs: TradeStudyInputs, case: Case, context: Context) -> d
         "omega_t_deg_s": omega,
         "a_max_m_s2": a_max,
         "certified_fraction": float(certified.mean()),
+        "paper_fraction": float(paper.mean()),
         "exact_inner_m2": float(atlas.inner_area),
         "exact_outer_m2": float(atlas.outer_area),
         "exact_fraction": None if atlas.message else float(atlas.inner_area) / area(inputs),

@@ -11,7 +11,7 @@ from safestart.processes.base import ProcessSpec, WireModel
 from safestart.processes.sharding import Sharding
 from safestart.processes.sweep.spec import Rates, Thrusts
 from safestart.processes.views import Column, Facts, Rows
-from safestart.processes.wire import CorridorInput, GridInput, Horizon, Seed
+from safestart.processes.wire import Certificate, CorridorInput, GridInput, Horizon, Seed
 
 
 class TradeStudyInputs(WireModel):
@@ -24,6 +24,7 @@ class TradeStudyInputs(WireModel):
     preset: Literal["tuned", "paper"] = Field("tuned", description="Gains of the filter.")
     mean_motion_rad_s: float = Field(1.1e-3, ge=0, le=MAX_MEAN_MOTION, description="Mean motion, rad/s.")
     corridor: CorridorInput = Field(default_factory=CorridorInput)
+    certificate: Certificate = "certified"
     seed: Seed = 0
 
     @field_validator("omega_t_deg_s", "a_max_m_s2")
@@ -44,7 +45,8 @@ class TradePoint(WireModel):
 
     omega_t_deg_s: float
     a_max_m_s2: float
-    certified_fraction: float = Field(description="Closed form.")
+    certified_fraction: float = Field(description="By the closed form that was asked.")
+    paper_fraction: float = Field(description="By the paper's conditions, which are not sound.")
     exact_inner_m2: float = Field(description="Area proved GO: some thrust history stays for horizon_s.")
     exact_outer_m2: float = Field(description="Area outside of which NO_GO is proved.")
     exact_fraction: float | None = Field(
@@ -97,6 +99,7 @@ SPEC = ProcessSpec(
                 Column("tumble rate [deg/s]", "omega_t_deg_s"),
                 Column("thrust [m/s²]", "a_max_m_s2"),
                 Column("certified share", "certified_fraction"),
+                Column("by the paper's conditions, not sound", "paper_fraction"),
                 Column("proved GO share", "exact_fraction"),
                 Column("flown share", "flown_fraction"),
                 Column("certified starts flown", "certified_flown"),

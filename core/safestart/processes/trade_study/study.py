@@ -1,4 +1,4 @@
-"""What is known of each operating point of a trade study, and what its outputs say; light."""
+"""The outcome of each operating point of a trade study, and the outputs; light to import."""
 
 from __future__ import annotations
 

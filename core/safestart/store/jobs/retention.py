@@ -31,8 +31,7 @@ class Retention:
             return session.scalar(select(func.count()).where(*_old(than_s))) or 0
 
     def purge(self, than_s: float) -> int:
-        """Delete them with results, artifacts and events; returns their number. Pauses half of the time for other
-        writers."""
+        """Delete them with results, artifacts and events; returns their number. Pauses half the time for others."""
         done, batch = 0, _FEW
         while True:
             start = monotonic()

@@ -20,8 +20,7 @@ _ARTIFACT = insert(table(ArtifactRow)).inline()
 def add_result(
     session: Session, job_id: str, document: dict[str, Any], artifacts: tuple[Artifact, ...]
 ) -> None:
-    """Insert the document with its hash and each artifact with size and hash; also cache artifacts with a content
-    key."""
+    """Insert the document with its hash and the artifacts with sizes and hashes; cache those with a content key."""
     result = {
         "job_id": job_id,
         "schema_version": document.get("schema_version", 1),

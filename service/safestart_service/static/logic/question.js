@@ -59,20 +59,22 @@ const spreads = (values) => pick(values, SPREADS.filter((name) => values[name] !
 
 export const spread = (values) => Object.keys(spreads(values)).length > 0;
 
-/** What the map's certified set is asked by: the closed form, on a grid. */
+/** What the map's certified set is asked by: the sound certificate, on a grid. */
 export const certificate = (values) => ({ ...scenario(values), rest: values.rest, grid: { nx: 81, ny: 81, y_max_m: values.y_max_m } });
 
 /** What the map's exact region is asked by; null where there is none: it is known for starts at rest in LVLH. */
 export const region = (values) => (values.rest === "lvlh" ? { ...scenario(values), horizon_s: values.horizon_s, y_max_m: values.y_max_m } : null);
 
-/** The closed form about one start: it knows neither time, requirement nor spread. */
-export const closedForm = (values, start) => ({
+const nominal = (values, start) => ({
   ...pick(values, ["omega_t_deg_s", "a_max_m_s2", "mean_motion_rad_s"]), ...shape(values), rest: values.rest, ...start,
 });
 
-/** What the verdict is asked by. */
-export const exact = (values, start) => ({
-  ...closedForm(values, start), method: "exact", question: values.question, horizon_s: values.horizon_s,
+/** The paper's conditions about one start, not sound: they know neither time, requirement nor spread. */
+export const paper = (values, start) => ({ ...nominal(values, start), method: "paper" });
+
+/** What the verdict is asked by: the service's own choice of method, which says no GO without a proof. */
+export const proven = (values, start) => ({
+  ...nominal(values, start), question: values.question, horizon_s: values.horizon_s,
   ...(values.question === "synchronize" ? { within_s: values.within_s } : {}), ...spreads(values),
 });
 
@@ -98,7 +100,7 @@ export const verdictWords = (values, { x_m, y_m }) => [
 
 /** The map's question in words. */
 export const mapWords = (values) => [
-  `Map: ${values.rest === "lvlh" ? `${staying(values)}, nominal` : "closed form, nominal"}`, ...operating(values), atRest(values), ...unusual(values),
+  `Map: ${values.rest === "lvlh" ? `${staying(values)}, nominal` : "certified for ever, nominal"}`, ...operating(values), atRest(values), ...unusual(values),
 ].join(" · ");
 
 /** What the verdict asks and the map does not, in words; empty where they ask the same. */
@@ -109,6 +111,12 @@ export function mapLacks(values) {
   if (values.rest !== "lvlh") lacks.push("the exact answer");
   return lacks;
 }
+
+/** What decided, in words, by its name on the wire. */
+export const DECIDED = {
+  certified: "by the certificate in closed form: a known manoeuvre, for ever", exact: "by a cone program", atlas: "by an atlas of cone programs",
+  families: "by cone programs", tube: "by a cone program in the tightened corridor",
+};
 
 /** How sure the verdict is, beside its word. */
 export function proved(verdict, values) {

@@ -16,7 +16,7 @@ export function readTrade({ low, high, stand_off_m, y_max_m, rest }) {
 export const tradeAddress = (texts) => `?${new URLSearchParams(texts)}`;
 
 /** The question in words. */
-export const closedWords = ({ stand_off_m, y_max_m, rest }) => `Closed form · stand-off ${stand_off_m} m · corridor cut at ${y_max_m} m · at rest in ${rest === "lvlh" ? "LVLH" : "the body frame"}`;
+export const closedWords = ({ stand_off_m, y_max_m, rest }) => `Certified for ever · stand-off ${stand_off_m} m · corridor cut at ${y_max_m} m · at rest in ${rest === "lvlh" ? "LVLH" : "the body frame"}`;
 
 /** The address at which Explore asks about one point of the map. */
 export const tradeExplore = (rate, thrust, inputs) => `?${new URLSearchParams({

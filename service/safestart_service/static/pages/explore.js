@@ -1,6 +1,6 @@
 // Explore: the operating point, the regions, one start, its flight. The store holds the text of every field, the address the same.
 
-import { FIELDS, certificate, closedForm, exact, flight as flightOf, flightWords, fromAddress, mapLacks, mapWords, read, region as regionOf, start as startOf, toAddress } from "../logic/question.js";
+import { FIELDS, certificate, flight as flightOf, flightWords, fromAddress, mapLacks, mapWords, paper, proven, read, region as regionOf, start as startOf, toAddress } from "../logic/question.js";
 import { Store } from "../logic/store.js";
 import { figure } from "../logic/words.js";
 import { execute, get, post } from "../parts/api.js";
@@ -46,10 +46,10 @@ const region = store.panel({
 
 const verdict = store.panel({
   quiet: 180,
-  poses: (inputs) => { const asked = started(inputs); return asked && { exact: exact(asked.values, asked.start), quick: closedForm(asked.values, asked.start), asked }; },
+  poses: (inputs) => { const asked = started(inputs); return asked && { proven: proven(asked.values, asked.start), paper: paper(asked.values, asked.start), asked }; },
   asks: async (question, signal) => {
-    const [quick, found] = await Promise.all([get(query(question.quick), { signal }), get(query(question.exact), { signal })]);
-    return { ...question.asked, quick, exact: found };
+    const [conditions, found] = await Promise.all([get(query(question.paper), { signal }), get(query(question.proven), { signal })]);
+    return { ...question.asked, paper: conditions, found };
   },
   shows: showVerdict,
 });
@@ -64,7 +64,7 @@ const flown = store.panel({
 const pointed = new Store({ at: null, values: null });
 pointed.panel({
   quiet: 60,
-  poses: ({ at, values }) => at && values && closedForm(values, { x_m: at[0], y_m: at[1] }),
+  poses: ({ at, values }) => at && values && paper(values, { x_m: at[0], y_m: at[1] }),
   asks: (question, signal) => get(query(question), { signal }),
   shows: showPointed,
 });
@@ -157,7 +157,7 @@ function showPointed({ state, answer: found, question }) {
     return;
   }
   const margins = Object.entries(found.face_margins_m).map(([face, margin]) => `${face} ${figure(margin, 3)} m`);
-  place.textContent = `(${question.x_m}, ${question.y_m}) m · closed form ${found.verdict.replace("_", " ")} · after erosion: ${margins.join(", ")}`
+  place.textContent = `(${question.x_m}, ${question.y_m}) m · the paper's conditions, not sound: ${found.verdict.replace("_", " ")} · after erosion: ${margins.join(", ")}`
     + (found.range_margin_m === null ? "" : ` · range ${figure(found.range_margin_m, 3)} m`);
 }
 

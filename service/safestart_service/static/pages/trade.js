@@ -43,6 +43,10 @@ async function picture(found, inputs) {
       name: `needed for a start at ${figure(inputs.stand_off_m)} m`, x: found.omega_t_deg_s, y: found.required_a_max_m_s2, mode: "lines+markers",
       line: { color: theme().lost, width: 3 }, hovertemplate: "%{x} deg/s needs %{y:.4f} m/s²<extra></extra>",
     },
+    {
+      name: "by the paper's conditions, not sound", x: found.omega_t_deg_s, y: found.paper_required_a_max_m_s2, mode: "lines",
+      line: { color: theme().soft, width: 1.5, dash: "dot" }, hovertemplate: "%{x} deg/s: the paper says %{y:.4f} m/s²; not sound<extra></extra>",
+    },
   ], {
     title: { text: closedWords(inputs) },
     xaxis: { title: { text: "tumble rate [deg/s]" } }, showlegend: true,
@@ -54,13 +58,13 @@ async function picture(found, inputs) {
 }
 
 function figures(found, inputs) {
-  const rows = found.omega_t_deg_s.map((rate, k) => ({ rate, needed: found.required_a_max_m_s2[k] }));
-  $("said").textContent = `Smallest thrust acceleration that certifies a start on the axis, ${figure(inputs.stand_off_m)} m from the target.`;
+  const rows = found.omega_t_deg_s.map((rate, k) => ({ rate, needed: found.required_a_max_m_s2[k], paper: found.paper_required_a_max_m_s2[k] }));
+  $("said").textContent = `Thrust acceleration that certifies a start on the axis, ${figure(inputs.stand_off_m)} m from the target.`;
   const explore = (row) => (row.needed === null ? "–" : el("a", { href: `${root}/dashboard${tradeExplore(row.rate, Number((row.needed * 1.02).toPrecision(3)), inputs)}` }, "explore"));
   $("table").replaceChildren(
-    table(rows, [["tumble rate [deg/s]", (r) => r.rate], ["required thrust [m/s²]", (r) => r.needed], ["", explore]], "Required thrust"),
+    table(rows, [["tumble rate [deg/s]", (r) => r.rate], ["required thrust [m/s²]", (r) => r.needed], ["by the paper's conditions, not sound [m/s²]", (r) => r.paper], ["", explore]], "Required thrust"),
     el("div", { class: "tools" }, el("button", {
-      type: "button", class: "plain", onclick: () => save("required-thrust.csv", csv([["omega_t_deg_s", "required_a_max_m_s2"], ...rows.map((r) => [r.rate, r.needed])])),
+      type: "button", class: "plain", onclick: () => save("required-thrust.csv", csv([["omega_t_deg_s", "required_a_max_m_s2", "paper_required_a_max_m_s2"], ...rows.map((r) => [r.rate, r.needed, r.paper])])),
     }, "CSV"), saveButtons($("map"), "trade", el)));
 }
 

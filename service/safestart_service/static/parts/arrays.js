@@ -21,8 +21,10 @@ export async function drawOverlay({ view, result, chart, said, one, two }) {
       draw(chart, [{
         type: "heatmap", x: arrays.x_m, y: arrays.y_m, z, zmin: -0.5, zmax: 4.5, colorscale: steps.flatMap((shade, k) => [[k / 5, shade], [(k + 1) / 5, shade]]),
         text: z.map((row) => row.map((k) => words[k])), hovertemplate: "(%{x:.1f}, %{y:.1f}) m: %{text}<extra></extra>",
-        colorbar: { tickvals: [1, 2, 3, 4], ticktext: words.slice(1).map((word) => word.replace(/ \(.*\)/, "")) },
-      }], AXES);
+        showscale: false,
+      }, ...words.slice(1).map((word, k) => ({
+        name: word.replace(/ \(.*\)/, ""), x: [null], y: [null], mode: "markers", marker: { symbol: "square", size: 10, color: steps[k + 1] },
+      }))], AXES);
       said.textContent = `In both ${counts[2]}, ${words[3]} ${counts[3]}, ${words[4]} ${counts[4]}, in neither ${counts[1]} cells.`;
     };
     for (const select of [one, two]) select.addEventListener("change", show);

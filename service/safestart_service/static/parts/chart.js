@@ -8,7 +8,7 @@ const SHADES = ["ink", "soft", "line", "card", "certified", "exact", "limit", "l
 /** The colours of the style sheet, as they are now. */
 export const theme = () => Object.fromEntries(SHADES.map((name) => [name, shades(`--${name}`)]));
 
-const drawn = new Map();
+const drawn = new Map(), paper = matchMedia("print");
 
 /**
  * Draw or redraw; the picture follows the colour scheme and the width of its place. A title is broken at its dots where it
@@ -26,14 +26,16 @@ export function draw(place, traces, layout = {}, config = {}) {
     legend: { orientation: "h", yref: "container", y: 0, yanchor: "bottom", x: 0, font: { color: soft } }, ...layout, title,
     xaxis: { ...axis, ...layout.xaxis }, yaxis: { ...axis, ...layout.yaxis },
   };
+  // Plotly fits a picture to its place a moment later, which on paper is too late.
+  if (paper.matches) Object.assign(whole, { width: place.clientWidth, height: place.clientHeight });
   if (layout.yaxis2) whole.yaxis2 = { ...axis, ...layout.yaxis2 };
   const bar = { displaylogo: false, responsive: true, modeBarButtonsToRemove: ["lasso2d", "select2d", "autoScale2d", "sendChartToCloud"], plotlyServerURL: "", ...config };
   return Plotly.react(place, traces, whole, bar);
 }
 
 /** Colours and sizes change with these; no window is resized when a page is printed. */
-for (const medium of ["(prefers-color-scheme: dark)", "print"]) matchMedia(medium).addEventListener("change", async () => {
-  for (const [place, args] of drawn) if (place.isConnected) { await draw(place, ...args); Plotly.Plots.resize(place); }
+for (const medium of [matchMedia("(prefers-color-scheme: dark)"), paper]) medium.addEventListener("change", () => {
+  for (const [place, args] of drawn) if (place.isConnected) draw(place, ...args);
 });
 
 export function saveButtons(place, name, el) {

@@ -19,11 +19,11 @@ function body({ values, certified, region, sets }) {
   if (region?.outer_polygon_m.length) line("outside: proved NO_GO", closed(region.outer_polygon_m), blue, { dash: "dot" });
   if (certified) {
     traces.push({
-      name: "closed form: certified", type: "contour", x: certified.x_m, y: certified.y_m, z: certified.margin_m,
+      name: "certified, for ever", type: "contour", x: certified.x_m, y: certified.y_m, z: certified.margin_m,
       contours: { type: "constraint", operation: "<", value: 0 }, fillcolor: "rgba(0,158,115,0.30)",
       line: { color: green, width: 2 }, showscale: false, hoverinfo: "skip", showlegend: true,
     });
-    if (certified.r_sync_m) line("synchronization radius", arc(certified.r_sync_m, shape, values.y_max_m), limit, { dash: "dash" });
+    if (certified.r_sync_m) line("the paper's synchronization radius", arc(certified.r_sync_m, shape, values.y_max_m), limit, { dash: "dash" });
   }
   for (const { title, colour, x, y, mask } of sets) {
     traces.push({

@@ -1,26 +1,27 @@
-// Explore's verdict: one word that counts, the question it answers, and the closed form beside it, small.
+// Explore's verdict: one word that counts, the question it answers, what decided, and the paper's conditions beside it, small.
 
-import { proved, verdictWords } from "../logic/question.js";
+import { DECIDED, proved, verdictWords } from "../logic/question.js";
 import { figure, sentence } from "../logic/words.js";
 import { call } from "./api.js";
 import { download, el } from "./page.js";
 
 const margin = (name, value) => el("li", { class: value > 0 ? "in" : "out" }, `${name} `, el("b", {}, `${figure(value, 3)} m`));
 
-/** The cards of one answer: `{ values, start, exact, quick }`; `old` where the inputs have changed since. */
-export function verdict({ values, start, exact, quick }, old) {
-  const word = exact.verdict.replace("_", " ");
-  const proof = exact.proof_url && !old
-    ? el("p", {}, download(call, exact.proof_url, "proof.json", "Download the proof"), " (checked by ", el("code", {}, "safestart verify"), ")") : null;
+/** The cards of one answer: `{ values, start, found, paper }`; `old` where the inputs have changed since. */
+export function verdict({ values, start, found, paper }, old) {
+  const word = found.verdict.replace("_", " ");
+  const proof = found.proof_url && !old
+    ? el("p", {}, download(call, found.proof_url, "proof.json", "Download the proof"), " (checked by ", el("code", {}, "safestart verify"), ")") : null;
   return [
-    el("div", { class: `answer ${old ? "old" : exact.verdict}` },
-      el("h2", {}, el("span", { class: "word" }, word), el("span", { class: "how" }, old ? "old: the inputs have changed" : proved(exact.verdict, values))),
-      el("p", { class: "asked" }, verdictWords(values, start)), el("p", { class: "why" }, sentence(exact.reason)), members(exact.examples), proof),
-    el("section", { class: `aside${old ? " old" : ""}`, "aria-label": "Closed form" },
-      el("h3", {}, "Closed form, no proof: ", el("span", { class: "closed-word" }, quick.verdict.replace("_", " "))),
-      el("p", {}, `${sentence(quick.reason)} It knows neither time nor ranges.`),
-      el("ul", { class: "margins" }, ...Object.entries(quick.face_margins_m).map(([face, value]) => margin(face, value)),
-        quick.range_margin_m === null ? null : margin("range", quick.range_margin_m))),
+    el("div", { class: `answer ${old ? "old" : found.verdict}` },
+      el("h2", {}, el("span", { class: "word" }, word), el("span", { class: "how" }, old ? "old: the inputs have changed" : proved(found.verdict, values))),
+      el("p", { class: "asked" }, verdictWords(values, start)), el("p", { class: "why" }, sentence(found.reason)),
+      found.decided_by ? el("p", { class: "note" }, `Decided ${DECIDED[found.decided_by] ?? `by ${found.decided_by}`}.`) : null, members(found.examples), proof),
+    el("section", { class: `aside${old ? " old" : ""}`, "aria-label": "The paper's conditions" },
+      el("h3", {}, "The paper's conditions, not sound: ", el("span", { class: "closed-word" }, paper.verdict.replace("_", " "))),
+      el("p", {}, `${sentence(paper.reason)} They know neither the mean motion nor time nor ranges; a GO of theirs may be impossible to fly.`),
+      el("ul", { class: "margins" }, ...Object.entries(paper.face_margins_m).map(([face, value]) => margin(face, value)),
+        paper.range_margin_m === null ? null : margin("range", paper.range_margin_m))),
   ];
 }
 

@@ -1,1 +1,1 @@
-"""How go-no-go is answered: one method per file, by name in ``method_registry``."""
+"""The methods of go-no-go: one per file, by name in ``method_registry``."""

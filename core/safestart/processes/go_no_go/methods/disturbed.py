@@ -12,13 +12,13 @@ from safestart.runtime.progress import Context
 
 
 def disturbance_of(inputs: GoNoGoInputs) -> Disturbance | None:
-    """What the start must withstand; None when nothing is asked."""
+    """The disturbance that the start must withstand; None when the question has none."""
     found = Disturbance(inputs.disturbance_m_s2, inputs.start_error_m, inputs.start_error_m_s)
     return found if found.vector().any() else None
 
 
 def decide(disturbance: Disturbance, question: Question, starts: Floats, context: Context) -> list[Answer]:
-    """Answers, one for each start."""
+    """One answer per start."""
     if not question.plain:
         raise invalid(
             "disturbance_m_s2", "question stay without a speed limit: the tube knows no other", question.kind

@@ -42,6 +42,7 @@ def decide_families(inputs: GoNoGoInputs, question: Question, starts: Floats, co
         ]
         if inputs.proofs
         else None,
+        decided_by=[None if answer.verdict is Verdict.UNDECIDED else "families" for answer in answers],
     )
 
 

@@ -1,4 +1,4 @@
-"""What the proving methods share: the question and the starts in LVLH, sets around them, proof documents."""
+"""Shared by the proving methods: the question and the starts in LVLH, sets around them, proof documents."""
 
 from __future__ import annotations
 
@@ -27,7 +27,9 @@ from safestart.runtime.progress import Context
 
 MOST_PROOFS = MOST_SEARCHES = 100
 
-Solve = Callable[[Question, Floats, Context], list[Answer]]
+Solved = tuple[list[Answer], list[str]]
+"""An answer for each start, and what gave it."""
+Solve = Callable[[Question, Floats, Context], Solved]
 
 
 def prove(inputs: GoNoGoInputs, solve: Solve, context: Context) -> Verdicts:
@@ -47,10 +49,10 @@ def prove(inputs: GoNoGoInputs, solve: Solve, context: Context) -> Verdicts:
     if disturbance is not None:
         if len(points) > MOST_PROGRAMS:
             raise invalid("states", f"at most {MOST_PROGRAMS} against a disturbance", len(points))
-        answers = disturbed.decide(disturbance, question, starts, context)
+        answers, by = disturbed.decide(disturbance, question, starts, context), ["tube"] * len(starts)
         reasons = [disturbed.sentence(disturbance, question, answer) for answer in answers]
     else:
-        answers = solve(question, starts, context)
+        answers, by = solve(question, starts, context)
         reasons = [asked.sentence(question, answer) for answer in answers]
     return Verdicts(
         [answer.verdict.value for answer in answers],
@@ -60,6 +62,10 @@ def prove(inputs: GoNoGoInputs, solve: Solve, context: Context) -> Verdicts:
         proof=[_proof(disturbance, question, *each) for each in zip(starts, answers, strict=True)]
         if inputs.proofs
         else None,
+        decided_by=[
+            None if answer.verdict is Verdict.UNDECIDED else name
+            for answer, name in zip(answers, by, strict=True)
+        ],
     )
 
 
@@ -78,7 +84,7 @@ def _end(question: Question, answer: Answer) -> float | None:
 def _proof(
     disturbance: Disturbance | None, question: Question, start: Floats, answer: Answer
 ) -> dict[str, Any] | None:
-    """The document of a decided answer; None where it is not."""
+    """The document of a decided answer; None for an undecided one."""
     if answer.verdict is Verdict.UNDECIDED:
         return None
     if disturbance is None:

@@ -1,0 +1,129 @@
+"""The program of one step from the attitudes ahead, compiled: rows, Hessian, and what the start adds to them.
+
+Variables are z = (w_0 .. w_{Nc-1}, theta): deviations of the free inputs from the equilibrium's, LVLH axes, and the
+artificial reference, body axes. Rows, in this order, for F faces and H rows that limit theta alone:
+
+    corridor at steps 2 .. N_p - 1 (F rows each), inputs at steps 0 .. N_p - 1 (3 rows each, both sides), theta (H).
+
+No input reaches the corridor at steps 0 and 1: these rows are checked apart. At step N_p the deviation is 0.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from safestart.control.tracking_mpc.active_set import add_scaled
+from safestart.runtime.kernels import compiled
+
+
+@compiled(error_model="numpy", fastmath={"contract", "reassoc", "nsz"})
+def three(left, right, out):  # type: ignore[no-untyped-def]
+    """Out (3, c) = left (3, 3) right (3, c)."""
+    for i in range(3):
+        a, b, c = left[i, 0], left[i, 1], left[i, 2]
+        for k in range(right.shape[1]):
+            out[i, k] = a * right[0, k] + b * right[1, k] + c * right[2, k]
+
+
+@compiled(error_model="numpy")
+def equilibrium_input(attitudes, j, motion, back, out):  # type: ignore[no-untyped-def]
+    """Out (3, 3) = C(j) (P C(j+2)' + Q C(j+1)' + R C(j)'), ``motion`` (3, 3, 3) = P, Q, R."""
+    for i in range(3):
+        for k in range(3):
+            value = 0.0
+            for s in range(3):
+                for b in range(3):
+                    value += motion[s, i, b] * attitudes[j + 2 - s, k, b]
+            back[i, k] = value
+    three(attitudes[j], back, out)
+
+
+@compiled(error_model="numpy")
+def place(source, start, column, rows, shift):  # type: ignore[no-untyped-def]
+    """One row from ``source`` (m,) on (e_0, w): its part on z into ``rows``, on x_0 into ``shift``."""
+    free = len(source) - 6
+    for k in range(free):
+        rows[k, column] = source[6 + k]
+    for i in range(3):
+        value = 0.0
+        for k in range(6):
+            value += source[k] * start[k, i]
+        rows[free + i, column] = -value
+    for k in range(6):
+        shift[k, column] = source[k]
+
+
+@compiled(error_model="numpy", fastmath={"contract", "reassoc", "nsz"})
+def assemble(  # type: ignore[no-untyped-def]
+    attitudes, a_rr, motion, reach, push, cost, tau, normals, limits, rows, shift, hessian, slope
+):
+    """Fill ``rows`` (n, R), ``shift`` (6, R), ``hessian`` (n, n) and ``slope`` (n, 6).
+
+    A row's value is rows' z + shift' x_0, the gradient at z = 0 is slope x_0. ``attitudes`` (N_p + 2, 3, 3) are those
+    at this step and after it; ``motion`` (3, 3, 3) is P, Q, R; ``limits`` (H, 3) are the rows on theta alone.
+    """
+    total, m, faces = len(push), cost.shape[0], len(normals)
+    free = m - 6
+    start = np.empty((6, 3))
+    for i in range(3):
+        for k in range(3):
+            start[i, k] = attitudes[0, k, i]
+    for i in range(3):
+        for k in range(3):
+            value = 0.0
+            for b in range(3):
+                drift = attitudes[1, k, b]
+                for c in range(3):
+                    drift -= a_rr[b, c] * attitudes[0, k, c]
+                value += motion[0, i, b] * drift
+            start[3 + i, k] = value
+    turned, face = np.empty((3, m)), np.empty(m)
+    at = 0
+    for j in range(2, total):
+        three(attitudes[j], reach[j], turned)
+        for f in range(faces):
+            face[:] = 0.0
+            for i in range(3):
+                if normals[f, i] != 0.0:
+                    add_scaled(face, turned[i], normals[f, i])
+            place(face, start, at, rows, shift)
+            for i in range(3):
+                rows[free + i, at] += normals[f, i]
+            at += 1
+    own, back = np.empty((3, 3)), np.empty((3, 3))
+    for j in range(total):
+        equilibrium_input(attitudes, j, motion, back, own)
+        three(attitudes[j], push[j], turned)
+        for i in range(3):
+            place(turned[i], start, at, rows, shift)
+            for k in range(3):
+                rows[free + k, at] += own[i, k]
+            at += 1
+    for f in range(len(limits)):
+        rows[:free, at] = 0.0
+        shift[:, at] = 0.0
+        for k in range(3):
+            rows[free + k, at] = limits[f, k]
+        at += 1
+    # e_0 = x_0 - start theta turns the form in (e_0, w) into one in (w, theta).
+    for i in range(free):
+        for k in range(free):
+            hessian[i, k] = cost[6 + i, 6 + k]
+        for k in range(6):
+            slope[i, k] = cost[6 + i, k]
+        for k in range(3):
+            value = 0.0
+            for b in range(6):
+                value -= cost[6 + i, b] * start[b, k]
+            hessian[i, free + k] = hessian[free + k, i] = value
+    for i in range(3):
+        for k in range(6):
+            value = 0.0
+            for b in range(6):
+                value -= start[b, i] * cost[b, k]
+            slope[free + i, k] = value
+        for k in range(3):
+            value = tau if i == k else 0.0
+            for b in range(6):
+                value -= slope[free + i, b] * start[b, k]
+            hessian[free + i, free + k] = value

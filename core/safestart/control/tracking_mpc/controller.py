@@ -1,0 +1,188 @@
+"""The tracking MPC: from a state and the attitudes ahead to a plan, and to the loop's commands."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from safestart.control.controller import Command
+from safestart.control.tracking_mpc import equilibrium
+from safestart.control.tracking_mpc.assemble import assemble
+from safestart.control.tracking_mpc.condensed import Condensed, condense
+from safestart.control.tracking_mpc.sampled import Sampled
+from safestart.control.tracking_mpc.step_kernel import SOLVED, feasible_starts, soften, solve_from
+from safestart.control.tracking_mpc.theta_set import ThetaSet
+from safestart.control.tracking_mpc.tuning import DockingCorridor, Tuning
+from safestart.errors import invalid
+from safestart.model.scenario import Bools, Floats
+
+FIXED_TOLERANCE = 1e-9
+"""Corridor rows that no input reaches, at this step and the next, may be overstepped by so much, m."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What one program says.
+
+    ``feasible``: all rows hold. ``violation`` t, m: by how much soft rows are overstepped (0 where feasible); inf where
+    there is no plan at all, then the arrays are NaN. ``theta`` (3,) body axes; ``inputs`` (N_p, 3) body axes, m/s;
+    ``states`` (N_p + 1, 6) LVLH; ``dual`` (R,) multipliers. ``status`` is the solver's.
+    """
+
+    feasible: bool
+    violation: float
+    theta: Floats
+    inputs: Floats
+    states: Floats
+    cost: float
+    dual: Floats
+    status: int
+
+
+class Program:
+    """The rows, bounds and cost of one tuning; assembled anew for every step's attitudes."""
+
+    def __init__(
+        self,
+        motion: Sampled,
+        shape: DockingCorridor,
+        tuning: Tuning,
+        limit: ThetaSet,
+        tightening: tuple[Floats, Floats] | None = None,
+    ) -> None:
+        """``tightening``: what is taken off corridor rows (N_p + 1,), m, and inputs (N_p,), m/s, at every step."""
+        self.motion, self.shape, self.tuning, self.limit = motion, shape, tuning, limit
+        self.faces = shape.faces()
+        self.condensed: Condensed = condense(motion, tuning.n_c, tuning.n_lqr, tuning.rho)
+        total, count = tuning.inputs, len(self.faces.offsets)
+        off_corridor, off_input = (np.zeros(total + 1), np.zeros(total)) if tightening is None else tightening
+        room = self.faces.offsets - off_corridor[2:total, None]
+        pushing = np.repeat(tuning.u_max - off_input, 3)
+        if (pushing <= 0.0).any():
+            required = f"tightening below u_max, {tuning.u_max:g} m/s, at every step"
+            raise invalid("u_max", required, float(off_input.max()))
+        theta_high = limit.high.copy()
+        if tuning.theta_limit != "zero":
+            # Theta is where the chaser stays for ever: it keeps the distance of the last step.
+            theta_high[:count] -= off_corridor[-1]
+        self.high = np.concatenate([room.ravel(), pushing, theta_high])
+        self.low = np.concatenate([np.full(room.size, -np.inf), -pushing, limit.low])
+        self.give = np.concatenate(
+            [
+                np.ones(room.size),
+                np.zeros(3),
+                np.full(len(pushing) - 3, tuning.u_max),
+                np.zeros(len(theta_high)),
+            ]
+        )
+        n, size = 3 * tuning.n_c + 3, len(self.high)
+        self.rows, self.shift = np.empty((n, size)), np.empty((6, size))
+        self.hessian, self.slope = np.empty((n, n)), np.empty((n, 6))
+        self.fixed = (
+            np.ascontiguousarray(motion.a[:3, :3]),
+            np.array([motion.p, motion.q, motion.r]),
+            self.condensed.reach,
+            self.condensed.push,
+            self.condensed.cost,
+            float(tuning.tau),
+            np.ascontiguousarray(self.faces.normals),
+            np.ascontiguousarray(limit.normals),
+        )
+
+    @property
+    def ahead(self) -> int:
+        """How many attitudes a program reads: those of this step and of N_p + 1 more."""
+        return self.tuning.inputs + 2
+
+    def assemble(self, attitudes: Floats) -> None:
+        """Fill the rows for ``attitudes`` (>= N_p + 2, 3, 3), this step's first; raises ``InvalidInput`` for fewer."""
+        if attitudes.shape[1:] != (3, 3) or len(attitudes) < self.ahead:
+            raise invalid("attitudes", f"at least {self.ahead} rotations (3, 3)", attitudes.shape)
+        attitudes = np.ascontiguousarray(attitudes[: self.ahead])
+        assemble(attitudes, *self.fixed, self.rows, self.shift, self.hessian, self.slope)
+
+    def fixed_violation(self, attitudes: Floats, states: Floats) -> Floats:
+        """(...), m: how far LVLH states (..., 6) overstep the corridor at this step and the next; <= 0 inside."""
+        now = states[..., :3] @ attitudes[0].T
+        after = (states @ self.motion.a[:3].T) @ attitudes[1].T
+        both = np.stack([now, after], axis=-2)
+        out: Floats = -self.faces.slack(both).min(axis=(-2, -1))
+        return out
+
+    def plan(self, attitudes: Floats, state: Floats, *, soft: bool = False) -> Plan:
+        """Assemble and solve from an LVLH ``state`` (6,); ``soft``: least violation where no plan keeps every row."""
+        self.assemble(attitudes)
+        state = np.ascontiguousarray(state, dtype=np.float64)
+        z, dual = np.empty(len(self.rows)), np.empty(len(self.high))
+        arrays = (self.rows, self.shift, self.hessian, self.slope, self.low, self.high)
+        status, _ = solve_from(*arrays, state, z, dual)
+        violation = max(0.0, float(self.fixed_violation(attitudes, state)) - FIXED_TOLERANCE)
+        if status != SOLVED and soft:
+            proof = dual.copy()
+            status, least = soften(*arrays, self.give, state, z, dual)
+            violation, dual = max(violation, least), proof
+        if status != SOLVED:
+            nothing = np.full((1, 3), np.nan)
+            return Plan(False, np.inf, nothing[0], nothing, np.full((1, 6), np.nan), np.nan, dual, status)
+        return self._plan(attitudes, state, z, dual, violation, status)
+
+    def starts(self, attitudes: Floats, starts: Floats) -> Bools:
+        """Whether the program has a plan for every LVLH start (S, 6): True, False."""
+        self.assemble(attitudes)
+        starts = np.ascontiguousarray(starts, dtype=np.float64)
+        arrays = (self.rows, self.shift, self.hessian, self.slope, self.low, self.high)
+        solved: Bools = feasible_starts(*arrays, starts) == SOLVED
+        return solved & (self.fixed_violation(attitudes, starts) <= FIXED_TOLERANCE)
+
+    def _plan(
+        self, attitudes: Floats, state: Floats, z: Floats, dual: Floats, violation: float, status: int
+    ) -> Plan:
+        theta = z[-3:].copy()
+        frames = attitudes[: self.ahead]
+        targets = equilibrium.states(self.motion, frames) @ theta
+        deviation = np.concatenate([state - targets[0], z[:-3]])
+        pushes = self.condensed.push @ deviation
+        held = equilibrium.inputs(self.motion, frames) @ theta
+        inputs = held + np.einsum("kij,kj->ki", frames[: len(pushes)], pushes)
+        states = np.empty((len(pushes) + 1, 6))
+        states[0] = state
+        for j, given in enumerate(inputs):
+            states[j + 1] = self.motion.a @ states[j]
+            states[j + 1, 3:] += frames[j].T @ given
+        cost = float(deviation @ self.condensed.cost @ deviation) + self.tuning.tau * float(theta @ theta)
+        return Plan(violation == 0.0, violation, theta, inputs, states, cost, dual, status)
+
+
+@dataclass(frozen=True, slots=True)
+class PlannedImpulse(Command):
+    """A command with the plan behind it."""
+
+    plan: Plan | None = None
+
+
+class TrackingMpc:
+    """The controller for the loop: step k's program is solved from the state navigated then.
+
+    The planned input belongs to the end of its step, the loop's impulse to the start of its interval: what step k - 1
+    decided is given at the start of interval k, and step k plans from the state after it.
+    """
+
+    def __init__(self, program: Program, attitudes: Floats, *, soft: bool = True) -> None:
+        """``attitudes`` (K, 3, 3) at all nodes of the flight and N_p + 1 after it."""
+        self.program, self.attitudes, self.soft = program, attitudes, soft
+        self._due = np.zeros(3)
+
+    def begin(self, state: Floats) -> None:  # noqa: ARG002
+        """A new flight: no impulse is due."""
+        self._due = np.zeros(3)
+
+    def command(self, k: int, state: Floats) -> PlannedImpulse:
+        """The impulse decided a step ago, and the plan whose first input is due a step later."""
+        impulse = self._due
+        after = np.array(state, dtype=np.float64)
+        after[3:] += impulse
+        plan = self.program.plan(self.attitudes[k:], after, soft=self.soft)
+        usable = plan.status == SOLVED
+        self._due = self.attitudes[k].T @ plan.inputs[0] if usable else np.zeros(3)
+        return PlannedImpulse(np.zeros(3), plan.feasible, "tracking", impulse, plan)

@@ -1,0 +1,134 @@
+"""Up to which distance from the target the input suffices to stay on an equilibrium, for every attitude.
+
+``printed`` is paper 002, (35)-(41): it leaves the centripetal term out and is NOT safe near spins about a principal
+axis. ``ball`` bounds u_e(k) = P r(k+2) + Q r(k+1) + R r(k) by Taylor's formula about the middle position: with
+|r'| <= Omega |theta| and |r''| <= alpha |theta|, alpha = Omega^2 + max |omega dot|,
+
+    |u_e| <= (|P + Q + R| + T |P - R| Omega + T^2 (|P| + |R|) alpha / 2) |theta|.
+
+``bracket`` encloses the exact maximum over all phases of the polhode and all attitudes in which LVLH may see it.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from safestart.control.tracking_mpc.sampled import Sampled
+from safestart.control.tracking_mpc.tumble import Tumble
+from safestart.model.scenario import Floats
+
+_PHASES = 20_000
+_ATTITUDES = 400
+_KEPT = 60
+
+
+def printed_radius(tumble: Tumble, motion: Sampled, u_max: float) -> float:
+    """theta_max of paper 002, (39) and (41), m: block row norms, radii 1, h / I_min and sqrt(varpi) T; inf at rest."""
+    a, period, p = motion.a, motion.period, motion.p
+    rest, vv = np.eye(3) - a[:3, :3], a[3:, 3:]
+    blocks = (
+        p @ rest - vv @ p @ rest - a[3:, :3],
+        period * (p @ rest - vv @ p + p),
+        period * p,
+    )
+    moments, squares = tumble.principal()
+    momentum = float(np.sqrt((moments**2 * squares).sum()))
+    double_energy = float((moments * squares).sum())
+    most = 0.0
+    for i in range(3):
+        for j in range(3):
+            if i != j:
+                left = momentum**2 - moments[i] * double_energy
+                right = momentum**2 - moments[j] * double_energy
+                scale = (moments[i] + moments[j]) ** 2 / (moments[i] * moments[j]) ** 3
+                most = max(most, -scale * left * right)
+    radii = (1.0, momentum / float(moments[0]), math.sqrt(most) * period)
+    need = sum(r * np.linalg.norm(block, axis=1) for r, block in zip(radii, blocks, strict=True))
+    worst = float(np.max(need))
+    return u_max / worst if worst > 0.0 else math.inf
+
+
+def ball_radius(tumble: Tumble, motion: Sampled, u_max: float) -> float:
+    """A radius, m, within which |u_e| <= u_max at all times and attitudes (rigorous); inf where nothing is needed."""
+    omega, alpha = _seen_rates(tumble)
+    p, q, r, period = motion.p, motion.q, motion.r, motion.period
+    need = (
+        _norm(p + q + r)
+        + period * _norm(p - r) * omega
+        + 0.5 * period**2 * (_norm(p) + _norm(r)) * (omega**2 + alpha)
+    )
+    return u_max / need if need > 0.0 else math.inf
+
+
+def bracket(tumble: Tumble, motion: Sampled, u_max: float) -> tuple[float, float]:
+    """(low, high), m: the exact theta_max over all phases and attitudes lies between them; infinite where it is.
+
+    C(k) u-map = C P R2 C' D2' + C Q R1 C' D1' + C R C' with D_j the body's own turn over j steps, R_j that of LVLH and
+    C any attitude. Its part of P ~ 1/T, Q ~ -2/T, R ~ 1/T is the same for every C; it is taken at 20 000 phases, with a
+    Lipschitz bound between them (|dD_j/dt| <= j T max |omega dot|). What is left is bounded by norms for ``low`` and
+    sampled for ``high``.
+    """
+    period, body = motion.period, tumble.body
+    omega, change = tumble.rates()
+    omega, change = omega * (1.0 + 1e-12), change * (1.0 + 1e-12)
+    times = body.polhode_period() * np.arange(_PHASES if omega > 0.0 else 1) / _PHASES
+    here = body.rotation(times)
+    first = here @ body.rotation(times + period).swapaxes(1, 2)
+    second = here @ body.rotation(times + 2.0 * period).swapaxes(1, 2)
+    steady = (second - 2.0 * first + np.eye(3)) / period
+    needs = np.linalg.norm(steady, axis=2).max(axis=1)
+    gap = 0.5 * (times[1] - times[0]) * 4.0 * change if len(times) > 1 else 0.0
+    one, two = _turn(tumble, period), _turn(tumble, 2.0 * period)
+    p, q, r = motion.p @ two, motion.q @ one, motion.r
+    p_left, q_left, r_left = p - np.eye(3) / period, q + 2.0 * np.eye(3) / period, r - np.eye(3) / period
+    left = (
+        _norm(p_left + q_left + r_left)
+        + 0.5 * _norm(p_left + r_left) * period**2 * (omega**2 + change)
+        + _norm(p_left - r_left) * period * omega
+    )
+    most = float(needs.max()) + gap + left
+    worst = np.argsort(needs)[-_KEPT:]
+    frames = _attitudes()
+    seen = [frames @ matrix @ frames.swapaxes(1, 2) for matrix in (p, q, r)]
+    found = 0.0
+    for index in worst.tolist():
+        maps = seen[0] @ second[index] + seen[1] @ first[index] + seen[2]
+        found = max(found, float(np.linalg.norm(maps, axis=2).max()))
+    low = u_max / most if most > 0.0 else math.inf
+    return low, (u_max / found if found > 0.0 else math.inf)
+
+
+def _seen_rates(tumble: Tumble) -> tuple[float, float]:
+    """Bounds on |omega| and |omega dot| against LVLH: those of the body, and LVLH's own where it is kept."""
+    omega, change = tumble.rates()
+    if tumble.reference == "lvlh":
+        return omega, change
+    return omega + tumble.mean_motion, change + omega * tumble.mean_motion
+
+
+def _turn(tumble: Tumble, time: float) -> Floats:
+    """LVLH coordinates to those ``time`` s later, or the identity where LVLH's turn is left out."""
+    if tumble.reference == "lvlh":
+        return np.eye(3)
+    angle = tumble.mean_motion * time
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def _attitudes() -> Floats:
+    """(A, 3, 3): rotations spread over all attitudes, the same every time."""
+    units = np.random.default_rng(2).normal(size=(_ATTITUDES, 4))
+    w, x, y, z = (units / np.linalg.norm(units, axis=1, keepdims=True)).T
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    ).transpose(2, 0, 1)
+
+
+def _norm(matrix: Floats) -> float:
+    return float(np.linalg.norm(matrix, 2))

@@ -1,0 +1,119 @@
+"""The polyhedra that the artificial reference theta may lie in, as rows on theta alone (body axes).
+
+Every one holds the corridor's faces. ``printed`` adds y <= y_max of paper 002 (42)-(45); ``ball`` the largest such cut
+inside the rigorous ball; ``corners`` the largest whose corners need no more than u_max at every node of the window;
+``polytope`` the rows |u_e(k; theta)| <= u_max themselves, without those that others imply; ``zero`` theta = 0. A window
+is the nodes of a flight and of the last plan after it, so that what is allowed at one node is allowed at the next.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import ConvexHull
+
+from safestart.control.tracking_mpc.equilibrium import inputs
+from safestart.control.tracking_mpc.sampled import Sampled
+from safestart.control.tracking_mpc.theta_radius import ball_radius, printed_radius
+from safestart.control.tracking_mpc.tumble import Tumble
+from safestart.control.tracking_mpc.tuning import DockingCorridor, ThetaLimit
+from safestart.model.scenario import Floats
+
+_FARTHEST = 1e5
+"""Cut that takes the place of none, m: a target at rest needs no input to stay anywhere."""
+
+
+@dataclass(frozen=True)
+class ThetaSet:
+    """``normals`` (H, 3) @ theta in [``low``, ``high``] (H,), m or m/s; ``y_max`` of a cut, m, else None."""
+
+    normals: Floats
+    low: Floats
+    high: Floats
+    y_max: float | None = None
+
+    def contains(self, theta: Floats, tolerance: float = 1e-9) -> bool:
+        """Whether ``theta`` (3,) fulfils all rows."""
+        values = self.normals @ theta
+        return bool((values <= self.high + tolerance).all() and (values >= self.low - tolerance).all())
+
+
+def theta_set(
+    limit: ThetaLimit,
+    shape: DockingCorridor,
+    tumble: Tumble,
+    motion: Sampled,
+    u_max: float,
+    attitudes: Floats,
+) -> ThetaSet:
+    """The set of a limit for a window of ``attitudes`` (K, 3, 3)."""
+    faces = shape.faces()
+    if limit == "zero":
+        return ThetaSet(np.eye(3), np.zeros(3), np.zeros(3))
+    if limit == "polytope":
+        return _polytope(shape, inputs(motion, attitudes), u_max)
+    if limit == "printed":
+        y_max = printed_cut(shape, printed_radius(tumble, motion, u_max))
+    elif limit == "ball":
+        y_max = cut_inside(shape, ball_radius(tumble, motion, u_max))
+    else:
+        y_max = corner_cut(shape, inputs(motion, attitudes), u_max)
+    normals = np.vstack([faces.normals, [0.0, 1.0, 0.0]])
+    high = np.append(faces.offsets, max(y_max, 0.0))
+    return ThetaSet(normals, np.full(len(high), -np.inf), high, y_max)
+
+
+def printed_cut(shape: DockingCorridor, radius: float) -> float:
+    """y_max of (42)-(45) as printed, with the sign error of xi_1; not positive where the ball is too small for it."""
+    cx, cz, x0, z0 = shape.c_x, shape.c_z, shape.x0, shape.z0
+    if math.isinf(radius):
+        return _FARTHEST
+    first = (cx * cz) ** 2 * (x0 * x0 + z0 * z0) + (cz * z0 + cx * x0) ** 2
+    second, third = cx * z0 + cz * x0, (cx * cz) ** 2 + cx * cx + cz * cz
+    return cx * cz * (math.sqrt(max(third * radius * radius - first, 0.0)) - second) / third
+
+
+def cut_inside(shape: DockingCorridor, radius: float) -> float:
+    """Largest y whose corners (+-(x0 + y / c_x), y, +-(z0 + y / c_z)) are inside the ball; below 0: none."""
+    if math.isinf(radius):
+        return _FARTHEST
+    a = 1.0 + 1.0 / shape.c_x**2 + 1.0 / shape.c_z**2
+    b = shape.x0 / shape.c_x + shape.z0 / shape.c_z
+    c = shape.x0**2 + shape.z0**2 - radius * radius
+    return (math.sqrt(b * b - a * c) - b) / a if c <= 0.0 else -1.0
+
+
+def corner_cut(shape: DockingCorridor, maps: Floats, u_max: float) -> float:
+    """Largest y whose four corners need |u_e| <= u_max in all of ``maps`` (K, 3, 3); below 0: none."""
+    y_max = _FARTHEST
+    for side_x in (-1.0, 1.0):
+        for side_z in (-1.0, 1.0):
+            at_port = maps @ np.array([side_x * shape.x0, 0.0, side_z * shape.z0])
+            along = maps @ np.array([side_x / shape.c_x, 1.0, side_z / shape.c_z])
+            for sign in (1.0, -1.0):
+                rest, growth = u_max - sign * at_port, sign * along
+                if (rest < 0.0).any():
+                    return -1.0
+                growing = growth > 0.0
+                y_max = min(y_max, float(np.min(rest[growing] / growth[growing], initial=np.inf)))
+    return y_max
+
+
+def _polytope(shape: DockingCorridor, maps: Floats, u_max: float) -> ThetaSet:
+    """Corridor and |maps theta| <= u_max, without the rows that the others imply."""
+    faces = shape.faces()
+    rows = maps.reshape(-1, 3)
+    normals = np.vstack([faces.normals, rows, -rows, [[0.0, 1.0, 0.0]]])
+    high = np.concatenate([faces.offsets, np.full(2 * len(rows), u_max), [_FARTHEST]])
+    # Seen from a point inside, the rows that count are the corners of the hull of normal / distance.
+    reach = float(np.max(rows @ [0.0, 1.0, 0.0], initial=-np.inf))
+    other = float(np.max(-rows @ [0.0, 1.0, 0.0], initial=-np.inf))
+    height = u_max / max(reach, other, u_max / _FARTHEST)
+    inside = np.array([0.0, 0.5 * min(height, 1.0), 0.0])
+    room = high - normals @ inside
+    kept = np.sort(ConvexHull(normals / room[:, None]).vertices)
+    # The corridor's own faces are told apart by their order, so they stay.
+    kept = np.union1d(np.arange(len(faces.offsets)), kept)
+    return ThetaSet(normals[kept], np.full(len(kept), -np.inf), high[kept])

@@ -1,0 +1,89 @@
+"""What a tracking MPC is made of: its corridor, limits, horizons and weights."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+
+from safestart.constraints.corridor import Corridor, polyhedron
+from safestart.errors import invalid
+from safestart.model.scenario import number
+
+ThetaLimit = Literal["printed", "ball", "corners", "polytope", "zero"]
+MAX_HORIZON = 400
+
+
+@dataclass(frozen=True, slots=True)
+class DockingCorridor:
+    """The prism of paper 002, eq. (4): y >= 0, |x| <= x0 + y / c_x, |z| <= z0 + y / c_z in the body frame, m.
+
+    Raises ``InvalidInput`` for a slope that is not positive and a half-width below 0.
+    """
+
+    c_x: float = 1.0
+    c_z: float = 1.0
+    x0: float = 0.1
+    z0: float = 0.1
+
+    def __post_init__(self) -> None:
+        number("c_x", self.c_x, 0.0, 1e3, open_low=True)
+        number("c_z", self.c_z, 0.0, 1e3, open_low=True)
+        number("x0", self.x0, 0.0, 1e3)
+        number("z0", self.z0, 0.0, 1e3)
+
+    def faces(self) -> Corridor:
+        """The five half-spaces with unit normals, so that a slack is a distance in metres."""
+        normals = np.array(
+            [
+                [0.0, -1.0, 0.0],
+                [self.c_x, -1.0, 0.0],
+                [-self.c_x, -1.0, 0.0],
+                [0.0, -1.0, self.c_z],
+                [0.0, -1.0, -self.c_z],
+            ]
+        )
+        side_x, side_z = self.c_x * self.x0, self.c_z * self.z0
+        offsets = np.array([0.0, side_x, side_x, side_z, side_z])
+        lengths = np.sqrt((normals**2).sum(axis=1))
+        names = ("port_plane", "right", "left", "top", "bottom")
+        return polyhedron(normals / lengths[:, None], offsets / lengths, names)
+
+
+@dataclass(frozen=True, slots=True)
+class Tuning:
+    """Limits, horizons and weights.
+
+    ``u_max`` m/s per body axis; ``n_c`` free inputs, then ``n_lqr`` steps of the regulator and two of dead-beat.
+    The cost is sum |x - x_e|^2 + ``rho`` |u - u_e|^2 + ``tau`` |theta|^2, and ``rho`` weighs the regulator's too.
+    Raises ``InvalidInput`` for values out of range and for ``n_c`` > ``n_lqr``.
+    """
+
+    u_max: float = 0.075
+    n_c: int = 3
+    n_lqr: int = 30
+    rho: float = 100.0
+    tau: float = 100.0
+    theta_limit: ThetaLimit = "polytope"
+
+    def __post_init__(self) -> None:
+        number("u_max", self.u_max, 0.0, 100.0, open_low=True)
+        number("rho", self.rho, 0.0, 1e9, open_low=True)
+        number("tau", self.tau, 0.0, 1e9)
+        for name in ("n_c", "n_lqr"):
+            value = getattr(self, name)
+            if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= MAX_HORIZON:
+                raise invalid(name, f"a whole number from 1 to {MAX_HORIZON}", value)
+        if self.n_c > self.n_lqr:
+            raise invalid("n_c", f"at most n_lqr, {self.n_lqr}", self.n_c)
+        if self.theta_limit not in get_args(ThetaLimit):
+            raise invalid("theta_limit", f"one of {', '.join(get_args(ThetaLimit))}", self.theta_limit)
+        if not math.isfinite(self.u_max):
+            raise invalid("u_max", "a finite number", self.u_max)
+
+    @property
+    def inputs(self) -> int:
+        """N_p: inputs of a plan before it stays on its equilibrium, N_c + N + 2."""
+        return self.n_c + self.n_lqr + 2

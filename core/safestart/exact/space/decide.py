@@ -1,0 +1,31 @@
+"""The exact answer in space: bracket of the margin, thrust for GO, multipliers for NO_GO."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from safestart.errors import invalid
+from safestart.exact.answer import GUARD, TOLERANCE, Answer
+from safestart.exact.decide import answer_of, outside
+from safestart.exact.search import Search
+from safestart.exact.space.question import SpaceQuestion
+from safestart.exact.space.watch import space_watch_of
+from safestart.model.scenario import Floats, number
+
+
+def decide_in_space(
+    question: SpaceQuestion, state: Floats, *, tolerance: float = TOLERANCE, verdict_only: bool = False
+) -> Answer:
+    """Answer for one start ``state`` (6,): LVLH position (m) and velocity (m/s); see :func:`safestart.exact.decide`.
+
+    The answer's ``thrust`` is (N, channels): m/s^2 in LVLH axes for a ball, else points of the unit set (shares of the
+    half-widths of a box in its own axes, throttles of thrusters). Raises ``InvalidInput`` for a state that is none.
+    """
+    state = np.asarray(state, dtype=np.float64)
+    if state.shape != (6,) or not np.isfinite(state).all() or float(np.abs(state).max()) > 1e6:
+        raise invalid("state", "six finite numbers within 1e6: position and velocity", state)
+    number("tolerance", tolerance, 1e-6, 1e3)
+    search = Search(space_watch_of(question), state)
+    if search.distance_now < -GUARD:
+        return outside(search)
+    return answer_of(search, search.narrow(tolerance, verdict_only=verdict_only))

@@ -1,0 +1,183 @@
+"""The question `stay` in space: a thrust history that keeps every face's distance positive at all times of [0, T]?
+
+Faces are half-spaces normal . p <= offset, fixed in the turning body or in LVLH. The motion is linear, the attitude a
+known function of time and the set of thrusts convex, so the largest margin is a convex problem, as for the planar
+question (:mod:`safestart.exact.question`): only the rows differ.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import ClassVar
+
+import numpy as np
+from scipy.optimize import linprog
+
+from safestart.attitude.in_lvlh import InLvlh
+from safestart.attitude.table import Table
+from safestart.attitude.turning import SmoothAttitude
+from safestart.constraints.thrust_limit import Frame, ThrustLimit, Vector
+from safestart.dynamics.cwh import Cwh
+from safestart.dynamics.motion import RelativeMotion
+from safestart.dynamics.yamanaka_ankersen import YamanakaAnkersen
+from safestart.errors import invalid
+from safestart.exact.question import MAX_STEPS, MAX_TIME
+from safestart.model.orbit import KeplerOrbit
+from safestart.model.scenario import MAX_RANGE, CorridorShape, Floats, number
+from safestart.optim.thrust_shapes import BALL, CUBE, SIMPLEX, UnitSet
+
+MOST_FACES = 32
+_UNIT_SETS: dict[str, UnitSet] = {"ball": BALL, "box": CUBE, "thrusters": SIMPLEX}
+
+
+@dataclass(frozen=True, slots=True)
+class Face:
+    """normal . p <= ``offset`` (m times the normal's length) for the position p in ``frame``."""
+
+    name: str
+    normal: Vector
+    offset: float
+    frame: Frame = "body"
+
+
+@dataclass(frozen=True, slots=True)
+class SpaceQuestion:
+    """``steps`` intervals of ``dt`` s; raises ``InvalidInput`` for what is no question.
+
+    Faces: 1 to 32 with names of their own, normals that are not 0, those of each frame with a point in common. A table
+    of attitudes goes on to the horizon.
+    """
+
+    orbit: KeplerOrbit
+    attitude: SmoothAttitude
+    faces: tuple[Face, ...]
+    thrust: ThrustLimit
+    dt: float = 2.0
+    steps: int = 30
+    dimensions: ClassVar[int] = 3
+    goal: ClassVar[None] = None
+    speed_limit: ClassVar[None] = None
+
+    def __post_init__(self) -> None:
+        number("dt", self.dt, 0.0, MAX_TIME, open_low=True)
+        if (
+            isinstance(self.steps, bool)
+            or not isinstance(self.steps, int)
+            or not 1 <= self.steps <= MAX_STEPS
+        ):
+            raise invalid("steps", f"an integer in [1, {MAX_STEPS}]", self.steps)
+        number("horizon", self.steps * self.dt, 0.0, MAX_TIME, open_low=True)
+        _check_faces(self.faces)
+        inner = self.attitude.inertial if isinstance(self.attitude, InLvlh) else self.attitude
+        if isinstance(self.attitude, InLvlh) and self.attitude.orbit != self.orbit:
+            raise invalid("attitude", "one seen from LVLH on the question's orbit", "another orbit")
+        if isinstance(inner, Table):
+            inner.reaches(self.horizon)
+
+    @property
+    def motion(self) -> RelativeMotion:
+        """CWH on a circular orbit, Yamanaka and Ankersen's on an elliptic one."""
+        return Cwh(self.orbit.mean_motion) if self.orbit.circular else YamanakaAnkersen(self.orbit)
+
+    @property
+    def horizon(self) -> float:
+        """T in seconds."""
+        return self.steps * self.dt
+
+    @property
+    def latest(self) -> float:
+        """The last double that is not after the exact T."""
+        time = self.horizon
+        while Fraction(time) > Fraction(self.dt) * self.steps:
+            time = math.nextafter(time, 0.0)
+        return time
+
+    @property
+    def thrust_set(self) -> UnitSet:
+        """The unit set that thrusts are an image of."""
+        return _UNIT_SETS[self.thrust.kind]
+
+    @property
+    def thrust_scale(self) -> float:
+        """For a ball its radius, m/s^2; else 1: the rows hold the map."""
+        return self.thrust.a_max[0] if self.thrust.kind == "ball" else 1.0
+
+    @property
+    def channels(self) -> int:
+        """Numbers that make one thrust."""
+        return self.thrust.channels
+
+    @property
+    def largest_thrust(self) -> float:
+        """Largest size of a thrust, m/s^2."""
+        return self.thrust.largest
+
+
+def five_faces(shape: CorridorShape, axis: Vector = (0.0, 1.0, 0.0)) -> tuple[Face, ...]:
+    """The paper's corridor along ``axis`` (body frame), turned there from +y by the shortest way."""
+    length = math.hypot(*axis)
+    if not 0.0 < length < math.inf:
+        raise invalid("axis", "three finite numbers, not all 0", axis)
+    x, y, z = (float(e) / length for e in axis)
+    if y > -1.0 + 1e-12:
+        # I + [v]x + [v]x^2 / (1 + y) for v = (y axis) x axis = (z, 0, -x).
+        share = 1.0 / (1.0 + y)
+        turn = np.array(
+            [[1.0 - share * x * x, x, -share * x * z], [-x, y, -z], [-share * x * z, z, 1.0 - share * z * z]]
+        )
+    else:
+        turn = np.diag([1.0, -1.0, -1.0])
+    cx, cz, rh = shape.c_x, shape.c_z, shape.hold_radius
+    rows = (
+        ("hold_plane", (0.0, -1.0, 0.0), -rh),
+        ("right", (1.0, -cx, 0.0), shape.x0 - cx * rh),
+        ("left", (-1.0, -cx, 0.0), shape.x0 - cx * rh),
+        ("top", (0.0, -cz, 1.0), shape.z0 - cz * rh),
+        ("bottom", (0.0, -cz, -1.0), shape.z0 - cz * rh),
+    )
+    out = []
+    for name, normal, offset in rows:
+        turned = (turn @ np.array(normal)).tolist() if (x, z) != (0.0, 0.0) or y < 0.0 else list(normal)
+        out.append(Face(name, (turned[0], turned[1], turned[2]), offset))
+    return tuple(out)
+
+
+def _check_faces(faces: Sequence[Face]) -> None:
+    if not 1 <= len(faces) <= MOST_FACES:
+        raise invalid("faces", f"1 to {MOST_FACES} faces", len(faces))
+    names = [face.name for face in faces]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice or not all(isinstance(name, str) and 0 < len(name) <= 40 for name in names):
+        raise invalid("faces", "names of 1 to 40 characters, each once", twice or names)
+    for face in faces:
+        if face.frame not in ("lvlh", "body"):
+            raise invalid("frame", "lvlh or body", face.frame)
+        if len(face.normal) != 3 or not 1e-6 <= math.hypot(*face.normal) <= 1e6:
+            raise invalid("normal", "three numbers of a length in [1e-6, 1e6]", face.normal)
+        number("offset", face.offset, -MAX_RANGE * 1e6, MAX_RANGE * 1e6)
+    for frame in ("lvlh", "body"):
+        chosen = [face for face in faces if face.frame == frame]
+        if chosen and not _meet(chosen):
+            raise invalid("faces", f"faces in {frame} axes with a point in common", [f.name for f in chosen])
+
+
+def _meet(faces: Sequence[Face]) -> bool:
+    """Whether a point lies inside all of them."""
+    normals = np.array([face.normal for face in faces])
+    lengths = np.linalg.norm(normals, axis=1)
+    rows = np.column_stack([normals / lengths[:, None], np.ones(len(faces))])
+    offsets = np.array([face.offset for face in faces]) / lengths
+    # The largest ball, of at most a metre, in the polyhedron.
+    found = linprog([0.0, 0.0, 0.0, -1.0], rows, offsets, bounds=[(None, None)] * 3 + [(None, 1.0)])
+    return found.x is not None and float(found.x[3]) >= 0.0
+
+
+def starts_in_lvlh(attitude: SmoothAttitude, positions: Floats, velocities: Floats) -> Floats:
+    """Starts (S, 6) in LVLH of body-frame positions (S, 3), m, and velocities (S, 3) against the turning body, m/s."""
+    at = np.zeros(1)
+    turn, omega = attitude.rotation(at)[0], attitude.angular_velocity(at)[0]
+    out: Floats = np.concatenate([positions @ turn, (velocities + np.cross(omega, positions)) @ turn], axis=1)
+    return out

@@ -1,0 +1,175 @@
+"""One flight in space watched at all times: as :mod:`safestart.exact.watch`, for any attitude, orbit and thrusts.
+
+Between two samples a distance is enclosed by the cubic through value and slope, less h^4 / 384 times a bound on its
+fourth derivative, by Leibniz from bounds on the derivatives of the faces' normals and of the position.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import lru_cache
+
+import numpy as np
+
+from safestart.constraints.cubic import dips
+from safestart.exact.norm_rows import Blocks
+from safestart.exact.space.bends import bend_of
+from safestart.exact.space.question import SpaceQuestion
+from safestart.exact.watch import Cuts, Ints, Minima
+from safestart.model.scenario import Floats
+from safestart.optim.prediction import moved_many, prediction_of
+
+# Samples at most this far apart, in seconds and in radians of turn, so that the cubic's error stays near 1e-7 m.
+_LONGEST_SAMPLE_S, _LARGEST_TURN = 0.5, 0.02
+_MOST_SAMPLES = 100_000
+
+
+class SpaceWatch:
+    """The margins of one question; made by :func:`space_watch_of`.
+
+    ``normals`` (F, 3) are unit normals in LVLH axes at t = 0, ``offsets`` (F,) m. Thrusts are (N, channels): of a ball
+    in m/s^2, else points of the unit set.
+    """
+
+    rounding = 1e-12
+    """The attitude's formulas lose a digit more than a plane turn does."""
+
+    def __init__(self, question: SpaceQuestion) -> None:
+        self.question = question
+        faces = question.faces
+        given = np.array([face.normal for face in faces])
+        lengths = np.sqrt(np.square(given).sum(axis=1))
+        self._own = given / lengths[:, None]
+        self.offsets = np.array([face.offset for face in faces]) / lengths
+        self.names = tuple(face.name for face in faces)
+        self._in_body = np.array([face.frame == "body" for face in faces])
+        self.normals = self._turned(np.zeros(1))[0]
+        self.prediction = prediction_of(question.motion, question.dt, question.steps, 3, 1)
+        self._sample()
+        begins = question.dt * np.arange(question.steps, dtype=np.float64)
+        self._pushes: Floats | None = None
+        if question.thrust.kind != "ball":
+            pushes = np.broadcast_to(question.thrust.pushes, (question.steps, 3, question.channels))
+            if question.thrust.frame == "body":
+                pushes = question.attitude.rotation(begins).swapaxes(1, 2) @ pushes
+            self._pushes = np.ascontiguousarray(pushes)
+
+    def _sample(self) -> None:
+        """Points within the intervals, segments between them, and what is known of both without a flight."""
+        question = self.question
+        self._turn_bounds = question.attitude.turn_bounds()
+        turning = max(bound ** (1.0 / k) for k, bound in enumerate(self._turn_bounds, 1))
+        longest = min(_LONGEST_SAMPLE_S, _LARGEST_TURN / turning if turning > 0.0 else math.inf)
+        count = max(1, min(math.ceil(question.dt / longest), _MOST_SAMPLES // question.steps))
+        parts = question.dt * np.arange(count + 1) / count
+        knots = question.attitude.knots
+        taus, intervals = [], []
+        for k in range(question.steps):
+            begin = question.dt * k
+            inside = knots[(knots > begin) & (knots < begin + question.dt)] - begin
+            own = np.unique(np.concatenate([parts, inside])) if len(inside) else parts
+            taus.append(own)
+            intervals.append(np.full(len(own), k))
+        tau, self._interval = np.concatenate(taus), np.concatenate(intervals)
+        times = question.dt * self._interval + tau
+        segments = np.nonzero(self._interval[1:] == self._interval[:-1])[0]
+        self._first, self._last = segments, segments + 1
+        self._length = (tau[1:] - tau[:-1])[segments]
+        self._begin, self._longest = times[segments], float(self._length.max())
+        self._phi, self._held = self._tables(tau, times)
+        self._normals = self._turned(times)
+        slopes = self._turning(times, times)
+        self._slope_first, self._slope_last = slopes[self._first], slopes[self._last]
+        if len(knots):
+            self._slope_last = self._turning(times, np.nextafter(times, -np.inf))[self._last]
+
+    def _tables(self, tau: Floats, times: Floats) -> tuple[Floats, Floats]:
+        """Transition (P, 6, 6) and held thrust (P, 6, 3) from each point's node to the point."""
+        if self.question.orbit.circular:
+            each, back = np.unique(tau, return_inverse=True)
+            phi, held = moved_many(self.question.motion, np.zeros(len(each)), each, 3)
+            return phi[back], held[back]
+        return moved_many(self.question.motion, times - tau, times, 3)
+
+    def _turned(self, times: Floats) -> Floats:
+        """Normals (T, F, 3) in LVLH axes."""
+        out = np.broadcast_to(self._own, (len(times), *self._own.shape))
+        if not self._in_body.any():
+            return out
+        turned: Floats = self._own @ self.question.attitude.rotation(times)
+        return np.where(self._in_body[:, None], turned, out)
+
+    def _turning(self, times: Floats, just: Floats) -> Floats:
+        """Rates (T, F, 3) of the normals in LVLH axes, with the angular velocity of the times ``just``."""
+        if not self._in_body.any():
+            return np.zeros((len(times), *self._own.shape))
+        turn = self.question.attitude.rotation(times)
+        omega = self.question.attitude.angular_velocity(just)
+        moved: Floats = np.cross(omega[:, None, :], self._own[None]) @ turn
+        return np.where(self._in_body[:, None], moved, 0.0)
+
+    def accelerations(self, thrust: Floats) -> Floats:
+        """Thrusts (N, 3), LVLH, m/s^2, of points (N, channels)."""
+        if self._pushes is None:
+            return thrust
+        out: Floats = (self._pushes @ thrust[:, :, None])[..., 0]
+        return out
+
+    def flown(self, state: Floats, thrust: Floats) -> Floats:
+        """States (P, 6) at the points of a flight from ``state`` (6,)."""
+        u, table = self.accelerations(thrust), self.prediction
+        nodes = table.free @ state + (table.driven.reshape(-1, table.driven.shape[-1]) @ u.ravel()).reshape(
+            -1, 6
+        )
+        moved = (self._phi @ nodes[self._interval][:, :, None])[..., 0]
+        out: Floats = moved + (self._held @ u[self._interval][:, :, None])[..., 0]
+        return out
+
+    def minima(self, state: Floats, thrust: Floats) -> Minima:
+        """Local minima and the all-times bound of the flight from ``state`` (6,) under ``thrust`` (N, channels)."""
+        flown = self.flown(state, thrust)
+        position, velocity = flown[:, :3], flown[:, 3:]
+        distance = self.offsets - (self._normals @ position[:, :, None])[..., 0]
+        closing = (self._normals @ velocity[:, :, None])[..., 0]
+        begin = closing[self._first] + (self._slope_first @ position[self._first][:, :, None])[..., 0]
+        end = closing[self._last] + (self._slope_last @ position[self._last][:, :, None])[..., 0]
+        span = -self._length[:, None]
+        value = np.stack([distance[self._first], distance[self._last]], axis=1)
+        low, at = dips(value, np.stack([span * begin, span * end], axis=1))
+        low, at = low[:, 0], at[:, 0]
+        fence = np.full((1, low.shape[1]), np.inf)
+        before, after = np.concatenate([fence, low[:-1]]), np.concatenate([low[1:], fence])
+        index, face = np.nonzero((low <= before) & (low < after))
+        times = self._begin[index] + self._length[index] * at[index, face]
+        furthest = math.sqrt(float(np.square(position).sum(axis=1).max()))
+        fastest = math.sqrt(float(np.square(velocity).sum(axis=1).max()))
+        push = math.sqrt(float(np.square(self.accelerations(thrust)).sum(axis=1).max()))
+        turning = self._turn_bounds if self._in_body.any() else (0.0, 0.0, 0.0, 0.0)
+        bend = bend_of(self.question.orbit, turning, 0.5 * self._longest, furthest, fastest, push)
+        lowest = float(low.min()) - bend * self._longest**4 / 384.0
+        return Minima(lowest, np.minimum(times, self.question.horizon), face, low[index, face])
+
+    def cuts(self, times: Floats, faces: Ints) -> Cuts:
+        """Rows of f_i(t) = offset + start . x0 + thrust . w for pairs of time (J,) in [0, T] and face (J,)."""
+        directions = -self._own[faces]
+        body = np.nonzero(self._in_body[faces])[0]
+        if len(body):
+            turn = self.question.attitude.rotation(times[body])
+            directions[body] = (directions[body][:, None, :] @ turn)[:, 0]
+        start, thrust = self.prediction.position_rows(times, directions)
+        if self._pushes is not None:
+            by_interval = thrust.reshape(len(times), self.question.steps, 3)
+            thrust = np.einsum("jka,kab->jkb", by_interval, self._pushes).reshape(len(times), -1)
+        return Cuts(times, faces, self.offsets[faces], start, thrust)
+
+    def blocks(self, names: Sequence[str], times: Floats) -> Blocks:
+        """None: the question has no norm limits."""
+        width = self.question.steps * self.question.channels
+        return Blocks(times, tuple(names), np.zeros((0, 4)), np.zeros((0, 4, 6)), np.zeros((0, 4, width)))
+
+
+@lru_cache(maxsize=16)
+def space_watch_of(question: SpaceQuestion) -> SpaceWatch:
+    """The watch of a question, kept between calls."""
+    return SpaceWatch(question)

@@ -1,0 +1,72 @@
+"""A course of states in a named frame: what an OEM, an OPM, an OCM or a table comes to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from safestart.errors import invalid
+from safestart.interchange.covariance import Covariance
+from safestart.interchange.epochs import SECOND, Nanoseconds, system_of, text_of
+from safestart.interchange.frames import frame_of
+from safestart.model.orbit import EARTH_RADIUS
+from safestart.model.scenario import Floats
+
+MOST_STATES = 1_000_000
+_NEAREST, _FURTHEST, _FASTEST = 0.9 * EARTH_RADIUS, 1e9, 2e4
+
+
+@dataclass(frozen=True)
+class Ephemeris:
+    """``states`` (K, 6), m and m/s, in ``frame`` at TAI ``epochs`` (K,), ns, that rise.
+
+    ``time_system`` is how a file writes the epochs; ``covariances`` belong to epochs of their own. ``pieces`` (S,) are
+    the indices at which a new segment begins, 0 first: nothing is interpolated from one to the next. Raises
+    ``InvalidInput`` for epochs that do not rise, states that are not finite, and such as no orbit of the Earth has
+    (wrong units).
+    """
+
+    name: str
+    object_id: str
+    frame: str
+    time_system: str
+    epochs: Nanoseconds
+    states: Floats
+    covariances: tuple[Covariance, ...] = ()
+    pieces: tuple[int, ...] = (0,)
+    center: str = field(default="EARTH")
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "frame", frame_of(self.frame))
+        system_of(self.time_system)
+        if self.center.upper() != "EARTH":
+            raise invalid("CENTER_NAME", "EARTH", self.center)
+        count = len(self.epochs)
+        if not 1 <= count <= MOST_STATES or self.states.shape != (count, 6):
+            raise invalid(
+                "states", f"1 to {MOST_STATES} epochs and as many states of 6 numbers", self.states.shape
+            )
+        steps = np.diff(self.epochs)
+        if (steps <= 0).any():
+            k = int(np.argmax(steps <= 0))
+            before, after = text_of(self.epochs[k : k + 2], self.time_system)
+            raise invalid("epochs", "epochs that rise", f"{after} after {before}")
+        if not np.isfinite(self.states).all():
+            raise invalid("states", "finite numbers", "others")
+        distance = np.sqrt(np.square(self.states[:, :3]).sum(axis=1))
+        speed = np.sqrt(np.square(self.states[:, 3:]).sum(axis=1))
+        wrong = (distance < _NEAREST) | (distance > _FURTHEST) | (speed > _FASTEST) | (speed < 10.0)
+        if wrong.any():
+            k = int(np.argmax(wrong))
+            raise invalid(
+                "states",
+                f"an orbit of the Earth: {_NEAREST:g} to {_FURTHEST:g} m from its centre, 10 to {_FASTEST:g} m/s "
+                "(files hold km and km/s)",
+                f"{distance[k]:g} m and {speed[k]:g} m/s at {text_of(self.epochs[k : k + 1], self.time_system)[0]}",
+            )
+
+    @property
+    def span_s(self) -> float:
+        """From the first to the last epoch, s."""
+        return float(self.epochs[-1] - self.epochs[0]) / SECOND

@@ -1,0 +1,92 @@
+"""Frames around the Earth by name, and states taken from them to GCRF by ERFA, the IAU's library.
+
+GCRF and ICRF have the same axes here. EME2000 (J2000) differs from them by the frame bias of some 0.02 arcseconds. TEME
+is the true equator and mean equinox of date (IAU 1976 precession, IAU 1980 nutation), as SGP4 uses it. ITRF turns with
+the Earth (IAU 2006/2000A) with UT1 taken as UTC and the pole where it is on average: the axes are within 7e-5 rad of
+the true ones. Two states in ITRF have the same relative state in LVLH, up to 1e-7 of their distance; an attitude
+against inertial axes beside them is refused (:mod:`safestart.interchange.relative`).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from safestart.errors import Unavailable, invalid
+from safestart.interchange.epochs import SECOND, Nanoseconds, leap_seconds
+from safestart.model.scenario import Floats
+
+INERTIAL = ("GCRF", "ICRF", "EME2000", "TEME")
+"""Frames that do not turn (TEME by 50 arcseconds a year)."""
+_SAME = {
+    "J2000": "EME2000",
+    "EME2000": "EME2000",
+    "GCRF": "GCRF",
+    "ICRF": "ICRF",
+    "TEME": "TEME",
+    "TEMEOFDATE": "TEME",
+}
+EARTH_TURN = 7.292115146706979e-5
+"""Rate of the Earth, rad/s (IERS)."""
+_J2000_S = 43_200
+"""2000-01-01T12:00:00 in seconds of the day."""
+_TT_LESS_TAI = 32.184
+
+
+def frame_of(name: str) -> str:
+    """The frame of this name, one for all spellings; raises ``InvalidInput`` for one that is not known."""
+    plain = name.upper().replace("_", "").replace("-", "").replace(" ", "")
+    if plain in _SAME:
+        return _SAME[plain]
+    if plain.startswith("ITRF") and (plain == "ITRF" or plain[4:].isdigit()):
+        return "ITRF"
+    raise invalid("REF_FRAME", f"one of {', '.join(INERTIAL)}, ITRF", name)
+
+
+def to_gcrf(frame: str, epochs: Nanoseconds, states: Floats) -> Floats:
+    """States (K, 6), m and m/s, at TAI epochs (K,), in GCRF. Raises ``InvalidInput``, ``Unavailable``."""
+    frame = frame_of(frame)
+    if frame in ("GCRF", "ICRF"):
+        return states
+    turn = rotation_to_gcrf(frame, epochs)
+    position, velocity = states[:, :3], states[:, 3:]
+    if frame == "ITRF":
+        velocity = velocity + np.cross([0.0, 0.0, EARTH_TURN], position)
+    turned = [np.einsum("kij,kj->ki", turn, part) for part in (position, velocity)]
+    return np.concatenate(turned, axis=1)
+
+
+def rotation_to_gcrf(frame: str, epochs: Nanoseconds) -> Floats:
+    """(K, 3, 3): coordinates in ``frame`` to coordinates in GCRF at TAI epochs (K,)."""
+    try:
+        import erfa
+    except ModuleNotFoundError:
+        raise Unavailable(
+            f"{frame} requires the package pyerfa (extra files)", required="the package pyerfa"
+        ) from None
+    frame = frame_of(frame)
+    if frame in ("GCRF", "ICRF"):
+        return np.broadcast_to(np.eye(3), (len(epochs), 3, 3))
+    bias = np.asarray(erfa.bp06(2451545.0, 0.0)[0])
+    if frame == "EME2000":
+        return np.broadcast_to(bias.T, (len(epochs), 3, 3))
+    first, day = 2451545.0, (np.asarray(epochs) / SECOND - _J2000_S + _TT_LESS_TAI) / 86_400.0
+    if frame == "TEME":
+        longitude, _ = erfa.nut80(first, day)
+        equinoxes = np.asarray(longitude * np.cos(erfa.obl80(first, day)))
+        tod = np.asarray(erfa.pnm80(first, day))
+        # TEME to TOD turns by the equation of the equinoxes; the transposes lead on to EME2000 and GCRF.
+        out: Floats = np.einsum("ji,kmj,kmn->kin", bias, tod, _rz(-equinoxes))
+        return out
+    days = np.asarray(epochs) // (86_400 * SECOND)
+    utc = day - (_TT_LESS_TAI + leap_seconds(days)) / 86_400.0
+    celestial = np.asarray(erfa.c2t06a(first, day, first, utc, 0.0, 0.0))
+    return celestial.swapaxes(1, 2)
+
+
+def _rz(angles: Floats) -> Floats:
+    """(K, 3, 3): coordinates seen from axes that are turned about z by ``angles`` (K,)."""
+    out = np.zeros((len(angles), 3, 3))
+    cosine, sine = np.cos(angles), np.sin(angles)
+    out[:, 0, 0] = out[:, 1, 1] = cosine
+    out[:, 0, 1], out[:, 1, 0], out[:, 2, 2] = sine, -sine, 1.0
+    return out

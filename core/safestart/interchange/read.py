@@ -1,0 +1,59 @@
+"""Any file of the field as a record, by what it holds: CCSDS messages in KVN and XML, CSV, Parquet, MATLAB."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from safestart.errors import invalid
+from safestart.interchange import tables
+from safestart.interchange.attitude_course import AttitudeCourse
+from safestart.interchange.ccsds import aem, cdm, ocm, oem, parameters
+from safestart.interchange.ccsds.cdm import Encounter
+from safestart.interchange.ccsds.message import message_of
+from safestart.interchange.covariance import Sense
+from safestart.interchange.ephemeris import Ephemeris
+from safestart.interchange.source import bytes_of
+
+
+def ephemeris_of(path: Path | str, sense: Sense | None = None) -> Ephemeris:
+    """The states of an OEM, OPM, OCM or table; raises ``InvalidInput`` for another file, ``Unavailable``."""
+    return ephemeris_from(bytes_of(path), str(path), sense)
+
+
+def ephemeris_from(data: bytes, name: str = "", sense: Sense | None = None) -> Ephemeris:
+    """The same of a file's bytes; its ``name`` tells tables apart."""
+    if tables.is_table(data, name):
+        return tables.ephemeris_of(data, name)
+    message = message_of(data)
+    if message.kind == "OEM":
+        return oem.ephemeris_of(message, sense)
+    if message.kind == "OPM":
+        return parameters.orbit_of(message, sense).state
+    if message.kind == "OCM":
+        return ocm.ephemeris_of(message, sense)
+    raise invalid("file", "states: OEM, OPM, OCM, CSV, Parquet or MATLAB", message.kind)
+
+
+def attitude_of(path: Path | str) -> AttitudeCourse:
+    """The attitudes of an AEM, APM or table; raises ``InvalidInput`` for another file, ``Unavailable``."""
+    return attitude_from(bytes_of(path), str(path))
+
+
+def attitude_from(data: bytes, name: str = "") -> AttitudeCourse:
+    """The same of a file's bytes."""
+    if tables.is_table(data, name):
+        return tables.attitude_of(data, name)
+    message = message_of(data)
+    if message.kind == "AEM":
+        return aem.attitude_of(message)
+    if message.kind == "APM":
+        return parameters.attitude_of(message)
+    raise invalid("file", "attitudes: AEM, APM, CSV, Parquet or MATLAB", message.kind)
+
+
+def encounter_of(path: Path | str, sense: Sense) -> Encounter:
+    """The two objects of a CDM; ``sense`` says how its RTN covariances are meant. Raises ``InvalidInput``."""
+    message = message_of(bytes_of(path))
+    if message.kind != "CDM":
+        raise invalid("file", "CDM", message.kind)
+    return cdm.encounter_of(message, sense)

@@ -1,0 +1,86 @@
+"""States and attitudes between the epochs of a file, and nothing across its gaps."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from safestart.errors import invalid
+from safestart.interchange.attitude_course import AttitudeCourse
+from safestart.interchange.ephemeris import Ephemeris
+from safestart.interchange.epochs import SECOND, Nanoseconds, seconds_since
+from safestart.interchange.frames import to_gcrf
+from safestart.model.scenario import Bools, Floats
+
+LONGEST_STEP_S = 300.0
+"""Epochs further apart than this leave a gap. With 8 states the interpolation is then good to a micrometre (LEO)."""
+_POINTS = 8
+
+
+def states_at(ephemeris: Ephemeris, epochs: Nanoseconds) -> tuple[Floats, Bools]:
+    """GCRF states (K, 6) at TAI ``epochs`` (K,), and where there are any: NaN and False in gaps and outside.
+
+    Hermite interpolation through positions and velocities of up to eight neighbours, of one piece and without a gap
+    between them; at an epoch of the file the state of the file.
+    """
+    known = to_gcrf(ephemeris.frame, ephemeris.epochs, ephemeris.states)
+    out = np.full((len(epochs), 6), np.nan)
+    place = np.searchsorted(ephemeris.epochs, epochs)
+    place_in = np.minimum(place, len(ephemeris.epochs) - 1)
+    exact = ephemeris.epochs[place_in] == epochs
+    out[exact] = known[place_in[exact]]
+    runs = _runs(ephemeris)
+    run = runs[place_in]
+    between = ~exact & (place > 0) & (place < len(ephemeris.epochs)) & (runs[place - 1] == run)
+    windows: dict[int, list[int]] = {}
+    for k in np.nonzero(between)[0].tolist():
+        windows.setdefault(int(place[k]), []).append(k)
+    for right, indices in windows.items():
+        first = int(np.searchsorted(runs, runs[right]))
+        last = int(np.searchsorted(runs, runs[right], side="right"))
+        begin = max(first, min(right - _POINTS // 2, last - _POINTS))
+        chosen = slice(begin, min(last, begin + _POINTS))
+        zero = int(ephemeris.epochs[right - 1])
+        at = seconds_since(ephemeris.epochs[chosen], zero)
+        out[indices] = _hermite(at, known[chosen], seconds_since(epochs[indices], zero))
+    return out, np.asarray(~np.isnan(out[:, 0]))
+
+
+def _runs(ephemeris: Ephemeris) -> Nanoseconds:
+    """(K,): numbers that grow by one where a piece begins or a gap lies before the epoch."""
+    begins = np.zeros(len(ephemeris.epochs), dtype=np.int64)
+    begins[list(ephemeris.pieces)] = 1
+    begins[1:] |= np.diff(ephemeris.epochs) > round(LONGEST_STEP_S * SECOND)
+    begins[0] = 0
+    out: Nanoseconds = np.cumsum(begins)
+    return out
+
+
+def _hermite(nodes: Floats, states: Floats, times: Floats) -> Floats:
+    """States (Q, 6) at ``times`` (Q,) of the polynomial through states (M, 6) at ``nodes`` (M,), s."""
+    from scipy.interpolate import KroghInterpolator
+
+    both = np.empty((2 * len(nodes), 3))
+    both[0::2], both[1::2] = states[:, :3], states[:, 3:]
+    course = KroghInterpolator(np.repeat(nodes, 2), both)
+    return np.concatenate([course(times), course.derivative(times)], axis=1)
+
+
+def gaps_of(ephemeris: Ephemeris) -> list[tuple[int, int]]:
+    """Pairs of TAI epochs, ns, between which the file says nothing."""
+    ends = np.nonzero(np.diff(_runs(ephemeris)))[0]
+    return [(int(ephemeris.epochs[k]), int(ephemeris.epochs[k + 1])) for k in ends]
+
+
+def quaternions_at(course: AttitudeCourse, epochs: Nanoseconds) -> Floats:
+    """Quaternions (K, 4) at TAI ``epochs`` (K,) by slerp; raises ``InvalidInput`` outside of the course's span."""
+    from scipy.spatial.transform import Rotation, Slerp
+
+    if int(epochs.min()) < course.epochs[0] or int(epochs.max()) > course.epochs[-1]:
+        raise invalid("attitude", "a course over the whole span asked for", "a shorter one")
+    zero = int(course.epochs[0])
+    if len(course.epochs) == 1:
+        return np.repeat(course.quaternions, len(epochs), axis=0)
+    # Rotation takes the scalar last, and turns vectors where ours turn axes.
+    table = Rotation.from_quat(np.roll(course.quaternions, -1, axis=1))
+    turned = Slerp(seconds_since(course.epochs, zero), table)(seconds_since(epochs, zero))
+    return np.roll(turned.as_quat(), 1, axis=1)

@@ -1,0 +1,40 @@
+"""Bytes of a file, with a limit that holds before and while it is read."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from safestart.errors import InvalidInput, invalid
+
+MOST_BYTES = 64 * 1024 * 1024
+"""Largest file that is read: a day of states every second with covariance has about 40 MB."""
+
+
+def bytes_of(path: Path | str, most: int = MOST_BYTES) -> bytes:
+    """The file's bytes; raises ``InvalidInput`` when it is missing, not a file, or longer than ``most`` bytes.
+
+    Its length is asked first and no more than ``most`` bytes are read, whatever the length was said to be.
+    """
+    path = Path(path)
+    try:
+        size = path.stat().st_size
+        if size > most:
+            raise invalid("file", f"at most {most} bytes", f"{path.name} with {size}")
+        with path.open("rb") as file:
+            data = file.read(most + 1)
+    except OSError as error:
+        raise InvalidInput(f"file: required a readable file, received {path} ({error.strerror})") from None
+    if len(data) > most:
+        raise invalid("file", f"at most {most} bytes", f"{path.name} with more")
+    return data
+
+
+def text_of(data: bytes, name: str) -> str:
+    """UTF-8 text without a byte order mark; raises ``InvalidInput``."""
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise invalid(name, "UTF-8 text", f"byte {data[error.start]:#04x} at {error.start}") from None
+    if "\x00" in text:
+        raise invalid(name, "text without NUL characters", "NUL")
+    return text

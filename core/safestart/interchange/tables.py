@@ -1,0 +1,192 @@
+"""Tables of states and attitudes: CSV, Parquet, MATLAB 5; the same columns in each, units in their names.
+
+States: ``epoch`` (text), ``x_m``, ``y_m``, ``z_m``, ``vx_m_s``, ``vy_m_s``, ``vz_m_s``. Attitudes: ``epoch``, ``q_s``,
+``q_x``, ``q_y``, ``q_z`` (scalar first, reference to body). What a message says in its head stands in columns of one
+value: ``object``, ``object_id``, ``frame`` (``reference`` and ``body`` for attitudes), ``time_system``.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Mapping, Sequence
+from typing import Any, cast
+
+import numpy as np
+
+from safestart.errors import Unavailable, invalid
+from safestart.interchange.attitude_course import AttitudeCourse
+from safestart.interchange.ccsds.tokens import number
+from safestart.interchange.ephemeris import MOST_STATES, Ephemeris
+from safestart.interchange.epochs import epochs_of, shortened, text_of
+from safestart.interchange.source import text_of as decoded
+from safestart.model.scenario import Floats
+
+STATE = ("x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s")
+TURN = ("q_s", "q_x", "q_y", "q_z")
+_OF_STATES = ("object", "object_id", "frame", "time_system")
+_OF_TURNS = ("object", "object_id", "reference", "body", "time_system")
+Columns = dict[str, list[Any]]
+
+
+def is_table(data: bytes, name: str) -> bool:
+    """Whether these bytes are a table: by their first bytes, or the name's end for CSV."""
+    return data[:4] == b"PAR1" or data[:6] == b"MATLAB" or name.lower().endswith((".csv", ".mat", ".parquet"))
+
+
+def ephemeris_of(data: bytes, name: str) -> Ephemeris:
+    """States from a table; raises ``InvalidInput`` for missing or unknown columns and what is no number."""
+    columns = _columns(data, name)
+    head = _head(columns, _OF_STATES, STATE)
+    states = _numbers(columns, STATE)
+    epochs = epochs_of(columns["epoch"], head["time_system"])
+    return Ephemeris(head["object"], head["object_id"], head["frame"], head["time_system"], epochs, states)
+
+
+def attitude_of(data: bytes, name: str) -> AttitudeCourse:
+    """Attitudes from a table; raises ``InvalidInput`` as :func:`ephemeris_of` does."""
+    columns = _columns(data, name)
+    head = _head(columns, _OF_TURNS, TURN)
+    turns = _numbers(columns, TURN)
+    epochs = epochs_of(columns["epoch"], head["time_system"])
+    named = (head["object"], head["object_id"], head["reference"], head["body"], head["time_system"])
+    return AttitudeCourse(*named, epochs, turns)
+
+
+def columns_of(course: Ephemeris | AttitudeCourse) -> Columns:
+    """The columns of a course."""
+    head: tuple[str, ...] = _OF_TURNS
+    names: tuple[str, ...] = TURN
+    if isinstance(course, Ephemeris):
+        head, names, rows = _OF_STATES, STATE, course.states
+        values: tuple[str, ...] = (course.name, course.object_id, course.frame)
+    else:
+        rows, values = course.quaternions, (course.name, course.object_id, course.reference, course.body)
+    count = len(course.epochs)
+    texts = [shortened(text) for text in text_of(course.epochs, course.time_system)]
+    found: Columns = {"epoch": texts}
+    found |= {name: column.tolist() for name, column in zip(names, rows.T, strict=True)}
+    return found | {
+        name: [value] * count for name, value in zip(head, (*values, course.time_system), strict=True)
+    }
+
+
+def csv_of(columns: Mapping[str, Sequence[Any]]) -> bytes:
+    """CSV with a head, numbers to the last digit."""
+    sink = io.StringIO()
+    writer = csv.writer(sink, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows(zip(*columns.values(), strict=True))
+    return sink.getvalue().encode()
+
+
+def parquet_of(columns: Mapping[str, Sequence[Any]]) -> bytes:
+    """Parquet; raises ``Unavailable`` without pyarrow."""
+    pa, pq = _arrow()
+    sink = io.BytesIO()
+    pq.write_table(pa.table({name: list(column) for name, column in columns.items()}), sink)
+    return sink.getvalue()
+
+
+def matlab_of(columns: Mapping[str, Any]) -> bytes:
+    """A MATLAB 5 file: numbers as columns, texts as cells."""
+    from scipy.io import savemat
+
+    sink = io.BytesIO()
+    found = {}
+    for name, column in columns.items():
+        array = np.asarray(column)
+        text = array.dtype.kind == "U"
+        found[name] = (array.astype(object) if text else array.astype(np.float64)).reshape(len(array), -1)
+    # It takes files too, whatever its stubs say.
+    savemat(cast(Any, sink), found, do_compression=True, long_field_names=True)
+    return sink.getvalue()
+
+
+def _columns(data: bytes, name: str) -> Columns:
+    if data[:4] == b"PAR1":
+        pa, pq = _arrow()
+        try:
+            table = pq.read_table(io.BytesIO(data))
+        except (pa.ArrowException, OSError) as error:
+            raise invalid("file", "Parquet", str(error)) from None
+        found: Columns = table.to_pydict()
+    elif data[:6] == b"MATLAB":
+        found = _from_matlab(data)
+    elif name.lower().endswith(".csv"):
+        rows = list(csv.reader(io.StringIO(decoded(data, "file"), newline="")))
+        if not rows or len(set(rows[0])) != len(rows[0]):
+            raise invalid("file", "a head with every column once", rows[0] if rows else "an empty file")
+        short = next((k for k, row in enumerate(rows) if len(row) != len(rows[0])), None)
+        if short is not None:
+            raise invalid(f"line {short + 1}", f"{len(rows[0])} values", f"{len(rows[short])} (truncated)")
+        found = {column: [row[k] for row in rows[1:]] for k, column in enumerate(rows[0])}
+    else:
+        raise invalid("file", "what its name says", f"{name}: {data[:16]!r}")
+    lengths = {len(column) for column in found.values()}
+    if len(lengths) != 1 or not 1 <= max(lengths) <= MOST_STATES:
+        raise invalid("file", f"columns of one length, 1 to {MOST_STATES} rows", sorted(lengths))
+    return found
+
+
+def _from_matlab(data: bytes) -> Columns:
+    from scipy.io import loadmat
+
+    try:
+        loaded = loadmat(cast(Any, io.BytesIO(data)), struct_as_record=True, mat_dtype=True)
+    except Exception as error:
+        # The reader raises whatever its parts do on a damaged file.
+        raise invalid(
+            "file", "a MATLAB 5 file", f"one that is not ({type(error).__name__}: {error})"
+        ) from None
+    found: Columns = {}
+    for name, array in loaded.items():
+        if name.startswith("__"):
+            continue
+        flat = np.asarray(array).ravel()
+        if flat.dtype == object:
+            found[name] = [str(np.asarray(entry).ravel()[0]) if np.size(entry) else "" for entry in flat]
+        else:
+            found[name] = [str(entry).rstrip() if flat.dtype.kind == "U" else float(entry) for entry in flat]
+    return found
+
+
+def _head(columns: Columns, head: Sequence[str], numbers: Sequence[str]) -> dict[str, str]:
+    """What stands once for all rows; raises ``InvalidInput`` for columns missing, unknown, or not of one value."""
+    required = ("epoch", *numbers, *head)
+    for name in required:
+        if name not in columns:
+            raise invalid("file", f"columns {', '.join(required)}", f"no {name}")
+    for name in columns:
+        if name not in required:
+            raise invalid("file", f"columns {', '.join(required)}", name)
+    found = {}
+    for name in head:
+        values = set(columns[name])
+        if len(values) != 1 or not isinstance(next(iter(values)), str):
+            raise invalid(name, "one text in all rows", sorted(map(str, values))[:3])
+        found[name] = str(next(iter(values)))
+    if any(not isinstance(text, str) for text in columns["epoch"]):
+        raise invalid("epoch", "texts", "others")
+    return found
+
+
+def _numbers(columns: Columns, names: Sequence[str]) -> Floats:
+    out = np.empty((len(columns["epoch"]), len(names)))
+    for k, name in enumerate(names):
+        for row, value in enumerate(columns[name]):
+            if isinstance(value, bool) or value is None:
+                raise invalid(name, "a number", value)
+            out[row, k] = number(value, row + 2, name) if isinstance(value, str) else float(value)
+    if not np.isfinite(out).all():
+        raise invalid("file", "finite numbers", "others")
+    return out
+
+
+def _arrow() -> tuple[Any, Any]:
+    try:
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+    except ModuleNotFoundError:
+        raise Unavailable("Parquet requires the package pyarrow", required="the package pyarrow") from None
+    return pa, pq

@@ -1,0 +1,163 @@
+"""What is asked: a plan of impulses on a circular orbit, its errors, the failures of its burns, what to keep out of."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from safestart.dynamics.cwh import transition_matrix
+from safestart.errors import invalid
+from safestart.model.scenario import MAX_MEAN_MOTION, Floats, number
+
+MOST_BURNS = 200
+LONGEST_PHASE = 0.5
+"""A burn may be late, or stay on, for this phase n t of the orbit (rad) at the most."""
+
+
+@dataclass(frozen=True, slots=True)
+class Burn:
+    """An impulse (3,), m/s, LVLH axes, at ``time`` s."""
+
+    time: float
+    impulse: tuple[float, float, float]
+
+    @property
+    def size(self) -> float:
+        """|impulse|, m/s."""
+        return math.sqrt(math.fsum(x * x for x in self.impulse))
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """Burns in order, from the LVLH state ``start`` (6,), m and m/s, at the time of the first one; before it."""
+
+    mean_motion: float
+    start: tuple[float, ...]
+    burns: tuple[Burn, ...]
+
+    def __post_init__(self) -> None:
+        number("mean_motion_rad_s", self.mean_motion, 0.0, MAX_MEAN_MOTION, open_low=True)
+        if len(self.start) != 6 or not np.isfinite(self.start).all():
+            raise invalid("start", "6 finite numbers: position (m) and velocity (m/s)", self.start)
+        if not 1 <= len(self.burns) <= MOST_BURNS:
+            raise invalid("burns", f"1 to {MOST_BURNS} burns", len(self.burns))
+        before = -math.inf
+        for k, burn in enumerate(self.burns):
+            if not (math.isfinite(burn.time) and np.isfinite(burn.impulse).all() and len(burn.impulse) == 3):
+                raise invalid(f"burns.{k}", "a finite time (s) and 3 finite components (m/s)", burn)
+            if not burn.time > before:
+                raise invalid(f"burns.{k}.time_s", f"later than the burn before, at {before:g} s", burn.time)
+            if burn.size == 0.0:
+                raise invalid(f"burns.{k}.impulse_m_s", "an impulse that is not zero", burn.impulse)
+            before = burn.time
+
+    @classmethod
+    def of(cls, mean_motion: float, start: Sequence[float], times: Sequence[float], impulses: Floats) -> Plan:
+        """From arrays: times (K,), s, and impulses (K, 3), m/s."""
+        burns = [
+            Burn(float(t), (float(v[0]), float(v[1]), float(v[2])))
+            for t, v in zip(times, impulses, strict=True)
+        ]
+        return cls(float(mean_motion), tuple(float(x) for x in start), tuple(burns))
+
+    def before(self) -> Floats:
+        """States (K, 6) right before each burn, when all went as planned."""
+        state, out = np.array(self.start), []
+        for k, burn in enumerate(self.burns):
+            if k:
+                state = transition_matrix(self.mean_motion, burn.time - self.burns[k - 1].time) @ state
+            out.append(state.copy())
+            state[3:] += burn.impulse
+        return np.array(out)
+
+
+@dataclass(frozen=True, slots=True)
+class Errors:
+    """What a plan's states and burns may be off by.
+
+    ``position`` and ``velocity``: half-widths of a box, m and m/s. ``thrust_share``: relative error of a burn's size;
+    ``thrust_angle``: error of its direction, rad. ``at_each_burn``: the box holds before every burn, because the burns
+    are planned anew; else it holds before the first one, and the errors of the burns add up.
+    """
+
+    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    thrust_share: float = 0.0
+    thrust_angle: float = 0.0
+    at_each_burn: bool = True
+
+    def __post_init__(self) -> None:
+        for name, sizes, most in (("position_m", self.position, 1e6), ("velocity_m_s", self.velocity, 1e3)):
+            if len(sizes) != 3:
+                raise invalid(f"errors.{name}", "3 half-widths", sizes)
+            for size in sizes:
+                number(f"errors.{name}", size, 0.0, most)
+        number("errors.thrust_share", self.thrust_share, 0.0, 0.99)
+        number("errors.thrust_deg", self.thrust_angle, 0.0, 0.5 * math.pi)
+
+    def scaled(self, scale: float) -> Errors:
+        """All of them ``scale`` times as large."""
+        x, y, z = (scale * size for size in self.position)
+        u, v, w = (scale * size for size in self.velocity)
+        share, angle = scale * self.thrust_share, scale * self.thrust_angle
+        return Errors((x, y, z), (u, v, w), share, angle, self.at_each_burn)
+
+
+@dataclass(frozen=True, slots=True)
+class Failures:
+    """What may happen to any one burn; no burn follows a failure.
+
+    ``late``: up to so many s; ``partial``: any part of it is burnt, 0..100 %; ``stuck``: it goes on for up to so many s
+    at ``acceleration`` m/s^2; ``misdirected``: by up to so many rad. A burn that is missed is always asked for.
+    """
+
+    late: float = 0.0
+    partial: bool = False
+    stuck: float = 0.0
+    acceleration: float = 0.0
+    misdirected: float = 0.0
+
+    def __post_init__(self) -> None:
+        number("failures.late_s", self.late, 0.0, 1e5)
+        number("failures.stuck_s", self.stuck, 0.0, 1e5)
+        number("failures.acceleration_m_s2", self.acceleration, 0.0, 100.0)
+        number("failures.misdirected_deg", self.misdirected, 0.0, math.pi)
+        if self.stuck > 0.0 and self.acceleration == 0.0:
+            raise invalid("failures.acceleration_m_s2", "more than 0 where a burn may be stuck on", 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """``keep_out`` m around the target must stay empty for ``horizon`` s after the last burn that was made.
+
+    ``radius`` of the circular orbit, m, where the answer is to speak about the nonlinear motion (two point masses,
+    mu = n^2 radius^3); None: about the linear one.
+    """
+
+    plan: Plan
+    keep_out: float
+    horizon: float
+    errors: Errors = field(default_factory=Errors)
+    failures: Failures = field(default_factory=Failures)
+    radius: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.radius is not None:
+            number("semi_major_axis_m", self.radius, 1e3, 1e9)
+            if not self.errors.at_each_burn:
+                raise invalid(
+                    "errors.at_each_burn",
+                    "true where model is nonlinear: errors that add up are linear only",
+                    False,
+                )
+        number("keep_out_m", self.keep_out, 0.0, 1e5, open_low=True)
+        number("horizon_s", self.horizon, 0.0, 1e6, open_low=True)
+        longest = LONGEST_PHASE / self.plan.mean_motion
+        for name, value in (("late_s", self.failures.late), ("stuck_s", self.failures.stuck)):
+            if value > longest:
+                raise invalid(
+                    f"failures.{name}", f"at most {longest:.6g} s, {LONGEST_PHASE} rad of the orbit", value
+                )

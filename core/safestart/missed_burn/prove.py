@@ -1,0 +1,147 @@
+"""The verdict on a plan: the least distance proved for every case, or a flight that comes too near, or a gap."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+import numpy as np
+
+from safestart.missed_burn.cases import Case, cases_of
+from safestart.missed_burn.drift_kernel import least_distance
+from safestart.missed_burn.plan import Question
+from safestart.missed_burn.replay import Flown, flown_of
+from safestart.missed_burn.strays import strays_of
+from safestart.model.scenario import Floats
+
+SLACK = 1e-6
+"""Metres by which every claim is lowered: it covers the roundings of the sets themselves."""
+_TOLERANCE = 0.02
+_MOST_CELLS = 2048
+_TOUCHES = 0.1
+"""A member nearer than this, m, ends the search: sets that hold the target have no lower bound to wait for."""
+
+
+class Verdict(StrEnum):
+    """PROVED and VIOLATED come with evidence, UNKNOWN with its gap."""
+
+    PROVED = "PROVED"
+    VIOLATED = "VIOLATED"
+    UNKNOWN = "UNKNOWN"
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One case: its least distance lies between ``least`` (proved) and ``nearest`` (of a member, m), at ``when`` s.
+
+    ``cells`` (N, 5): the intervals of the proof, begin, end (s after the case's time) and direction. ``trials``: radii
+    of the nonlinear motion, m, over equal parts of the drift; empty where the motion is linear.
+    """
+
+    case: Case
+    least: float
+    nearest: float
+    when: float
+    cells: Floats
+    member: Floats
+    trials: Floats
+
+
+@dataclass(frozen=True, slots=True)
+class Proof:
+    """The verdict on all cases; ``least`` is the least distance proved over them, m."""
+
+    question: Question
+    verdict: Verdict
+    least: float
+    findings: tuple[Finding, ...]
+    counter_example: Flown | None
+
+    @property
+    def gap(self) -> float:
+        """How much the proved least distance falls short of the keep-out radius, m; 0 where it does not."""
+        return max(self.question.keep_out - self.least, 0.0)
+
+
+_NO_STRAYS = np.zeros((1, 3))
+
+
+def prove(question: Question, *, tick: Callable[[int, int], None] | None = None, sharp: bool = True) -> Proof:
+    """Prove or refute a plan.
+
+    ``sharp``: bound every case to 2 cm or 0.1 %, else only as far as the keep-out radius asks. ``tick`` hears how far
+    it is.
+    """
+    cases = cases_of(question)
+    findings = []
+    for number, case in enumerate(cases):
+        findings.append(bound(case, question, np.inf if sharp else question.keep_out + SLACK))
+        if tick is not None:
+            tick(number + 1, len(cases))
+    least = min(finding.least for finding in findings)
+    if least >= question.keep_out:
+        return Proof(question, Verdict.PROVED, least, tuple(findings), None)
+    for finding in sorted(findings, key=lambda f: f.nearest):
+        if finding.nearest >= question.keep_out:
+            break
+        flown = flown_of(question, finding.case, finding.member, finding.when)
+        if flown.distance(question.radius) < question.keep_out:
+            return Proof(question, Verdict.VIOLATED, least, tuple(findings), flown)
+    return Proof(question, Verdict.UNKNOWN, least, tuple(findings), None)
+
+
+def bound(case: Case, question: Question, enough: float) -> Finding:
+    """Bounds on one case; stops at ``enough`` m."""
+    n = question.plan.mean_motion
+    start = float(np.linalg.norm(case.centre[:3]))
+    tolerance = max(_TOLERANCE, 1e-3 * min(start, 100.0))
+    strays, trials = _NO_STRAYS, np.zeros(0)
+    if question.radius is not None:
+        strays, trials = strays_of(case, question, question.radius)
+    least, nearest, when, member, cells, _ = least_distance(
+        n,
+        case.duration,
+        case.centre,
+        case.columns,
+        case.ends,
+        strays,
+        enough,
+        _TOUCHES,
+        tolerance,
+        _MOST_CELLS,
+    )
+    # With strays that could not be bounded nothing is known: no distance is negative.
+    return Finding(case, max(least - SLACK, 0.0), nearest, when, cells, member, trials)
+
+
+def greatest_scale(question: Question, *, most: float = 100.0, accuracy: float = 1e-3) -> float:
+    """lambda: the largest multiple of the errors, up to ``most``, for which every case is proved; 0 where none is.
+
+    Larger errors hold the smaller ones, so bisection finds it to a relative ``accuracy``, from below.
+    """
+
+    def holds(scale: float) -> bool:
+        scaled = replace(question, errors=question.errors.scaled(scale))
+        enough = question.keep_out + SLACK
+        return all(bound(case, scaled, enough).least >= question.keep_out for case in cases_of(scaled))
+
+    errors = question.errors
+    if errors.thrust_share > 0.0:
+        most = min(most, 0.99 / errors.thrust_share)
+    if errors.thrust_angle > 0.0:
+        most = min(most, 0.5 * np.pi / errors.thrust_angle)
+    low, high = 0.0, 1.0
+    while high < most and holds(high):
+        low, high = high, 2.0 * high
+    high = min(high, most)
+    if low == 0.0:
+        low = 1.0
+        while not holds(low):
+            high, low = low, 0.5 * low
+            if low < 1e-3:
+                return 0.0
+    while high > low * (1.0 + accuracy):
+        middle = float(np.sqrt(low * high))
+        low, high = (middle, high) if holds(middle) else (low, middle)
+    return low

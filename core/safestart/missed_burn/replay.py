@@ -1,0 +1,150 @@
+"""A flight that one member of a case's set stands for: actual states and burns, to be flown again by anyone."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from safestart.dynamics.cwh import input_matrix, transition_matrix
+from safestart.missed_burn.cases import Case, frame, shell
+from safestart.missed_burn.plan import Question
+from safestart.model.scenario import Floats
+
+
+@dataclass(frozen=True, slots=True)
+class Flown:
+    """From ``start`` (6,) at ``begin`` s: the ``impulses`` (K, 3) at ``times`` (K,), then the ``push`` (3,), m/s^2,
+    held for ``push_for`` s after the last of them, then drift; looked at ``look`` s. LVLH, times of the plan.
+    """
+
+    mean_motion: float
+    kind: str
+    burn: int
+    start: Floats
+    begin: float
+    times: Floats
+    impulses: Floats
+    push: Floats
+    push_for: float
+    look: float
+
+    def state(self) -> Floats:
+        """State (6,) at ``look``, in CWH motion."""
+        n, state, now = self.mean_motion, np.array(self.start), self.begin
+        for time, impulse in zip(self.times, self.impulses, strict=True):
+            state = transition_matrix(n, time - now) @ state
+            state[3:] += impulse
+            now = time
+        if self.push_for > 0.0:
+            on = min(self.push_for, self.look - now)
+            state = transition_matrix(n, on) @ state + input_matrix(n, on) @ self.push
+            now += on
+        reached: Floats = transition_matrix(n, self.look - now) @ state
+        return reached
+
+    def distance(self, radius: float | None = None) -> float:
+        """Distance to the target at ``look``, m; with the ``radius`` (m) of the orbit in the nonlinear motion."""
+        state = self.state() if radius is None else self.nonlinear_state(radius)
+        return float(np.linalg.norm(state[:3]))
+
+    def nonlinear_state(self, radius: float) -> Floats:
+        """State (6,) at ``look`` about a point mass, the target on a circular orbit of ``radius`` m."""
+        state, now = np.array(self.start), self.begin
+        for time, impulse in zip(self.times.tolist(), self.impulses, strict=True):
+            state = self._flown(radius, state, time - now, np.zeros(3))
+            state[3:] += impulse
+            now = time
+        if self.push_for > 0.0:
+            on = min(self.push_for, self.look - now)
+            state = self._flown(radius, state, on, self.push)
+            now += on
+        return self._flown(radius, state, self.look - now, np.zeros(3))
+
+    def _flown(self, r: float, state: Floats, seconds: float, push: Floats) -> Floats:
+        """The full equations of relative motion in LVLH, by DOP853."""
+        n = self.mean_motion
+        mu = n * n * r**3
+
+        def rates(_: float, s: Floats) -> Floats:
+            x, y, z, u, v, w = s
+            pull = mu / ((r + x) ** 2 + y * y + z * z) ** 1.5
+            return np.array(
+                [
+                    *(u, v, w),
+                    2.0 * n * v + n * n * x - pull * (r + x) + mu / r**2 + push[0],
+                    -2.0 * n * u + n * n * y - pull * y + push[1],
+                    -pull * z + push[2],
+                ]
+            )
+
+        if seconds <= 0.0:
+            return np.array(state)
+        done = solve_ivp(rates, (0.0, seconds), state, method="DOP853", rtol=1e-11, atol=1e-9)
+        reached: Floats = done.y[:, -1] if done.success else np.full(6, np.inf)
+        return reached
+
+
+def flown_of(question: Question, case: Case, member: Floats, when: float) -> Flown:
+    """The flight of a member (C,) of a case, ``when`` s after the case's time.
+
+    Its burns are taken back into what errors and failures allow, so its distance is to be measured, not believed.
+    """
+    plan, errors, failures = question.plan, question.errors, question.failures
+    base = case.burn if errors.at_each_burn else 0
+    base = max(base, 0)
+    start, part = plan.before()[base].copy(), 0.0
+    chosen: dict[int, list[tuple[str, float]]] = {}
+    for (label, number), value in zip(case.labels, member.tolist(), strict=True):
+        if label == "navigation":
+            start[number] += value * (errors.position + errors.velocity)[number]
+        elif label == "piece":
+            part = value
+        elif label in ("along", "across"):
+            chosen.setdefault(number, []).append((label, value))
+    event = 0.5 * (case.first + case.last) + 0.5 * (case.last - case.first) * part
+    times, impulses = [], []
+    for k in range(base, case.burn + 1):
+        last = k == case.burn
+        angle = errors.thrust_angle + (failures.misdirected if last and case.kind == "misdirected" else 0.0)
+        least = 0.0 if last and case.kind == "partial" else 1.0 - errors.thrust_share
+        impulses.append(
+            _made(np.array(plan.burns[k].impulse), chosen.get(k, []), least, 1.0 + errors.thrust_share, angle)
+        )
+        times.append(plan.burns[k].time + (event if last and case.kind == "late" else 0.0))
+    push, push_for = np.zeros(3), 0.0
+    if case.kind == "stuck":
+        push_for = event
+        push = failures.acceleration / plan.burns[case.burn].size * impulses[-1]
+    return Flown(
+        mean_motion=plan.mean_motion,
+        kind=case.kind,
+        burn=case.burn,
+        start=start,
+        begin=plan.burns[base].time,
+        times=np.array(times),
+        impulses=np.array(impulses).reshape(-1, 3),
+        push=push,
+        push_for=push_for,
+        look=max(case.time + when, times[-1] if times else 0.0),
+    )
+
+
+def _made(
+    impulse: Floats, chosen: list[tuple[str, float]], least: float, greatest: float, angle: float
+) -> Floats:
+    """The burn of a member, its size and direction within what is allowed."""
+    size = float(np.linalg.norm(impulse))
+    along, one, two = frame(impulse)
+    middle, half, across = shell(least, greatest, angle)
+    ahead = middle + half * sum(value for label, value in chosen if label == "along")
+    aside = [value for label, value in chosen if label == "across"]
+    sideways = across * (aside[0] * one + aside[1] * two) if aside else np.zeros(3)
+    off = float(np.linalg.norm(sideways))
+    turned = min(math.atan2(off, ahead), angle)
+    share = min(max(math.hypot(ahead, off), least), greatest)
+    away = sideways / off if off > 0.0 else sideways
+    made: Floats = size * share * (math.cos(turned) * along + math.sin(turned) * away)
+    return made

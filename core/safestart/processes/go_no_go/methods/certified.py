@@ -1,0 +1,84 @@
+"""Method certified: GO by a manoeuvre whose room and thrust are proved (docs/theory/certified.md), else undecided.
+
+Every start is asked in plain floats, a start alone like one among others: the same bits.
+"""
+
+from __future__ import annotations
+
+from safestart.closed_form.certified import OUT_OF_REACH, ROUNDING
+from safestart.closed_form.certified_point import PointCertificate, certify_point, prepare
+from safestart.processes.go_no_go.answer import Verdicts
+from safestart.processes.go_no_go.conditions import Conditions
+from safestart.processes.go_no_go.methods.plain import more_asked, refuse_more
+from safestart.processes.go_no_go.spec import GoNoGoInputs
+from safestart.runtime.progress import Context
+
+NAME = "certified"
+
+
+def decide(inputs: GoNoGoInputs, conditions: Conditions, context: Context) -> Verdicts:
+    """GO where the certificate says so, NO_GO outside the corridor, else UNDECIDED: other histories may stay."""
+    refuse_more(inputs)
+    found = certificates(inputs)
+    context.step(1, 1)
+    verdict: list[str] = []
+    margin: list[float | None] = []
+    reason: list[str] = []
+    for one, violated in zip(found, conditions.violated, strict=True):
+        told: tuple[str, float | None, str]
+        if one.go:
+            told = "GO", one.margin, sentence(one)
+        elif violated and one.margin < -2.0 * ROUNDING:
+            told = "NO_GO", one.margin, f"outside the corridor: violates {', '.join(violated)}"
+        else:
+            told = "UNDECIDED", None, _undecided(one)
+        verdict.append(told[0])
+        margin.append(told[1])
+        reason.append(told[2])
+    return Verdicts(
+        verdict, margin, reason, decided_by=[None if word == "UNDECIDED" else NAME for word in verdict]
+    )
+
+
+def go_at_once(inputs: GoNoGoInputs, _: Conditions) -> Verdicts | None:
+    """The answer for one start if that is GO, in microseconds; None where another method has to be asked."""
+    if not answers(inputs):
+        return None
+    one = certificates(inputs)[0]
+    return Verdicts(["GO"], [one.margin], [sentence(one)], decided_by=[NAME]) if one.go else None
+
+
+def answers(inputs: GoNoGoInputs) -> bool:
+    """Whether the question is one that the certificate knows, and no proof document is asked for, which it has not."""
+    return not inputs.proofs and more_asked(inputs) is None
+
+
+def certificates(inputs: GoNoGoInputs) -> list[PointCertificate]:
+    """The certificate of every start; planar and spatial ones are not mixed."""
+    scenario, states = inputs.scenario(), inputs.states
+    target, spatial = scenario.target, states[0].z_m is not None
+    given = prepare(
+        target.tumble_rate,
+        target.mean_motion,
+        scenario.chaser.max_acceleration,
+        scenario.corridor,
+        inputs.rest,
+        spatial,
+    )
+    if spatial:
+        return [certify_point(given, state.x_m, state.y_m, state.z_m or 0.0) for state in states]
+    return [certify_point(given, state.x_m, state.y_m) for state in states]
+
+
+def sentence(one: PointCertificate) -> str:
+    """Why a start is GO."""
+    return f"a known manoeuvre stays for ever, at least {one.margin:.2f} m from every face, nearest {one.binding}"
+
+
+def _undecided(one: PointCertificate) -> str:
+    lacks = (
+        "no manoeuvre of the certificate has the thrust to come from so far"
+        if one.binding == OUT_OF_REACH
+        else f"the certificate's manoeuvre lacks room at {one.binding}"
+    )
+    return f"undecided: {lacks} ({-one.margin:.2f} m short); another thrust history may stay"

@@ -1,0 +1,1 @@
+"""The passive-abort process: the missed-burn proof for any plan of impulses."""

@@ -1,0 +1,117 @@
+"""Picture of a missed-burn proof: the drifts in the orbit plane, and what every burn keeps."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import Circle
+from matplotlib.ticker import MaxNLocator
+
+from safestart.dynamics.cwh import transition_matrix
+from safestart.missed_burn.cases import Case
+from safestart.missed_burn.prove import Finding, Proof, Verdict
+from safestart.model.scenario import Floats
+from safestart.processes.base import Artifact
+from safestart.processes.plotting import figure, png
+
+COLOURS = {"PROVED": "#1B7F3B", "VIOLATED": "#C0392B", "UNKNOWN": "#B7791F"}
+_MARKS = {"start": "o", "made": "o", "partial": "s", "misdirected": "^", "late": "D", "stuck": "v"}
+_NAMES = {"start": "missed", "made": "missed"}
+_SAMPLES = 240
+_MEMBERS = 12
+
+
+def picture(proof: Proof) -> Artifact:
+    """Left: free drifts after every burn, some members of each set, coloured by the proof. Right: distances."""
+    drawing = figure(12.0, 5.2)
+    plane, bars = drawing.subplots(1, 2, width_ratios=(1.25, 1.0))
+    keep_out = proof.question.keep_out
+    draw_drifts(plane, proof, range(len(proof.findings)))
+    _distances(bars, proof)
+    motion = "linear" if proof.question.radius is None else "nonlinear"
+    verdict = {
+        Verdict.PROVED: f"proved: at no time nearer than {proof.least:.2f} m",
+        Verdict.VIOLATED: f"violated: a flight within the errors comes nearer than {keep_out:g} m",
+        Verdict.UNKNOWN: f"unknown: {proof.gap:.2f} m of {keep_out:g} m are not proved",
+    }[proof.verdict]
+    drawing.suptitle(f"Burns that fail, {motion} motion; {verdict}", fontsize=11)
+    return png("aborts.png", drawing)
+
+
+def draw_drifts(axes: Axes, proof: Proof, which: range) -> None:
+    """Drifts of missed burns in the orbit plane, V-bar to the left as the target flies to the left, nadir down."""
+    keep_out = proof.question.keep_out
+    n, marks = proof.question.plan.mean_motion, [np.full(2, -1.5 * keep_out), np.full(2, 1.5 * keep_out)]
+    for k in which:
+        finding = proof.findings[k]
+        if finding.case.kind not in ("start", "made"):
+            continue
+        colour = COLOURS["PROVED" if finding.least >= keep_out else _refuted(finding, keep_out)]
+        for path in _paths(n, finding.case):
+            axes.plot(path[:, 1], path[:, 0], color=colour, linewidth=0.6, alpha=0.45)
+        start = finding.case.centre
+        axes.plot(start[1], start[0], marker="x", color="#222222", markersize=6, zorder=6)
+        marks.append(start[:2])
+    axes.add_patch(Circle((0.0, 0.0), keep_out, facecolor="#F6D5D0", edgecolor="#8C2B1D", zorder=1))
+    axes.plot(0.0, 0.0, marker="s", color="#333333", markersize=4, zorder=5)
+    axes.set_aspect("equal")
+    low, high = np.min(marks, axis=0), np.max(marks, axis=0)
+    room = 0.3 * float((high - low).max())
+    axes.set_xlim(high[1] + room, low[1] - room)
+    axes.set_ylim(low[0] - room, high[0] + room)
+    axes.set_xlabel("along-track y [m] (the target flies to the left)")
+    axes.set_ylabel("radial x [m] (Earth below)")
+    axes.set_title("free drift after each missed burn: members of its set", fontsize=10)
+    for name, colour in COLOURS.items():
+        axes.plot([], [], color=colour, label=name.lower())
+    axes.legend(fontsize=8, loc="upper right")
+
+
+def _refuted(finding: Finding, keep_out: float) -> str:
+    return "VIOLATED" if finding.nearest < keep_out else "UNKNOWN"
+
+
+def _paths(n: float, case: Case) -> list[Floats]:
+    """Paths (T, 6) of the centre, of members at corners of the boxes, drawn by a fixed pattern."""
+    times = np.linspace(0.0, case.duration, _SAMPLES)
+    matrices = np.array([transition_matrix(n, float(t)) for t in times])
+    rng = np.random.default_rng(7)
+    members = [case.centre]
+    for _ in range(_MEMBERS if len(case.columns) else 0):
+        member, begin = case.centre.copy(), 0
+        for end in case.ends.tolist():
+            share = rng.standard_normal(end - begin)
+            member = member + (share / np.linalg.norm(share)) @ case.columns[begin:end]
+            begin = end
+        members.append(member)
+    return [matrices @ member for member in members]
+
+
+def _distances(axes: Axes, proof: Proof) -> None:
+    keep_out = proof.question.keep_out
+    shown: set[str] = set()
+    lowest: dict[tuple[int, str], Finding] = {}
+    for finding in proof.findings:
+        name = _NAMES.get(finding.case.kind, finding.case.kind)
+        key = finding.case.burn + (1 if name == "missed" else 0), name
+        kept = lowest.get(key)
+        if kept is None or finding.least < kept.least:
+            lowest[key] = finding
+    for (burn, name), finding in sorted(lowest.items()):
+        colour = COLOURS["PROVED" if finding.least >= keep_out else _refuted(finding, keep_out)]
+        mark = _MARKS[finding.case.kind]
+        axes.plot(
+            burn, max(finding.least, 0.01 * keep_out), marker=mark, color=colour, linestyle="", markersize=6
+        )
+        if name not in shown:
+            axes.plot([], [], marker=mark, color="#777777", linestyle="", label=name)
+            shown.add(name)
+    axes.axhline(keep_out, color="#8C2B1D", linewidth=1.0)
+    axes.set_yscale("log")
+    axes.annotate(f"keep out: {keep_out:g} m", (0.02, keep_out), xycoords=("axes fraction", "data"), fontsize=8,
+                  va="bottom", color="#8C2B1D")  # fmt: skip
+    axes.set_xlabel("burn that fails (the last mark: drift after the last burn)")
+    axes.set_ylabel("least distance proved [m]")
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.set_title("what each failure keeps", fontsize=10)
+    axes.legend(fontsize=8)

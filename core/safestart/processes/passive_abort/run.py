@@ -1,0 +1,128 @@
+"""Run passive-abort: prove, find the error level, draw."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from safestart.hopping.approach import mean_motion_of
+from safestart.missed_burn.document import document_of
+from safestart.missed_burn.plan import Burn, Errors, Failures, Plan, Question
+from safestart.missed_burn.prove import Proof, Verdict, greatest_scale, prove
+from safestart.missed_burn.replay import Flown
+from safestart.processes.base import Artifact, ProcessOutput
+from safestart.processes.passive_abort.plots import picture
+from safestart.processes.passive_abort.spec import PassiveAbortInputs
+from safestart.processes.passive_abort.wire import ErrorsInput, FailuresInput, radians
+from safestart.processes.wire import finite
+from safestart.records.comparable import canonical
+from safestart.runtime.progress import Context
+
+NOTES = {
+    "linear": "model: linear. The verdict speaks about the CWH motion, round-off included; what this motion leaves out "
+    "(the nonlinear terms, J2, drag) is not in it.",
+    "nonlinear": "model: nonlinear. The verdict speaks about two point masses, the target on a circular orbit, "
+    "round-off included; J2 and drag are not in it. A gap here may be that of the bound on the nonlinear terms.",
+}
+
+
+def run(inputs: PassiveAbortInputs, context: Context) -> ProcessOutput:
+    """Verdict, cases, document or counter-example, picture."""
+    question = question_of(inputs)
+    proof = prove(question, tick=lambda k, of: context.step(0.6 * k / of, 1.0, "cases"))
+    level = greatest_scale(question) if inputs.error_level else None
+    context.step(0.9, 1.0, "picture")
+    artifacts = [picture(proof)]
+    if proof.verdict is Verdict.PROVED:
+        artifacts.append(Artifact("proof.json", "application/json", canonical(document_of(proof)).encode()))
+    flown = proof.counter_example
+    return ProcessOutput(
+        {
+            "verdict": proof.verdict.value,
+            "model": inputs.model,
+            "least_distance_m": proof.least,
+            "gap_m": proof.gap,
+            "error_level": level,
+            "cases": cases_of(proof),
+            "counter_example": None if flown is None else flown_document(flown, question.radius),
+            "notes": [NOTES[inputs.model]],
+        },
+        tuple(artifacts),
+    )
+
+
+def question_of(inputs: PassiveAbortInputs) -> Question:
+    """The question in SI."""
+    n = mean_motion_of(inputs.semi_major_axis_m)
+    burns = tuple(
+        Burn(b.time_s, (b.impulse_m_s[0], b.impulse_m_s[1], b.impulse_m_s[2])) for b in inputs.burns
+    )
+    plan = Plan(n, (*inputs.start.position_m, *inputs.start.velocity_m_s), burns)
+    horizon = inputs.abort_orbits * math.tau / n
+    radius = inputs.semi_major_axis_m if inputs.model == "nonlinear" else None
+    errors, failures = errors_of(inputs.errors), failures_of(inputs.failures)
+    return Question(plan, inputs.keep_out_m, horizon, errors, failures, radius)
+
+
+def errors_of(errors: ErrorsInput) -> Errors:
+    """The errors in SI."""
+    at, fast = errors.position_m, errors.velocity_m_s
+    angle = min(radians(errors.thrust_deg), 0.5 * math.pi)
+    return Errors((at, at, at), (fast, fast, fast), errors.thrust_share, angle, errors.at_each_burn)
+
+
+def failures_of(failures: FailuresInput) -> Failures:
+    """The failures in SI."""
+    return Failures(
+        failures.late_s,
+        failures.partial,
+        failures.stuck_s,
+        failures.acceleration_m_s2,
+        radians(failures.misdirected_deg),
+    )
+
+
+def cases_of(proof: Proof) -> list[dict[str, Any]]:
+    """What every burn keeps with every failure, over all pieces. A burn is missed where the one before was the last."""
+    out: dict[tuple[int, str], dict[str, Any]] = {}
+    for finding in proof.findings:
+        case = finding.case
+        # Drifting on after a burn that was made is missing the one that follows.
+        missed = case.kind in ("start", "made")
+        key = (case.burn + 1 if missed else case.burn, "missed" if missed else case.kind)
+        row = out.setdefault(
+            key,
+            {
+                "burn": key[0],
+                "failure": key[1],
+                "least_distance_m": finding.least,
+                "nearest_m": None,
+                "when_s": None,
+            },
+        )
+        row["least_distance_m"] = min(row["least_distance_m"], finding.least)
+        if math.isfinite(finding.nearest) and (
+            row["nearest_m"] is None or finding.nearest < row["nearest_m"]
+        ):
+            row["nearest_m"], row["when_s"] = finding.nearest, finite(finding.when)
+    return [out[key] for key in sorted(out)]
+
+
+def flown_document(flown: Flown, radius: float | None) -> dict[str, Any]:
+    """A counter-example on the wire."""
+    missed = flown.kind in ("start", "made")
+    return {
+        "burn": flown.burn + 1 if missed else flown.burn,
+        "failure": "missed" if missed else flown.kind,
+        "begin_s": flown.begin,
+        "position_m": flown.start[:3].tolist(),
+        "velocity_m_s": flown.start[3:].tolist(),
+        "burns": [
+            {"time_s": time, "impulse_m_s": impulse}
+            for time, impulse in zip(flown.times.tolist(), flown.impulses.tolist(), strict=True)
+        ],
+        "push_m_s2": flown.push.tolist(),
+        "push_s": flown.push_for,
+        "look_s": flown.look,
+        "distance_m": flown.distance(radius),
+    }

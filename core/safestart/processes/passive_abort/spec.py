@@ -1,0 +1,156 @@
+"""passive-abort: whatever happens to one burn of a plan, does the chaser stay away from the target?"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field, model_validator
+
+from safestart.processes.base import ProcessSpec, WireModel
+from safestart.processes.passive_abort.wire import (
+    BurnInput,
+    ErrorsInput,
+    FailuresInput,
+    KeepOut,
+    Orbits,
+    SemiMajorAxis,
+    StartInput,
+)
+from safestart.processes.views import Column, Facts, Findings, Rows
+
+VerdictName = Literal["PROVED", "VIOLATED", "UNKNOWN"]
+ModelName = Literal["linear", "nonlinear"]
+
+
+class PassiveAbortInputs(WireModel):
+    """A plan, its errors, the failures, the keep-out sphere and the horizon."""
+
+    semi_major_axis_m: SemiMajorAxis = 8.1e6
+    start: StartInput = Field(description="State right before the first burn, LVLH.")
+    burns: list[BurnInput] = Field(min_length=1, max_length=200, description="The plan, in order.")
+    keep_out_m: KeepOut = 50.0
+    abort_orbits: Orbits = 2.0
+    errors: ErrorsInput = Field(default_factory=lambda: ErrorsInput.model_validate({}))
+    failures: FailuresInput = Field(default_factory=lambda: FailuresInput.model_validate({}))
+    model: ModelName = Field(
+        "linear",
+        description="Motion that the proof speaks about: linear (CWH) or nonlinear (two point masses): what CWH "
+        "leaves out is bounded by Lagrange's remainder. Drifts that go many kilometres away are out of its reach.",
+    )
+    error_level: bool = Field(
+        True, description="Also find the greatest multiple of the errors that is proved."
+    )
+
+    @model_validator(mode="after")
+    def _ordered(self) -> PassiveAbortInputs:
+        for before, after in zip(self.burns, self.burns[1:], strict=False):
+            if not before.time_s < after.time_s:
+                raise ValueError("burns: in the order of their times, no two at once")
+        if any(not any(burn.impulse_m_s) for burn in self.burns):
+            raise ValueError("burns: impulses that are not zero")
+        if self.model == "nonlinear" and not self.errors.at_each_burn:
+            raise ValueError("errors.at_each_burn: true where model is nonlinear")
+        if self.failures.stuck_s > 0.0 and self.failures.acceleration_m_s2 == 0.0:
+            raise ValueError("failures.acceleration_m_s2: more than 0 where a burn may be stuck on")
+        return self
+
+
+class CaseOutput(WireModel):
+    """One burn with one failure, over all its pieces of time."""
+
+    burn: int = Field(description="Number of the burn, from 0; -1: none is made.")
+    failure: Literal["missed", "partial", "misdirected", "late", "stuck"]
+    least_distance_m: float = Field(description="Proved: at no time nearer than this; 0: nothing is proved.")
+    nearest_m: float | None = Field(
+        description="A state within the errors comes this near; null: not looked for."
+    )
+    when_s: float | None = Field(description="When it does, s after the burn.")
+
+
+class FlownOutput(WireModel):
+    """A flight to replay: from the state at ``begin_s`` the burns as they come, a push, then drift to ``look_s``."""
+
+    burn: int
+    failure: str
+    begin_s: float
+    position_m: list[float]
+    velocity_m_s: list[float]
+    burns: list[BurnInput]
+    push_m_s2: list[float]
+    push_s: float
+    look_s: float
+    distance_m: float
+
+
+class PassiveAbortOutputs(WireModel):
+    """The verdict on the plan, what every case keeps, and the evidence."""
+
+    verdict: VerdictName
+    model: ModelName
+    least_distance_m: float = Field(description="Proved over all cases and all times, m.")
+    gap_m: float = Field(description="How much of keep_out_m is not proved, m.")
+    error_level: float | None = Field(
+        description="lambda: the greatest multiple of all errors for which every case is proved; null: not asked for."
+    )
+    cases: list[CaseOutput]
+    counter_example: FlownOutput | None
+    notes: list[str]
+
+
+SPEC = ProcessSpec(
+    id="passive-abort",
+    title="Missed burns: does a plan stay away from the target, proved",
+    description=(
+        "Any plan of impulses near a target on a circular orbit: any one burn missed, late, partial, stuck on or "
+        "misdirected, with errors of navigation and thrust. The least distance to the target is proved at all times of "
+        "the drift that follows, in the linear (CWH) or the nonlinear motion, with a document that safestart "
+        "verify checks; or a flight to replay that comes too near; or UNKNOWN with the gap."
+    ),
+    inputs=PassiveAbortInputs,
+    outputs=PassiveAbortOutputs,
+    run="safestart.processes.passive_abort.run:run",
+    views=(
+        Findings(
+            "Verdict",
+            "",
+            word="verdict",
+            columns=(
+                Column("proved distance [m]", "least_distance_m"),
+                Column("gap [m]", "gap_m"),
+                Column("error level", "error_level"),
+                Column("model", "model"),
+            ),
+            good=("PROVED",),
+            bad=("VIOLATED",),
+        ),
+        Rows(
+            "Cases",
+            "cases",
+            (
+                Column("burn", "burn"),
+                Column("failure", "failure"),
+                Column("proved distance [m]", "least_distance_m"),
+                Column("nearest state found [m]", "nearest_m"),
+                Column("after [s]", "when_s"),
+            ),
+        ),
+        Facts(
+            (
+                Column("Counter-example: burn", "counter_example.burn"),
+                Column("failure", "counter_example.failure"),
+                Column("comes to [m]", "counter_example.distance_m"),
+                Column("at [s]", "counter_example.look_s"),
+            )
+        ),
+    ),
+    keywords=("verification", "passive safety", "abort", "hopping"),
+    example={
+        "start": {"position_m": [0, 182.06, 0], "velocity_m_s": [0, 0, 0]},
+        "burns": [
+            {"time_s": 0, "impulse_m_s": [0.0178, 0, 0]},
+            {"time_s": 3627.5, "impulse_m_s": [0.0178, 0, 0]},
+        ],
+        "keep_out_m": 40,
+        "abort_orbits": 1,
+    },
+)

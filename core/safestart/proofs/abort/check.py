@@ -1,0 +1,184 @@
+"""Every case of a missed-burn proof, at all times: the cells cover the drift, and each keeps the claimed distance.
+
+On a cell [a, b] with direction d, q(t) = Phi_p(t)' d and f = q . centre - sum |M_k' q|, which is concave in q:
+
+    |d| distance >= min(f(a), f(b)) - (b - a)^2/8 (sup |q'' . centre| + sum sup |M_k' q''|).
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+from flint import arb, arb_mat, fmpq
+
+from safestart.proofs.abort.sets import Reached, Sets, transition
+from safestart.proofs.abort.statement import Asked, Event, read
+from safestart.proofs.abort.strays import strays
+from safestart.proofs.strict import ProofRejected
+from safestart.runtime.precision import precise
+
+_BITS = 128
+
+
+def check(document: object) -> tuple[Asked, int]:
+    """Check a document; the statement and the number of cells, or ``ProofRejected``."""
+    asked = read(document)
+    with precise(_BITS):
+        return asked, Checker(asked).check()
+
+
+class Checker:
+    """One statement under check."""
+
+    def __init__(self, asked: Asked) -> None:
+        self.asked, self.n, self.sets = asked, arb(asked.n), Sets(asked)
+        self.rows: dict[fmpq, arb_mat] = {}
+        # q'' = P cos n t + Q sin n t, from Phi_p'' = P' cos n t + Q' sin n t.
+        n = self.n
+        p, q = arb_mat(3, 6), arb_mat(3, 6)
+        p[0, 0], p[0, 4], p[1, 3], p[2, 2] = 3 * n * n, 2 * n, -2 * n, -n * n
+        q[0, 3], q[1, 0], q[1, 4], q[2, 5] = -n, -6 * n * n, -4 * n, -n
+        self.bends = p, q
+
+    def check(self) -> int:
+        """All cases are there and all cells hold; how many cells."""
+        self._complete()
+        cells = 0
+        for event in self.asked.events:
+            state = self.sets.of(event.kind, event.burn, event.first, event.last)
+            self._covered(event)
+            self._held(event, state)
+            cells += len(event.cells)
+        return cells
+
+    def _complete(self) -> None:
+        """Every event that the statement names has its case, and the pieces of [0, tau] leave no hole."""
+        asked = self.asked
+        lasting = {"late": asked.late, "stuck": asked.stuck}
+        found: dict[tuple[str, int], list[tuple[fmpq, fmpq]]] = {}
+        for event in asked.events:
+            found.setdefault((event.kind, event.burn), []).append((event.first, event.last))
+        needed = [("start", -1)]
+        for k in range(len(asked.times)):
+            needed.append(("made", k))
+            needed += [("partial", k)] * asked.partial + [("misdirected", k)] * (asked.misdirected > 0)
+            needed += [(kind, k) for kind, length in lasting.items() if length > 0]
+        for kind, burn in needed:
+            spans = sorted(found.get((kind, burn), []))
+            if not spans:
+                raise ProofRejected(f"cases: required one for {kind}, burn {burn}")
+            if kind in lasting:
+                reached = fmpq(0)
+                for first, last in spans:
+                    if not first <= reached <= last or last > lasting[kind]:
+                        raise ProofRejected(f"cases: {kind}, burn {burn}: the pieces must follow one another")
+                    reached = last
+                if reached != lasting[kind]:
+                    raise ProofRejected(
+                        f"cases: {kind}, burn {burn}: the pieces end before {float(lasting[kind])} s"
+                    )
+
+    def _covered(self, event: Event) -> None:
+        """The cells cover the drift."""
+        duration = self._duration(event)
+        reached = fmpq(0)
+        for cell in sorted(event.cells):
+            if cell[0] > reached:
+                break
+            reached = max(reached, cell[1])
+        if reached < duration:
+            raise ProofRejected(
+                f"{event.kind}, burn {event.burn}: the cells end at {float(reached):.9g} s, required "
+                f"{float(duration):.9g} s"
+            )
+
+    def _duration(self, event: Event) -> fmpq:
+        """How long a drift is looked at: the horizon, and the wait for the next burn, which may be late."""
+        asked, k = self.asked, event.burn
+        if event.kind == "start":
+            return max(asked.horizon, asked.late)
+        if event.kind == "made" and k + 1 < len(asked.times):
+            return max(asked.horizon, asked.times[k + 1] - asked.times[k] + asked.late)
+        return asked.horizon
+
+    def _strays(self, event: Event, table: arb_mat, sizes: list[int]) -> list[list[arb]]:
+        """How far each axis may be from the linear motion, up to the end of each part; empty in the linear model."""
+        if self.asked.radius is None:
+            return []
+        h = self._duration(event) / len(event.radii)
+        nodes = [_size(self._rows(h * k) * table, None, sizes) for k in range(len(event.radii) + 1)]
+        between = arb(h * h / 8) * _size(self.bends[0] * table, self.bends[1] * table, sizes)
+        linear = [arb.max(a, b) + between + self.sets.detour(event) for a, b in pairwise(nodes)]
+        return strays(self.n, arb(self.asked.radius), arb(h), linear, [arb(r) for r in event.radii])
+
+    def _held(self, event: Event, state: Reached) -> None:
+        columns = [state.centre] + [m for block in state.blocks for m in block]
+        table = arb_mat(6, len(columns))
+        for j, entry in enumerate(columns):
+            for k in range(6):
+                table[k, j] = entry[k, 0]
+        sizes = [len(block) for block in state.blocks]
+        claim, strays, duration = (
+            arb(self.asked.least),
+            self._strays(event, table, sizes),
+            self._duration(event),
+        )
+        for begin, end, *direction in event.cells:
+            d = [arb(e) for e in direction]
+            row = arb_mat([d])
+            ends = [self._levels(row * self._rows(at) * table, sizes) for at in (begin, end)]
+            one, two = (row * bend * table for bend in self.bends)
+            span = arb(end - begin)
+            rest = span * span / 8 * _swing(one, two, sizes)
+            if strays:
+                # A cell that ends within a part is met by what the motion strays up to the end of that part.
+                at = min(max(int((end * len(strays) / duration).ceil()), 1), len(strays))
+                rest = rest + sum((abs(e) * s for e, s in zip(d, strays[at - 1], strict=True)), arb(0))
+            room = arb.min(*ends) - rest - claim * sum((e * e for e in d), arb(0)).sqrt()
+            if not (begin < end and any(direction) and room >= 0):
+                raise ProofRejected(
+                    f"{event.kind}, burn {event.burn}: distance >= {float(claim):.9g} m from {float(begin):.9g} to "
+                    f"{float(end):.9g} s after it: short by {-float(room.mid()):.3g} (scaled by the direction)"
+                )
+
+    def _rows(self, at: fmpq) -> arb_mat:
+        kept = self.rows.get(at)
+        if kept is None:
+            whole = transition(self.n, arb(at))
+            kept = arb_mat([[whole[i, j] for j in range(6)] for i in range(3)])
+            self.rows[at] = kept
+        return kept
+
+    @staticmethod
+    def _levels(values: arb_mat, sizes: list[int]) -> arb:
+        """f at one end."""
+        level, at = values[0, 0], 1
+        for size in sizes:
+            level = level - _norm([values[0, at + j] for j in range(size)])
+            at += size
+        return level
+
+
+def _size(one: arb_mat, two: arb_mat | None, sizes: list[int]) -> arb:
+    """Bound on |(one cos + two sin) b| over the set whose centre and columns were multiplied."""
+    total, at = arb(0), 0
+    for size in [1, *sizes]:
+        parts = [one] if two is None else [one, two]
+        total = total + _norm([m[i, at + j] for m in parts for i in range(3) for j in range(size)])
+        at += size
+    return total
+
+
+def _norm(entries: list[arb]) -> arb:
+    if len(entries) == 1:
+        return abs(entries[0])
+    return sum((e * e for e in entries), arb(0)).sqrt()
+
+
+def _swing(one: arb_mat, two: arb_mat, sizes: list[int]) -> arb:
+    """sup over t of |(P cos + Q sin) . centre| + sum |M_k' (P cos + Q sin)|."""
+    total, at = _norm([one[0, 0], two[0, 0]]), 1
+    for size in sizes:
+        total = total + _norm([m[0, at + j] for j in range(size) for m in (one, two)])
+        at += size
+    return total

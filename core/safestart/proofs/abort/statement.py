@@ -1,0 +1,163 @@
+"""What a missed-burn proof states, read strictly: every number the double it is, as an exact rational."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from flint import fmpq
+
+from safestart.proofs.statement import check_seal
+from safestart.proofs.strict import ProofRejected, exact, fields, number, part, shown, vector
+
+SCHEMA = "safestart-abort-proof/1"
+KINDS = ("start", "made", "partial", "misdirected", "late", "stuck")
+_QUESTION = (
+    *("model", "mean_motion_rad_s", "start", "burns", "keep_out_m", "horizon_s"),
+    *("errors", "failures"),
+)
+_ERRORS = ("position_m", "velocity_m_s", "thrust_share", "thrust_rad", "at_each_burn")
+_FAILURES = ("late_s", "partial", "stuck_s", "acceleration_m_s2", "misdirected_rad")
+_CASE = ("kind", "burn", "first_s", "last_s", "cells")
+_MOST_BURNS, _MOST_CASES, _MOST_CELLS, _MOST_PARTS = 200, 40_000, 400_000, 1000
+LONGEST_PHASE = fmpq(1, 2)
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """One case of the document: its kind, burn (-1: none is made), piece of [0, tau], cells and trial radii."""
+
+    kind: str
+    burn: int
+    first: fmpq
+    last: fmpq
+    cells: list[list[fmpq]]
+    radii: list[fmpq]
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """The statement in SI, all rational."""
+
+    n: fmpq
+    radius: fmpq | None
+    start: list[fmpq]
+    times: list[fmpq]
+    impulses: list[list[fmpq]]
+    keep_out: fmpq
+    horizon: fmpq
+    box: list[fmpq]
+    share: fmpq
+    angle: fmpq
+    anew: bool
+    late: fmpq
+    partial: bool
+    stuck: fmpq
+    acceleration: fmpq
+    misdirected: fmpq
+    least: fmpq
+    events: list[Event]
+
+
+def read(document: Any) -> Asked:
+    """The statement of a document; raise ``ProofRejected`` when it is malformed or its digest is another's."""
+    check_seal(document, SCHEMA)
+    fields(document, "document", ("schema", "digest", "verdict", "least_distance_m", "question", "cases"))
+    if document["verdict"] != "PROVED":
+        raise ProofRejected(f"verdict: required PROVED, received {shown(document['verdict'])}")
+    question = part(document, "question", dict)
+    bent = question.get("model") == "nonlinear"
+    fields(question, "question", (*_QUESTION, "semi_major_axis_m") if bent else _QUESTION)
+    if question["model"] not in ("linear", "nonlinear"):
+        raise ProofRejected(f"model: required linear or nonlinear, received {shown(question['model'])}")
+    start = part(question, "start", dict)
+    fields(start, "start", ("position_m", "velocity_m_s"))
+    errors, failures = part(question, "errors", dict), part(question, "failures", dict)
+    fields(errors, "errors", _ERRORS)
+    fields(failures, "failures", _FAILURES)
+    n = number(question, "mean_motion_rad_s", 1e-9, 0.01)
+    times, impulses = _burns(part(question, "burns", list))
+    box = vector(errors["position_m"], "position_m", 3) + vector(errors["velocity_m_s"], "velocity_m_s", 3)
+    if min(box) < 0:
+        raise ProofRejected("errors: required half-widths >= 0")
+    least, keep_out = number(document, "least_distance_m", 0.0), number(question, "keep_out_m", 1e-9)
+    if least < keep_out:
+        raise ProofRejected("least_distance_m: required at least keep_out_m")
+    late, stuck = number(failures, "late_s", 0.0), number(failures, "stuck_s", 0.0)
+    if n * max(late, stuck) > LONGEST_PHASE:
+        raise ProofRejected("late_s, stuck_s: required at most half a radian of the orbit")
+    anew = _flag(errors, "at_each_burn")
+    if bent and not anew:
+        raise ProofRejected("at_each_burn: required true for the nonlinear model")
+    return Asked(
+        n=n,
+        radius=number(question, "semi_major_axis_m", 1e3, 1e9) if bent else None,
+        start=vector(start["position_m"], "position_m", 3) + vector(start["velocity_m_s"], "velocity_m_s", 3),
+        times=times,
+        impulses=impulses,
+        keep_out=keep_out,
+        horizon=number(question, "horizon_s", 1e-6),
+        box=box,
+        share=number(errors, "thrust_share", 0.0, 0.99),
+        angle=number(errors, "thrust_rad", 0.0, 1.5707963267948966),
+        anew=anew,
+        late=late,
+        partial=_flag(failures, "partial"),
+        stuck=stuck,
+        acceleration=number(failures, "acceleration_m_s2", 0.0, 100.0),
+        misdirected=number(failures, "misdirected_rad", 0.0, 3.141592653589793),
+        least=least,
+        events=_events(part(document, "cases", list), len(times), bent),
+    )
+
+
+def _flag(document: Any, key: str) -> bool:
+    if not isinstance(document[key], bool):
+        raise ProofRejected(f"{key}: required true or false, received {shown(document[key])}")
+    return bool(document[key])
+
+
+def _burns(burns: list[Any]) -> tuple[list[fmpq], list[list[fmpq]]]:
+    if not 1 <= len(burns) <= _MOST_BURNS:
+        raise ProofRejected(f"burns: required 1 to {_MOST_BURNS}, received {len(burns)}")
+    times, impulses = [], []
+    for burn in burns:
+        fields(burn, "burn", ("time_s", "impulse_m_s"))
+        times.append(number(burn, "time_s", -1e7))
+        impulses.append(vector(burn["impulse_m_s"], "impulse_m_s", 3))
+        if not any(impulses[-1]):
+            raise ProofRejected("impulse_m_s: required an impulse that is not zero")
+        if len(times) > 1 and not times[-1] > times[-2]:
+            raise ProofRejected("time_s: required burns in order")
+    return times, impulses
+
+
+def _events(cases: list[Any], burns: int, bent: bool) -> list[Event]:
+    if len(cases) > _MOST_CASES:
+        raise ProofRejected(f"cases: required at most {_MOST_CASES}, received {len(cases)}")
+    out, total = [], 0
+    for case in cases:
+        fields(case, "case", (*_CASE, "radii_m") if bent else _CASE)
+        kind, burn, cells = part(case, "kind", str), part(case, "burn", int), part(case, "cells", list)
+        if kind not in KINDS or not (burn == -1 if kind == "start" else 0 <= burn < burns):
+            raise ProofRejected(
+                f"case: required a kind and a burn of the plan, received {shown((kind, burn))}"
+            )
+        total += len(cells)
+        if total > _MOST_CELLS:
+            raise ProofRejected(f"cells: required at most {_MOST_CELLS}")
+        first, last = number(case, "first_s", 0.0), number(case, "last_s", 0.0)
+        radii = part(case, "radii_m", list) if bent else []
+        if bent and not 1 <= len(radii) <= _MOST_PARTS:
+            raise ProofRejected(f"radii_m: required 1 to {_MOST_PARTS}")
+        out.append(
+            Event(
+                kind,
+                burn,
+                first,
+                last,
+                [vector(cell, "cell", 5) for cell in cells],
+                [exact(radius, "radii_m", 0.0, 1e9) for radius in radii],
+            )
+        )
+    return out

@@ -1,0 +1,52 @@
+"""A missed-burn statement in lines: all that a document proves."""
+
+from __future__ import annotations
+
+import math
+
+from flint import fmpq
+
+from safestart.proofs.abort.statement import Asked
+
+
+def lines(asked: Asked) -> tuple[str, ...]:
+    """The statement, a line for each part of it."""
+    box = [_double(e) for e in asked.box]
+    held = "before every burn" if asked.anew else "before the first burn; the errors of the burns add up"
+    failures = ["missed, as all after it"]
+    if asked.partial:
+        failures.append("burnt in part, 0 to 100 %")
+    if asked.late > 0:
+        failures.append(f"late by up to {_double(asked.late):g} s")
+    if asked.stuck > 0:
+        failures.append(
+            f"stuck on for up to {_double(asked.stuck):g} s at {_double(asked.acceleration):g} m/s^2"
+        )
+    if asked.misdirected > 0:
+        failures.append(f"misdirected by up to {math.degrees(_double(asked.misdirected)):g} deg")
+    return (
+        f"at all times the chaser stays {_double(asked.keep_out)!r} m away from the target, and more: "
+        f"{_double(asked.least)!r} m",
+        _model(asked),
+        f"horizon: {_double(asked.horizon):g} s after the last burn that is made",
+        f"any burn is {'; or '.join(failures)}; no burn follows a failure",
+        f"states: within {box[:3]} m and {box[3:]} m/s of the plan {held}",
+        f"burns: size within {100 * _double(asked.share):g} %, direction within "
+        f"{math.degrees(_double(asked.angle)):g} deg",
+        f"start in LVLH: {[_double(e) for e in asked.start]} m, m/s",
+        *(
+            f"burn {k} at {_double(time)!r} s: {[_double(e) for e in impulse]} m/s"
+            for k, (time, impulse) in enumerate(zip(asked.times, asked.impulses, strict=True))
+        ),
+    )
+
+
+def _model(asked: Asked) -> str:
+    n = f"mean motion {_double(asked.n)!r} rad/s"
+    if asked.radius is None:
+        return f"model: linear (CWH) about a circular orbit, {n}"
+    return f"model: nonlinear, two point masses, circular orbit of {_double(asked.radius)!r} m, {n}"
+
+
+def _double(value: fmpq) -> float:
+    return int(value.p) / int(value.q)
