@@ -20,7 +20,7 @@ from safestart_service.http.open_files import make_room
 from safestart_service.http.places import Places
 
 REMEDY = (
-    "whoever reaches it could use it, as no API keys are in force: make one with `safestart keys create --name NAME "
+    "anyone could use it, as no API keys are in force: make one with `safestart keys create --name NAME "
     "--role admin`, or bind to 127.0.0.1 or ::1"
 )
 
@@ -95,7 +95,7 @@ def _serve(overrides: dict[str, object]) -> None:
         # The socket listens already: new connections are answered as soon as the loop runs.
         typer.echo(f"safestart: {base} (dashboard {base}/dashboard, calls {base}/docs)")
         if not is_loopback(address):
-            typer.echo("safestart: keys travel as they are over plain HTTP; put TLS in front of it", err=True)
+            typer.echo("safestart: plain HTTP does not protect keys; put TLS in front of it", err=True)
         server.run(sockets=[listener])
     finally:
         listener.close()

@@ -9,7 +9,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from safestart.processes.registry import PROCESS_IDS, process
-from safestart_service.documents.tables import tables_of
+from safestart.processes.tables import tables_of
 from tests.acceptance.running import Running
 from tests.browser.conftest import Visit
 from tests.browser.explored import FAULTS, edit

@@ -114,7 +114,7 @@ def _links(job: JobEntry, base: str) -> list[dict[str, str]]:
         link(f"{base}/processes/{job.process_id}", "up", "its process"),
     ]
     if job.process_id in PROCESS_IDS and process(job.process_id).sharding is not None:
-        links.append(link(f"{here}/partial", "partial", "what the finished shards say already"))
+        links.append(link(f"{here}/partial", "partial", "the partial result of the finished shards"))
     if job.status is JobStatus.SUCCESSFUL:
         links.append(link(f"{here}/results", RESULTS_REL, "results, with links to the artifacts"))
     return links

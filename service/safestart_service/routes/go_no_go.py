@@ -12,11 +12,14 @@ from safestart.processes.go_no_go import run
 from safestart.processes.go_no_go.method_registry import PROVING, RENAMED, method_of
 from safestart.processes.go_no_go.one_start import ONE_START, GoNoGoAnswer
 from safestart.processes.go_no_go.spec import SPEC, GoNoGoInputs, GoNoGoOutputs
+from safestart.processes.start_in_space.spec import SPEC as SPACE
+from safestart.processes.start_in_space.spec import SpaceInputs, SpaceOutputs
 from safestart.runtime.progress import Context
 from safestart_service.computing.dispatch import one_document, posted
 from safestart_service.documents.deprecation import RENAMED_METHOD
-from safestart_service.documents.openapi import answer, content, json_body, refusals
+from safestart_service.documents.openapi import REF, answer, content, json_body, refusals
 from safestart_service.http.answers import Json
+from safestart_service.http.body import read_body
 from safestart_service.http.lean import query_route
 
 if TYPE_CHECKING:
@@ -57,6 +60,11 @@ async def _proof(request: Request, inputs: GoNoGoInputs) -> Response:
     return Json(document["proof"], headers={"Content-Disposition": 'attachment; filename="proof.json"'})
 
 
+def in_space(body: bytes) -> bool:
+    """Whether a body asks about ``starts``, the question in space. The body is not parsed for it, however long it is."""
+    return b'"starts"' in body and b'"states"' not in body
+
+
 one = APIRouter(tags=["instant answers"], route_class=query_route(ONE_START.parse, _answer, _instant))
 proof = APIRouter(tags=["instant answers"], route_class=query_route(ONE_START.parse, _proof))
 many = APIRouter(tags=["instant answers"])
@@ -82,7 +90,7 @@ async def go_no_go_one(_query: Annotated[GoNoGoQuery, Query()]) -> Response:
 
 @proof.get(
     "/go-no-go/proof",
-    summary="The proof of a go/no-go, alone",
+    summary="Only the proof of a go/no-go",
     responses={
         200: content("application/json", {"type": "object"}, "The document that `safestart verify` checks."),
         **refusals(404, 422, 429, 503, 504),
@@ -100,14 +108,26 @@ async def go_no_go_proof(_query: Annotated[GoNoGoQuery, Query()]) -> Response:
 @many.post(
     "/go-no-go",
     summary="Go/no-go for many starts",
-    openapi_extra=json_body({SPEC.id: GoNoGoInputs}, {SPEC.id: SPEC.example}),
+    openapi_extra=json_body(
+        {SPEC.id: GoNoGoInputs, SPACE.id: SpaceInputs}, {SPEC.id: SPEC.example, SPACE.id: SPACE.example}
+    ),
     responses={
-        200: answer(GoNoGoOutputs, "Arrays over the states."),
+        200: content(
+            "application/json",
+            {"anyOf": [{"$ref": REF + GoNoGoOutputs.__name__}, {"$ref": REF + SpaceOutputs.__name__}]},
+            "Arrays over the states, or over the starts.",
+        ),
         **refusals(400, 413, 415, 422, 429, 503, 504),
     },
 )
 async def go_no_go_many(request: Request) -> Response:
-    """The same question for up to 100 000 starts of one operating point."""
+    """The same question for up to 100 000 starts of one operating point.
+
+    With ``starts`` in place of ``states`` it is the question of process ``start-in-space``: states with velocities, any
+    attitude, orbit, corridor and set of thrusts.
+    """
+    if in_space(await read_body(request)):
+        return await posted(request, SPACE.id, bare=True)
     return await posted(request, SPEC.id, bare=True, announced=_renamed)
 
 

@@ -30,7 +30,7 @@ class ProcessQuery(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     limit: int = Field(100, ge=1, le=1000, description="Processes per page.")
-    offset: int = Field(0, ge=0, le=10_000, description="How many to leave out: taken from the link `next`.")
+    offset: int = Field(0, ge=0, le=10_000, description="How many to skip: taken from the link `next`.")
 
 
 @router.get(
@@ -78,8 +78,8 @@ async def describe(request: Request, processID: ProcessId) -> Response:
             Submitted,
             "The job is queued; a benchmark's instant certificate comes with it.",
             Location="The job.",
-            Preference_Applied="respond-async, when that was asked for.",
-            Idempotency_Replayed="true, when the job was there already.",
+            Preference_Applied="respond-async, if requested.",
+            Idempotency_Replayed="true, if the job existed already.",
         ),
         **refusals(400, 404, 413, 415, 422, 429, 503, 504),
     },

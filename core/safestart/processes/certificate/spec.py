@@ -24,7 +24,7 @@ class CertificateInputs(ScenarioInput):
 class CertificateOutputs(WireModel):
     """The region: mask and margin, row-major ``[iy][ix]``."""
 
-    certificate: ClosedForm = Field(description="The closed form that was asked.")
+    certificate: ClosedForm = Field(description="The requested closed form.")
     r_sync_m: float | None = Field(
         description="The paper's synchronization range limit, m; null when there is none."
     )

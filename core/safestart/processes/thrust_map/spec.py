@@ -44,7 +44,7 @@ class ThrustMapInputs(WireModel):
 class ThrustMapOutputs(WireModel):
     """``safe_percent[rate][thrust]``; ``required_a_max_m_s2[rate]``; those of ``paper`` beside."""
 
-    certificate: ClosedForm = Field(description="The closed form that was asked.")
+    certificate: ClosedForm = Field(description="The requested closed form.")
 
     omega_t_deg_s: list[float]
     a_max_m_s2: list[float]

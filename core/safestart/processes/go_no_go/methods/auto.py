@@ -20,7 +20,7 @@ from safestart.processes.go_no_go.methods.proofs import MOST_PROGRAMS, Solved, p
 from safestart.processes.go_no_go.spec import GoNoGoInputs
 from safestart.runtime.progress import Context
 
-QUICK_TOLERANCE = 0.01
+QUICK_TOLERANCE = 0.1
 """Accuracy of margins (m) without proof documents: the verdicts are the same with fewer programs."""
 
 
