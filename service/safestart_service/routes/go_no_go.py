@@ -61,7 +61,7 @@ async def _proof(request: Request, inputs: GoNoGoInputs) -> Response:
 
 
 def in_space(body: bytes) -> bool:
-    """Whether a body asks about ``starts``, the question in space. The body is not parsed for it, however long it is."""
+    """Whether a body asks about ``starts``, the question in space; the body is not parsed for that."""
     return b'"starts"' in body and b'"states"' not in body
 
 
