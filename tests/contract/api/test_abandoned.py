@@ -1,4 +1,4 @@
-"""What nobody waits for any more is not computed: neither what is under way nor what is in line."""
+"""Answers that no client waits for are not computed: neither running ones nor those in line."""
 
 from __future__ import annotations
 

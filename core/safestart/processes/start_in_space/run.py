@@ -1,4 +1,4 @@
-"""Run start-in-space: one cone program after the other."""
+"""Run start-in-space: one cone program per start."""
 
 from __future__ import annotations
 
