@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import ipaddress
+import os
 import socket
 from contextlib import suppress
 from functools import partial
@@ -19,7 +20,7 @@ from safestart_service.http.open_files import make_room
 from safestart_service.http.places import Places
 
 REMEDY = (
-    "whoever reaches it could use it, as no API keys are in force: make one with `safestart keys create --name NAME "
+    "anyone could use it, as no API keys are in force: make one with `safestart keys create --name NAME "
     "--role admin`, or bind to 127.0.0.1 or ::1"
 )
 
@@ -58,6 +59,8 @@ def _serve(overrides: dict[str, object]) -> None:
             typer.echo(f"safestart: waits for the database: {error.detail}", err=True)
             sleep(AWAY_S)
     make_room(chosen.max_connections)
+    # Helper processes compute one answer each; a pool of threads in every one of them would only take memory.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     listener = listen(family, address, chosen.host)
     try:
         # Imported only now, so that a wrong argument is answered at once.
@@ -71,7 +74,7 @@ def _serve(overrides: dict[str, object]) -> None:
         configure(chosen.log_format)
         with suppress(Away):  # the application waits for it and reports that
             database.migrate()
-        app = create_app(chosen, database)
+        app = create_app(chosen, database, warm=True)
         refused = app.state.services.metrics.refused
         config = uvicorn.Config(
             app,
@@ -92,7 +95,7 @@ def _serve(overrides: dict[str, object]) -> None:
         # The socket listens already: new connections are answered as soon as the loop runs.
         typer.echo(f"safestart: {base} (dashboard {base}/dashboard, calls {base}/docs)")
         if not is_loopback(address):
-            typer.echo("safestart: keys travel as they are over plain HTTP; put TLS in front of it", err=True)
+            typer.echo("safestart: plain HTTP does not protect keys; put TLS in front of it", err=True)
         server.run(sockets=[listener])
     finally:
         listener.close()

@@ -1,4 +1,4 @@
-"""Result pages: what was found stands first, the job's status is no verdict, and no answer outlives its inputs."""
+"""Result pages: findings come first, the job's status is not a verdict, and no answer outlives its inputs."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from safestart.processes.registry import PROCESS_IDS, process
-from safestart_service.documents.tables import tables_of
+from safestart.processes.tables import tables_of
 from tests.acceptance.running import Running
 from tests.browser.conftest import Visit
 from tests.browser.explored import FAULTS, edit

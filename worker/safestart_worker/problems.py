@@ -54,8 +54,8 @@ def of_other_source(ours: str, theirs: str) -> dict[str, Any]:
         "other-source",
         "Different code",
         500,
-        f"the worker has the source {ours[:12]} of safestart, a task process of it {theirs[:12]}; start them again "
-        "with the same one",
+        f"the worker runs source {ours[:12]} of safestart, one of its task processes {theirs[:12]}; restart them "
+        "with the same source",
         required=ours,
         received=theirs,
     )

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import json
 import sys
-import time
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from typing import Annotated, Any, Literal
 
 import typer
@@ -15,6 +14,7 @@ from rich.console import Console
 from rich.table import Table
 
 from safestart.runtime.progress import Context
+from safestart.runtime.reporting import reporting_on
 
 Justify = Literal["left", "right"]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout and nothing else.")]
@@ -61,59 +61,6 @@ def seconds(value: float | None) -> str:
     return f"{value * 1e3:.1f} ms" if value < 1.0 else f"{value:.1f} s"
 
 
-@contextmanager
-def reporting(title: str) -> Iterator[Context]:
+def reporting(title: str) -> AbstractContextManager[Context]:
     """Context that shows its progress on stderr while the work runs."""
-    with _bar(title) if err.is_terminal else _lines(title) as context:
-        yield context
-
-
-@contextmanager
-def _bar(title: str) -> Iterator[Context]:
-    from rich.progress import (
-        BarColumn,
-        Progress,
-        TaskProgressColumn,
-        TextColumn,
-        TimeElapsedColumn,
-        TimeRemainingColumn,
-    )
-
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TaskProgressColumn(),
-        TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=err, transient=False) as bar:
-        task = bar.add_task(title, total=1.0)
-
-        def report(done: float, total: float, message: str) -> None:
-            text = f"{title} [{message}]" if message else title
-            bar.update(task, completed=done / total if total else 1.0, description=text[:70].ljust(48))
-
-        yield Context(report)
-        bar.update(task, completed=1.0, description=title.ljust(48))
-
-
-@contextmanager
-def _lines(title: str) -> Iterator[Context]:
-    start, shown, first = time.monotonic(), -10.0, 0.0
-
-    def report(done: float, total: float, message: str) -> None:
-        nonlocal shown, first
-        percent = 100.0 * done / total if total else 100.0
-        if shown < 0.0:
-            # Work done before this moment says nothing about the speed from here on.
-            first = percent
-        if percent < shown + 10.0:
-            return
-        shown = percent
-        elapsed = time.monotonic() - start
-        left = f", {elapsed * (100.0 - percent) / (percent - first):.0f} s left" if percent > first else ""
-        err.print(f"{title}: {percent:3.0f} % {message} ({elapsed:.0f} s{left})", soft_wrap=True)
-
-    yield Context(report)
-    err.print(f"{title}: done in {time.monotonic() - start:.1f} s")
+    return reporting_on(err, title)

@@ -33,7 +33,9 @@ def register(app: typer.Typer) -> None:
 
 def create(
     name: Annotated[str, typer.Option(help="Who or what uses the key.")],
-    role: Annotated[Role, typer.Option(help="read; submit reads, too; admin does everything.")] = Role.READ,
+    role: Annotated[
+        Role, typer.Option(help="read; submit, which includes read; admin, which includes all.")
+    ] = Role.READ,
     days: Annotated[float, typer.Option(help="Days until it expires; 0: never.")] = 90.0,
     database_url: Url = None,
     as_json: Json = False,

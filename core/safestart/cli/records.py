@@ -97,7 +97,7 @@ def import_(
 
 
 def backup(
-    file: Annotated[Path, typer.Argument(help="File to write; it must not be there yet.")],
+    file: Annotated[Path, typer.Argument(help="File to write; it must not exist yet.")],
     database_url: DatabaseUrl = "",
 ) -> None:
     """Write a consistent copy of the database to one file, while everything runs."""
@@ -164,7 +164,7 @@ def _database(url: str, *, new: bool = False) -> Iterator[Database]:
 
     database = Database(url or settings().url())
     if database.file is not None and not new and not database.file.exists():
-        raise invalid("database_url", "a database that is there", database.shown)
+        raise invalid("database_url", "an existing database", database.shown)
     try:
         database.migrate()
         err.print(f"database {database.shown}", soft_wrap=True, markup=False)

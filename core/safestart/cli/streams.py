@@ -51,7 +51,7 @@ class Streams:
             reason = failure.strerror
         if reason is None:
             return code
-        sys.stderr.write(f"safestart: standard output: required one that takes what is written ({reason})\n")
+        sys.stderr.write(f"safestart: standard output: required one that accepts output ({reason})\n")
         _flush()
         return code or NOT_WRITTEN
 

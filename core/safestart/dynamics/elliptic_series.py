@@ -18,7 +18,7 @@ _ORDER = 14
 
 
 def series(orbit: KeplerOrbit, begin: Floats, tau: Floats) -> tuple[Floats, Floats]:
-    """Phi (J, 6, 6) and what held thrust adds (J, 6, 3), from ``begin`` (J,) over ``tau`` (J,), s."""
+    """Phi (J, 6, 6) and the effect of held thrust (J, 6, 3), from ``begin`` (J,) over ``tau`` (J,), s."""
     rate, change, tide = _orbit(orbit, begin)
     count = len(begin)
     # Columns: the six unit states, then the three unit thrusts from rest at 0.

@@ -37,7 +37,7 @@ class YamanakaAnkersen(ManyMoves):
     orbit: KeplerOrbit
 
     def moves(self, begin: Floats, end: Floats) -> tuple[Floats, Floats]:
-        """Phi (J, 6, 6) and what held thrust adds (J, 6, 3) from ``begin`` (J,) to ``end`` (J,), s."""
+        """Phi (J, 6, 6) and the effect of held thrust (J, 6, 3) from ``begin`` (J,) to ``end`` (J,), s."""
         if float(np.abs(end - begin).max(initial=0.0)) * self.orbit.rate_bounds()[0] <= LARGEST_TURN:
             return series(self.orbit, begin, end - begin)
         return self._transitions(begin, end), self._held(begin, end)

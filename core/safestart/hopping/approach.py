@@ -91,7 +91,7 @@ def line(angle_deg: float) -> Floats:
 def distances(start: float, hold: float, hops: int, gamma: float | None = None) -> Floats:
     """Distances (hops + 1,) of the ends of hops; each hop is ``gamma`` times as long as the one before.
 
-    Without gamma the distances themselves shrink geometrically, d_k = start (hold/start)^(k/hops), and so do the hops.
+    Without gamma the distances shrink geometrically, d_k = start (hold/start)^(k/hops), and so do the hops.
     """
     number("start_m", start, 0.0, 1e5, open_low=True)
     number("hold_m", hold, 0.0, 1e5, open_low=True)
@@ -139,7 +139,7 @@ def approach(
 def departure(mean_motion: float, time: float, begin: Floats, end: Floats) -> Floats:
     """Velocity (3,) with which a chaser leaves ``begin`` (3,) in order to drift to ``end`` (3,) in ``time`` s.
 
-    In the plane: at half an orbit the cross-track axis has no such velocity, and hops ask for none.
+    Only in the plane: at half an orbit no such cross-track velocity exists, and hops need none.
     """
     phi = transition_matrix(mean_motion, time)
     velocity = np.zeros(3)

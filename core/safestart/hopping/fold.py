@@ -1,8 +1,8 @@
 """Where the branch of hops ends: the angle at which its root of the hop-time equation meets another one.
 
-Both are gone beyond the fold. For rho up to ``CUSP`` there is none: the branch goes on to the V-bar behind the
-target. In q = (1 - rho)^(1/4) the fold's phase and its distance from 180 deg are smooth down to q = 0, where both
-vanish like q; a table over q starts Newton's method in g = 0, dg/dphi = 0.
+Both vanish beyond the fold. For rho up to ``CUSP`` there is no fold: the branch reaches the V-bar behind the target. In
+q = (1 - rho)^(1/4) the fold's phase and its distance from 180 deg are smooth down to q = 0, where both vanish like q; a
+table over q starts Newton's method in g = 0, dg/dphi = 0.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def _table() -> tuple[Floats, Floats, Floats]:
     """Fold over q: nodes, phases, angles; followed from q = 0.1778, where the small-hop law holds to a few percent."""
     begin = (1.0 - 0.999) ** 0.25
     end = (1.0 - CUSP) ** 0.25
-    # The phase has a root's slope at the cusp: nodes crowd there.
+    # The phase behaves like a square root at the cusp, so nodes are dense there.
     nodes = end - (end - begin) * np.linspace(1.0, 1e-2, _NODES) ** 2
     phase, angle = np.array([0.3005]), np.array([math.radians(171.458)])
     phases, angles = np.empty(_NODES), np.empty(_NODES)

@@ -19,7 +19,7 @@ from safestart.model.scenario import Floats
 
 
 def weights(theta: Floats, rho: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-    """What :func:`residual` needs of angles (rad) and shares: 3 S, (1 + 3 S)(1 - rho), 3 rho sin 2 theta, rho."""
+    """Terms of :func:`residual` from angles (rad) and shares: 3 S, (1 + 3 S)(1 - rho), 3 rho sin 2 theta, rho."""
     sine = np.sin(theta)
     secular = 3.0 * sine * sine
     return secular, (1.0 + secular) * (1.0 - rho), 3.0 * rho * np.sin(2.0 * theta), rho

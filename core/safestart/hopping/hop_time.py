@@ -1,7 +1,7 @@
 """How long one hop takes: the root of the hop-time equation on the branch of short hops, for many pairs at once.
 
-On the branch the root is the first one; between 90 deg and the fold it lies below the fold's phase and is alone
-there. Sampled signs bracket it, Newton's method within the bracket finds it to rounding.
+On the branch the root is the first one; between 90 deg and the fold it is the only one below the fold's phase. Sampled
+signs bracket it, Newton's method within the bracket finds it to rounding.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def hop_time(angle_deg: float, rho: float) -> tuple[float, float | None]:
 
 
 def past_the_fold(angle_deg: float, rho: float) -> InvalidInput:
-    """The refusal of a hop that does not exist, with the reason."""
+    """The error for a hop that does not exist, with the reason."""
     return invalid(
         "angle_deg",
         f"an angle (modulo 180) up to {fold_deg(rho):.2f} deg for a hop that leaves {rho:.4g} of the distance: there "
@@ -108,7 +108,7 @@ _SAMPLED = _sampled()
 
 
 def _first_root(theta: Floats, rho: Floats, top: Floats | None) -> Floats:
-    """First positive root of g (up to ``top``, where there is one): Newton's method from a chord, then a look at it."""
+    """First positive root of g (up to ``top``, if given): Newton's method from a chord, then a check."""
     terms = weights(theta, rho)
     square = terms[0] / 3.0
     features = np.empty((len(rho), 5))
@@ -144,7 +144,7 @@ def _first_root(theta: Floats, rho: Floats, top: Floats | None) -> Floats:
 
 
 def _bracketed(low: Floats, high: Floats, terms: tuple[Floats, Floats, Floats, Floats]) -> Floats:
-    """Newton's method that halves the bracket where it would leave it."""
+    """Newton's method; a step that would leave the bracket halves it."""
     phi = 0.5 * (low + high)
     for _ in range(_STEPS):
         value, slope = residual(phi, terms)
@@ -152,7 +152,7 @@ def _bracketed(low: Floats, high: Floats, terms: tuple[Floats, Floats, Floats, F
         with np.errstate(divide="ignore", invalid="ignore"):
             trial = phi - value / slope
         moved = np.where((trial >= low) & (trial <= high), trial, 0.5 * (low + high))
-        # Next to a fold g is flat: there its own rounding ends the search.
+        # Near a fold g is flat, and its rounding ends the search.
         settled = (np.abs(moved - phi) <= 1e-14 * phi) | (np.abs(value) <= 2e-16 * phi)
         phi = moved
         if settled.all():

@@ -1,7 +1,7 @@
-"""Inverse problems of an approach: at which angles it takes a wanted time, or costs a wanted fuel.
+"""Inverse problems of an approach: the angles at which it takes a given time or costs a given amount of fuel.
 
 Time falls from 0 deg to a least value beyond the R-bar and rises again; fuel rises to a peak near 63 deg and falls
-again. So there may be no angle, or one, or more; all up to the last fold are found.
+again. So no, one or several angles may exist; all of them up to the last fold are found.
 """
 
 from __future__ import annotations
@@ -42,8 +42,8 @@ def angles_for(
 ) -> list[float]:
     """Every angle, deg, at which a measure (``orbits``, ``fuel_1norm``, ``fuel_2norm``; m/s) has the value.
 
-    Ascending, from 0 deg to the first fold; empty where none has. Between sampled angles (about 0.8 deg apart) a
-    measure is taken to pass the value once. Raises ``InvalidInput``.
+    Ascending, from 0 deg to the first fold; empty if none has. Assumes that a measure passes the value at most once
+    between sampled angles (about 0.8 deg apart). Raises ``InvalidInput``.
     """
     if measure not in MEASURES:
         raise invalid("measure", f"one of {', '.join(MEASURES)}", measure)

@@ -1,8 +1,8 @@
-"""Covariance of a state: refused unless it can be one, taken to LVLH in a named sense, and as a box at a confidence.
+"""Covariance of a state: checks it, converts it to LVLH in a named sense, and gives a box at a confidence.
 
-Axes that move with the orbit can be meant in two senses. *Inertial*: the axes of that instant, at rest; velocity errors
-are merely turned. *Rotating*: velocity is what an observer in the turning axes sees, dv' = R dv - omega x R dr, so that
-position errors enter. Which one a file means, RTN or RSW alone does not say; OCM's RSW_ROTATING and RSW_INERTIAL do.
+Axes that move with the orbit have two senses. *Inertial*: the axes of that instant, at rest; velocity errors are only
+turned. *Rotating*: the velocity seen in the turning axes, dv' = R dv - omega x R dr, so that position errors enter. The
+names RTN and RSW do not tell which one a file means; OCM's RSW_ROTATING and RSW_INERTIAL do.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from safestart.model.scenario import Floats, number
 
 Sense = Literal["rotating", "inertial"]
 _ROUNDING = 1e-9
-"""Eigenvalues this far below 0, after scaling to a unit diagonal, are rounding of a file."""
+"""Eigenvalues this far below 0, after scaling to a unit diagonal, count as rounding in a file."""
 
 
 @dataclass(frozen=True)
@@ -51,9 +51,9 @@ class Covariance:
 
 
 def covariance_frame(name: str, sense: Sense | None) -> str:
-    """The frame of a covariance by its name; ``sense`` says how RTN, RSW are meant, whose names do not say it.
+    """The frame of a covariance by its name; ``sense`` gives the sense of RTN and RSW, which their names leave open.
 
-    Raises ``InvalidInput`` for a frame that is not known, and for RTN without a sense.
+    Raises ``InvalidInput`` for an unknown frame, and for RTN without a sense.
     """
     plain = name.upper()
     for axes in ("RTN", "RSW", "RIC"):
@@ -84,7 +84,7 @@ def into_axes(matrix: Floats, turn: Floats, rate: Floats, sense: Sense) -> Float
 
 
 def other_sense(matrix: Floats, rate: Floats, to: Sense) -> Floats:
-    """A covariance (6, 6) in moving axes of the one sense as one of the other, ``to``; ``rate`` (3,), rad/s."""
+    """A covariance (6, 6) in moving axes, converted from one sense to the other, ``to``; ``rate`` (3,), rad/s."""
     sign = -1.0 if to == "rotating" else 1.0
     jacobian = np.eye(6)
     jacobian[3:, :3] = sign * _cross(rate)
@@ -95,9 +95,8 @@ def other_sense(matrix: Floats, rate: Floats, to: Sense) -> Floats:
 def box_at(matrix: Floats, confidence: float, dimensions: int = 3) -> Floats:
     """Half-widths (2 d,), m and m/s, of the box around the ellipsoid that holds the state with this probability.
 
-    The ellipsoid is that of a normal distribution: chi-squared with 2 d degrees of freedom. The box holds at least as
-    much.
-    Raises ``InvalidInput`` for a confidence outside [0.5, 1 - 1e-9].
+    The ellipsoid is that of a normal distribution: chi-squared with 2 d degrees of freedom. The box contains at least
+    this probability. Raises ``InvalidInput`` for a confidence outside [0.5, 1 - 1e-9].
     """
     from scipy.stats import chi2
 

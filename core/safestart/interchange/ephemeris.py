@@ -1,4 +1,4 @@
-"""A course of states in a named frame: what an OEM, an OPM, an OCM or a table comes to."""
+"""A course of states in a named frame, read from an OEM, an OPM, an OCM or a table."""
 
 from __future__ import annotations
 
@@ -19,12 +19,11 @@ _NEAREST, _FURTHEST, _FASTEST = 0.9 * EARTH_RADIUS, 1e9, 2e4
 
 @dataclass(frozen=True)
 class Ephemeris:
-    """``states`` (K, 6), m and m/s, in ``frame`` at TAI ``epochs`` (K,), ns, that rise.
+    """``states`` (K, 6), m and m/s, in ``frame`` at ascending TAI ``epochs`` (K,), ns.
 
-    ``time_system`` is how a file writes the epochs; ``covariances`` belong to epochs of their own. ``pieces`` (S,) are
+    ``time_system`` is that of the file's epochs; ``covariances`` have their own epochs. ``pieces`` (S,) are
     the indices at which a new segment begins, 0 first: nothing is interpolated from one to the next. Raises
-    ``InvalidInput`` for epochs that do not rise, states that are not finite, and such as no orbit of the Earth has
-    (wrong units).
+    ``InvalidInput`` for epochs that do not rise, non-finite states, and states of no orbit of the Earth (wrong units).
     """
 
     name: str

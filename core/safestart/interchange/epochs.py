@@ -1,7 +1,7 @@
-"""Epochs in the time systems of the field, as whole nanoseconds of TAI since 2000-01-01T00:00:00 TAI.
+"""Epochs in the common time systems, as whole nanoseconds of TAI since 2000-01-01T00:00:00 TAI.
 
 Leap seconds come from ERFA, the IAU's library. A leap second is an epoch of its own: 2016-12-31T23:59:60 UTC.
-TT is TAI + 32.184 s, GPS time TAI - 19 s. TDB and UT1 are refused: they need more than a table of leap seconds.
+TT is TAI + 32.184 s, GPS time TAI - 19 s. TDB and UT1 are refused, because they need more than a table of leap seconds.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _BEGIN = np.datetime64("2000-01-01", "D")
 
 
 def system_of(name: str) -> str:
-    """The time system of this name; raises ``InvalidInput`` for one that is not known."""
+    """The time system of this name; raises ``InvalidInput`` for an unknown one."""
     if name not in SYSTEMS:
         raise invalid("TIME_SYSTEM", f"one of {', '.join(SYSTEMS)}", name)
     return name
@@ -35,8 +35,8 @@ def system_of(name: str) -> str:
 def epochs_of(texts: Sequence[str], system: str) -> Nanoseconds:
     """TAI (K,) of epochs YYYY-MM-DDThh:mm:ss.f or YYYY-DDDThh:mm:ss.f, rounded to a nanosecond.
 
-    Raises ``InvalidInput`` for what is no epoch, a date or a time of day that does not exist, UTC before 1972 or so far
-    ahead that nobody knows its leap seconds, and another time system; ``Unavailable`` without ERFA.
+    Raises ``InvalidInput`` for an invalid epoch, a date or a time of day that does not exist, UTC before 1972 or so far
+    ahead that its leap seconds are unknown, and another time system; ``Unavailable`` without ERFA.
     """
     system_of(system)
     days = np.empty(len(texts), dtype=np.int64)
@@ -118,7 +118,7 @@ def text_of(epochs: Nanoseconds, system: str) -> list[str]:
         days = epochs // _DAY
         begin = days * _DAY + leap_seconds(days) * SECOND
         days = days - (epochs < begin)
-        # A day with a leap second simply goes on for one more.
+        # A day with a leap second lasts one second longer.
         within = epochs - days * _DAY - leap_seconds(days) * SECOND
     else:
         shown = epochs + _OFFSETS[system]

@@ -1,4 +1,4 @@
-"""Frames around the Earth by name, and states taken from them to GCRF by ERFA, the IAU's library.
+"""Frames around the Earth by name, and the conversion of their states to GCRF by ERFA, the IAU's library.
 
 GCRF and ICRF have the same axes here. EME2000 (J2000) differs from them by the frame bias of some 0.02 arcseconds. TEME
 is the true equator and mean equinox of date (IAU 1976 precession, IAU 1980 nutation), as SGP4 uses it. ITRF turns with
@@ -33,7 +33,7 @@ _TT_LESS_TAI = 32.184
 
 
 def frame_of(name: str) -> str:
-    """The frame of this name, one for all spellings; raises ``InvalidInput`` for one that is not known."""
+    """The frame of this name, in any spelling; raises ``InvalidInput`` for an unknown one."""
     plain = name.upper().replace("_", "").replace("-", "").replace(" ", "")
     if plain in _SAME:
         return _SAME[plain]
@@ -84,7 +84,7 @@ def rotation_to_gcrf(frame: str, epochs: Nanoseconds) -> Floats:
 
 
 def _rz(angles: Floats) -> Floats:
-    """(K, 3, 3): coordinates seen from axes that are turned about z by ``angles`` (K,)."""
+    """(K, 3, 3): coordinates in axes turned about z by ``angles`` (K,)."""
     out = np.zeros((len(angles), 3, 3))
     cosine, sine = np.cos(angles), np.sin(angles)
     out[:, 0, 0] = out[:, 1, 1] = cosine

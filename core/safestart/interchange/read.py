@@ -1,4 +1,4 @@
-"""Any file of the field as a record, by what it holds: CCSDS messages in KVN and XML, CSV, Parquet, MATLAB."""
+"""Read a file as a record, by its content: CCSDS messages in KVN and XML, CSV, Parquet, MATLAB."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def attitude_from(data: bytes, name: str = "") -> AttitudeCourse:
 
 
 def encounter_of(path: Path | str, sense: Sense) -> Encounter:
-    """The two objects of a CDM; ``sense`` says how its RTN covariances are meant. Raises ``InvalidInput``."""
+    """The two objects of a CDM; ``sense`` gives the sense of its RTN covariances. Raises ``InvalidInput``."""
     message = message_of(bytes_of(path))
     if message.kind != "CDM":
         raise invalid("file", "CDM", message.kind)

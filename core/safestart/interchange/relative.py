@@ -22,7 +22,7 @@ from safestart.model.scenario import Bools, Floats
 
 @dataclass(frozen=True)
 class Relative:
-    """What two courses say at TAI ``epochs`` (K,), ns.
+    """The relative motion of two courses at TAI ``epochs`` (K,), ns.
 
     ``states`` (K, 6): the chaser in LVLH, m and m/s; ``axes`` (K, 3, 3): GCRF coordinates to LVLH; ``rates`` (K,) rad/s
     about z. ``known`` (K,) is False, and the rest NaN, where a file has a gap or ends. ``target`` (K, 6) is in GCRF.
@@ -34,6 +34,17 @@ class Relative:
     rates: Floats
     target: Floats
     known: Bools
+
+    def where(self, chosen: Bools) -> Relative:
+        """The same at the epochs where ``chosen`` (K,) is True."""
+        return Relative(
+            self.epochs[chosen],
+            self.states[chosen],
+            self.axes[chosen],
+            self.rates[chosen],
+            self.target[chosen],
+            self.known[chosen],
+        )
 
     def mean_motions(self) -> Floats:
         """(K,) rad/s, of the target's osculating orbit."""
@@ -52,10 +63,10 @@ class Relative:
 
 
 def relative_states(chaser: Ephemeris, target: Ephemeris, epochs: Nanoseconds) -> Relative:
-    """The chaser seen from the target's LVLH at TAI ``epochs`` (K,); the frames of the two files may differ.
+    """The chaser in the target's LVLH at TAI ``epochs`` (K,); the frames of the two files may differ.
 
-    Raises ``InvalidInput`` where only one of the two is in ITRF: how far the Earth has turned is then not known well
-    enough (:mod:`safestart.interchange.frames`).
+    Raises ``InvalidInput`` if only one of the two is in ITRF: the Earth's turn is then not known well enough
+    (:mod:`safestart.interchange.frames`).
     """
     if (chaser.frame == "ITRF") != (target.frame == "ITRF"):
         raise invalid("REF_FRAME", "both courses in ITRF, or neither", f"{chaser.frame} and {target.frame}")
@@ -98,7 +109,7 @@ def to_inertial(states: Floats, target: Floats) -> Floats:
 
 
 def covariance_in_lvlh(covariance: Covariance, own: Floats, target: Floats, sense: Sense) -> Floats:
-    """(6, 6): a covariance in LVLH of ``target`` (6,), inertial, in the sense asked for.
+    """(6, 6): a covariance in LVLH of ``target`` (6,), inertial, in the given sense.
 
     One in RTN is in the axes of its own object, whose inertial state is ``own`` (6,): these are turned into the
     target's.

@@ -1,4 +1,4 @@
-"""States and attitudes between the epochs of a file, and nothing across its gaps."""
+"""States and attitudes between the epochs of a file, but not across its gaps."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from safestart.interchange.frames import to_gcrf
 from safestart.model.scenario import Bools, Floats
 
 LONGEST_STEP_S = 300.0
-"""Epochs further apart than this leave a gap. With 8 states the interpolation is then good to a micrometre (LEO)."""
+"""A larger distance between epochs is a gap. Up to it, 8 states interpolate to a micrometre (LEO)."""
 _POINTS = 8
 
 
 def states_at(ephemeris: Ephemeris, epochs: Nanoseconds) -> tuple[Floats, Bools]:
-    """GCRF states (K, 6) at TAI ``epochs`` (K,), and where there are any: NaN and False in gaps and outside.
+    """GCRF states (K, 6) at TAI ``epochs`` (K,), and where they are known: NaN and False in gaps and outside.
 
     Hermite interpolation through positions and velocities of up to eight neighbours, of one piece and without a gap
     between them; at an epoch of the file the state of the file.
@@ -66,7 +66,7 @@ def _hermite(nodes: Floats, states: Floats, times: Floats) -> Floats:
 
 
 def gaps_of(ephemeris: Ephemeris) -> list[tuple[int, int]]:
-    """Pairs of TAI epochs, ns, between which the file says nothing."""
+    """The gaps as pairs of TAI epochs, ns."""
     ends = np.nonzero(np.diff(_runs(ephemeris)))[0]
     return [(int(ephemeris.epochs[k]), int(ephemeris.epochs[k + 1])) for k in ends]
 

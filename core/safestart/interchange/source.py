@@ -1,4 +1,4 @@
-"""Bytes of a file, with a limit that holds before and while it is read."""
+"""Bytes of a file, with a size limit before and during reading."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ MOST_BYTES = 64 * 1024 * 1024
 def bytes_of(path: Path | str, most: int = MOST_BYTES) -> bytes:
     """The file's bytes; raises ``InvalidInput`` when it is missing, not a file, or longer than ``most`` bytes.
 
-    Its length is asked first and no more than ``most`` bytes are read, whatever the length was said to be.
+    Checks the stated length first, and reads at most ``most`` bytes whatever it was.
     """
     path = Path(path)
     try:

@@ -1,8 +1,8 @@
 """Tables of states and attitudes: CSV, Parquet, MATLAB 5; the same columns in each, units in their names.
 
 States: ``epoch`` (text), ``x_m``, ``y_m``, ``z_m``, ``vx_m_s``, ``vy_m_s``, ``vz_m_s``. Attitudes: ``epoch``, ``q_s``,
-``q_x``, ``q_y``, ``q_z`` (scalar first, reference to body). What a message says in its head stands in columns of one
-value: ``object``, ``object_id``, ``frame`` (``reference`` and ``body`` for attitudes), ``time_system``.
+``q_x``, ``q_y``, ``q_z`` (scalar first, reference to body). Columns of one value hold the contents of a message's
+header: ``object``, ``object_id``, ``frame`` (``reference`` and ``body`` for attitudes), ``time_system``.
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ def matlab_of(columns: Mapping[str, Any]) -> bytes:
         array = np.asarray(column)
         text = array.dtype.kind == "U"
         found[name] = (array.astype(object) if text else array.astype(np.float64)).reshape(len(array), -1)
-    # It takes files too, whatever its stubs say.
+    # It accepts file objects too, contrary to its type stubs.
     savemat(cast(Any, sink), found, do_compression=True, long_field_names=True)
     return sink.getvalue()
 
@@ -152,7 +152,7 @@ def _from_matlab(data: bytes) -> Columns:
 
 
 def _head(columns: Columns, head: Sequence[str], numbers: Sequence[str]) -> dict[str, str]:
-    """What stands once for all rows; raises ``InvalidInput`` for columns missing, unknown, or not of one value."""
+    """Values common to all rows; raises ``InvalidInput`` for columns missing, unknown, or of several values."""
     required = ("epoch", *numbers, *head)
     for name in required:
         if name not in columns:

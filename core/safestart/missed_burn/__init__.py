@@ -1,1 +1,1 @@
-"""The missed-burn proof: what a plan of burns does when one fails, in continuous time and for all errors at once."""
+"""The missed-burn proof: a plan of burns when one fails, in continuous time and for all errors at once."""

@@ -1,9 +1,9 @@
-"""All that may happen to a plan, as sets of LVLH states from which the chaser drifts.
+"""All possible failures of a plan, as sets of LVLH states from which the chaser drifts.
 
 Every set is a centre and blocks of columns, M_k b_k with |b_k|_2 <= 1, at the time of a burn. A burn with errors is
-a piece of a spherical shell; its enclosure is a segment along the burn and a disc across it. What happens during
-[0, tau] (late, stuck on) is cut into short pieces. The curve of equivalent states at the time of the burn is its
-tangent in the middle of the piece plus a box for its bend (Taylor's remainder).
+a piece of a spherical shell; its enclosure is a segment along the burn and a disc across it. The interval [0, tau] of a
+late or stuck burn is cut into short pieces. On each piece the curve of equivalent states at the time of the burn is
+replaced by its tangent in the middle plus a box for its bend (Taylor's remainder).
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from safestart.missed_burn.plan import Burn, Question
 from safestart.model.scenario import Floats
 
 _BEND = 0.02
-"""A piece is as short as keeps the box for its bend below so many metres."""
+"""Pieces are so short that the box for the bend stays below this many metres."""
 _MOST_PIECES = 64
 
 
@@ -29,7 +29,7 @@ class Case:
     """One event: from ``time`` s on the chaser drifts from the set for ``duration`` s.
 
     ``kind``: start (no burn is made), made, partial, late, stuck, misdirected. ``first``, ``last``: the piece, s.
-    ``columns`` (C, 6) and ``ends`` (K,) of the blocks; ``labels`` (C) say what each column is: the name of an error and
+    ``columns`` (C, 6) and ``ends`` (K,) of the blocks; ``labels`` (C) describe the columns: the name of an error and
     the number of its burn or axis.
     """
 
@@ -99,7 +99,7 @@ def cases_of(question: Question) -> list[Case]:
         before = state.copy()
         _burn(state, burn, k, 1.0 - share, 1.0 + share, angle)
         gap = times[k + 1] - times[k] if k + 1 < len(times) else -failures.late
-        # The drift goes on until the next burn, however late that is.
+        # The drift lasts until the next burn, which may be late.
         out.append(state.case("made", k, times[k], max(question.horizon, gap + failures.late), still))
         if failures.partial:
             part = before.copy()
@@ -152,7 +152,7 @@ def frame(vector: Floats) -> tuple[Floats, Floats, Floats]:
 def _burn(
     state: _Set, burn: Burn, k: int, least: float, greatest: float, angle: float, after: Floats | None = None
 ) -> None:
-    """Adds a burn with errors; ``after`` (6, 6) moves what it adds."""
+    """Adds a burn with errors, moved by ``after`` (6, 6)."""
     lift = np.eye(6)[:, 3:] if after is None else after[:, 3:]
     middle, half, across = shell(least, greatest, angle)
     along, one, two = frame(np.array(burn.impulse))
@@ -164,7 +164,7 @@ def _burn(
 
 
 def drifted(size: float, seconds: float, n: float, longest: float) -> Floats:
-    """Half-widths (6,) of where a velocity of ``size`` m/s carries the equivalent state within ``seconds``.
+    """Half-widths (6,) of the change of the equivalent state by a velocity of ``size`` m/s within ``seconds``.
 
     For phases up to p = n ``longest`` <= 0.5: |d/dt Phi(-t) (0, v)| is at most (1 + 2 p) |v| in each position and
     (2 + 4 p) n |v| in each velocity.
@@ -217,7 +217,7 @@ def _stuck(state: _Set, burn: Burn, k: int, n: float, piece: tuple[float, float]
     state.centre = state.centre - input_matrix(n, -middle) @ push
     state.block([half * (transition_matrix(n, -middle)[:, 3:] @ push)], "piece", k)
     state.box(drifted(centre * acceleration, 0.5 * half * half, n, piece[1]), "bend")
-    # The errors of the thrust that goes on are those of the burn; here they may be any.
+    # The continuing thrust has the burn's errors; here they are taken as independent.
     loose = acceleration * float(np.hypot(within, across))
     state.box(
         np.concatenate([np.zeros(3), np.full(3, loose * piece[1])])

@@ -13,7 +13,7 @@ SCHEMA = "safestart-abort-proof/1"
 
 
 def document_of(proof: Proof) -> dict[str, Any]:
-    """The document of a plan that is PROVED; raises ``Conflict`` for any other verdict."""
+    """The document of a PROVED plan; raises ``Conflict`` for any other verdict."""
     if proof.verdict is not Verdict.PROVED:
         raise Conflict(f"a proof document needs the verdict PROVED, this one is {proof.verdict.value}")
     document: dict[str, Any] = {
@@ -38,7 +38,7 @@ def document_of(proof: Proof) -> dict[str, Any]:
 
 
 def asked(question: Question) -> dict[str, Any]:
-    """The question as the document has it."""
+    """The question in the document's form."""
     plan, errors, failures = question.plan, question.errors, question.failures
     return {
         "model": "linear" if question.radius is None else "nonlinear",

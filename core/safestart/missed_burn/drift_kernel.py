@@ -6,8 +6,8 @@ ellipse. In CWH motion the positions at t are Phi_p(t) times it. For a unit vect
     distance(t) >= f_d(t) = q . centre - sum_k |M_k' q|,
 
 and f_d is concave in q. Over [a, b] q differs from its chord by at most (b - a)^2/8 |q''|, where q'' = P cos n t +
-Q sin n t has no secular part. So min(f_d(a), f_d(b)) less the remainder bounds f_d on [a, b]. The intervals with the
-lowest bounds are cut until the bound meets a member of the set. docs/theory/hopping.md has the inequalities.
+Q sin n t has no secular part. So min(f_d(a), f_d(b)) minus the remainder bounds f_d on [a, b]. The intervals with the
+lowest bounds are halved until the bound meets a member of the set. docs/theory/hopping.md has the inequalities.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from safestart.model.scenario import Floats
 from safestart.runtime.kernels import compiled
 
 ROUNDING = 1e-12
-"""Share of the magnitude of all terms that every bound gives away: a hundred times what rounding can take."""
+"""Every bound is lowered by this share of the magnitude of all terms: a hundred times the possible rounding."""
 
 _FIRST = 24
 Ends = NDArray[np.int64]
@@ -130,9 +130,10 @@ def least_distance(
     """Bounds on the least distance over [0, horizon].
 
     ``strays`` (L, 3): how far the true motion may be from the linear one, per axis, up to the end of each of L equal
-    parts of the horizon; not decreasing. Ends when the lower bound is ``enough``, a member is nearer than ``below``,
-    both bounds agree to ``tolerance``, or after ``most`` intervals. Returns the lower bound, the least distance of a
-    member with its time and its coordinates (C,) in the columns, and the intervals (N, 5): begin, end, direction.
+    parts of the horizon; not decreasing. The search ends when the lower bound reaches ``enough``, a member is nearer
+    than ``below``, both bounds agree to ``tolerance``, or ``most`` intervals are used. Returns the lower bound, the
+    least distance of a member with its time and its coordinates (C,) in the columns, and the intervals (N, 5): begin,
+    end, direction.
     """
     cells = np.empty((most, 5))
     bounds = np.empty(most)
@@ -140,14 +141,14 @@ def least_distance(
     rows, q, p = np.empty((3, 6)), np.empty(6), np.empty(6)
     d, member, best = np.empty(3), np.empty(len(columns)), np.zeros(len(columns))
     loss = ROUNDING * _magnitude(n, horizon, centre, columns)
-    # ``goal``: no bound can be better, with what the true motion may stray.
+    # ``goal``: the best possible bound, given how far the true motion may stray.
     count, upper, goal, when = 0, np.inf, np.inf, 0.0
     for k in range(_FIRST):
         cells[k, 0], cells[k, 1] = horizon * k / _FIRST, horizon * (k + 1) / _FIRST
     count = _FIRST
     fresh = 0
     while True:
-        # Bounds of the intervals that are new: first by the direction to the centre, which needs no search.
+        # Bounds of the new intervals: first by the direction to the centre, which needs no search.
         for k in range(fresh, count):
             middle = 0.5 * (cells[k, 0] + cells[k, 1])
             position_rows(n, middle, rows)
@@ -186,7 +187,7 @@ def least_distance(
         middle = 0.5 * (cells[worst, 0] + cells[worst, 1])
         cells[count, 0], cells[count, 1] = middle, cells[worst, 1]
         cells[worst, 1] = middle
-        # Both halves begin anew, with the direction that served the whole one where it still serves.
+        # Bound both halves again, with the whole interval's direction where it is still good enough.
         for k in (worst, count):
             bounds[k] = -np.inf
         cells[count, 2:] = cells[worst, 2:]
@@ -211,7 +212,7 @@ def _bound(
     q: Floats,
     p: Floats,
 ) -> float:
-    """Lower bound on the distance over one interval, without what rounding takes."""
+    """Lower bound on the distance over one interval, before the allowance for rounding."""
     d, span = cell[2:], cell[1] - cell[0]
     low: float = min(
         _value(n, cell[0], d, centre, columns, ends, rows, q),
@@ -224,9 +225,9 @@ def _bound(
 
 @compiled()
 def _stray(t: float, horizon: float, d: Floats, strays: Floats) -> float:
-    """What the true motion may lose in direction d up to t."""
+    """Largest loss of distance of the true motion in direction d up to t."""
     parts = len(strays)
-    # Rounding of the quotient must not choose the part before.
+    # Rounding of the quotient must not choose the previous part.
     part = max(min(math.ceil(t / horizon * parts + 1e-9), parts) - 1, 0)
     lost: float = abs(d[0]) * strays[part, 0] + abs(d[1]) * strays[part, 1] + abs(d[2]) * strays[part, 2]
     return lost

@@ -1,7 +1,7 @@
 """The member of a set of positions that is nearest to the target, by Gilbert's method with Wolfe's corrections.
 
-The set is the image of centre + sum_k M_k b_k, |b_k|_2 <= 1, under the position rows. Every step asks for the member
-that lies furthest towards the target, and takes the nearest point of the simplex of the members asked for so far.
+The set is the image of centre + sum_k M_k b_k, |b_k|_2 <= 1, under the position rows. Every step finds the member
+furthest towards the target, and takes the nearest point of the simplex of all members found so far.
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ def _dot6(q: Floats, m: Floats) -> float:
 def _extreme(
     d: Floats, centre: Floats, images: Floats, ends: NDArray[np.int64], fresh: Floats, at: Floats
 ) -> float:
-    """The member least in direction ``d``: its value; its coordinates and position are written."""
+    """The member with the least value in direction ``d``; returns the value, writes its coordinates and position."""
     value: float = d[0] * centre[0] + d[1] * centre[1] + d[2] * centre[2]
     at[:] = centre
     begin = 0
@@ -103,7 +103,7 @@ def _extreme(
 
 @compiled()
 def _simplex(points: Floats, coordinates: Floats, weights: Floats, held: int, at: Floats) -> int:
-    """Nearest point ``at`` of the simplex of ``held`` points; keeps the points that carry it, returns how many."""
+    """Nearest point ``at`` of the simplex of ``held`` points; keeps the points with weight and returns their number."""
     best, chosen = np.inf, 1
     share, kept = np.zeros(4), np.zeros(4)
     for subset in range(1, _SUBSETS + 1):
@@ -161,7 +161,7 @@ def _simplex(points: Floats, coordinates: Floats, weights: Floats, held: int, at
 
 @compiled()
 def _solve(matrix: Floats, right: Floats) -> bool:
-    """Gauss elimination in place, up to 3 x 3, of a Gram matrix; False where it is as good as singular."""
+    """Gauss elimination in place, up to 3 x 3, of a Gram matrix; False if it is nearly singular."""
     size = len(right)
     scale = 0.0
     for i in range(size):

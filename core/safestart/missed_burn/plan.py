@@ -1,4 +1,4 @@
-"""What is asked: a plan of impulses on a circular orbit, its errors, the failures of its burns, what to keep out of."""
+"""The question: a plan of impulses on a circular orbit, its errors, the failures of its burns, the keep-out sphere."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from safestart.model.scenario import MAX_MEAN_MOTION, Floats, number
 
 MOST_BURNS = 200
 LONGEST_PHASE = 0.5
-"""A burn may be late, or stay on, for this phase n t of the orbit (rad) at the most."""
+"""Largest delay or overrun of a burn, as a phase n t of the orbit (rad)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +32,7 @@ class Burn:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """Burns in order, from the LVLH state ``start`` (6,), m and m/s, at the time of the first one; before it."""
+    """Burns in order, from the LVLH state ``start`` (6,), m and m/s, right before the first one."""
 
     mean_motion: float
     start: tuple[float, ...]
@@ -64,7 +64,7 @@ class Plan:
         return cls(float(mean_motion), tuple(float(x) for x in start), tuple(burns))
 
     def before(self) -> Floats:
-        """States (K, 6) right before each burn, when all went as planned."""
+        """States (K, 6) right before each burn, without failures."""
         state, out = np.array(self.start), []
         for k, burn in enumerate(self.burns):
             if k:
@@ -76,11 +76,11 @@ class Plan:
 
 @dataclass(frozen=True, slots=True)
 class Errors:
-    """What a plan's states and burns may be off by.
+    """Bounds on the errors of a plan's states and burns.
 
     ``position`` and ``velocity``: half-widths of a box, m and m/s. ``thrust_share``: relative error of a burn's size;
     ``thrust_angle``: error of its direction, rad. ``at_each_burn``: the box holds before every burn, because the burns
-    are planned anew; else it holds before the first one, and the errors of the burns add up.
+    are planned again; otherwise it holds only before the first one, and the errors of the burns add up.
     """
 
     position: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -108,10 +108,10 @@ class Errors:
 
 @dataclass(frozen=True, slots=True)
 class Failures:
-    """What may happen to any one burn; no burn follows a failure.
+    """Possible failures of any one burn; no burn follows a failure.
 
-    ``late``: up to so many s; ``partial``: any part of it is burnt, 0..100 %; ``stuck``: it goes on for up to so many s
-    at ``acceleration`` m/s^2; ``misdirected``: by up to so many rad. A burn that is missed is always asked for.
+    ``late``: by up to this many s; ``partial``: any part of it is burnt, 0..100 %; ``stuck``: it continues for up to
+    this many s at ``acceleration`` m/s^2; ``misdirected``: by up to this many rad. A missed burn is always included.
     """
 
     late: float = 0.0
@@ -131,10 +131,10 @@ class Failures:
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """``keep_out`` m around the target must stay empty for ``horizon`` s after the last burn that was made.
+    """``keep_out`` m around the target must stay empty for ``horizon`` s after the last completed burn.
 
-    ``radius`` of the circular orbit, m, where the answer is to speak about the nonlinear motion (two point masses,
-    mu = n^2 radius^3); None: about the linear one.
+    ``radius`` of the circular orbit, m, for an answer about the nonlinear motion (two point masses, mu = n^2 radius^3);
+    None: about the linear one.
     """
 
     plan: Plan

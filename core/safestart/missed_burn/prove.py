@@ -1,4 +1,4 @@
-"""The verdict on a plan: the least distance proved for every case, or a flight that comes too near, or a gap."""
+"""The verdict on a plan: a proved least distance for every case, a flight that comes too near, or a gap."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from safestart.missed_burn.strays import strays_of
 from safestart.model.scenario import Floats
 
 SLACK = 1e-6
-"""Metres by which every claim is lowered: it covers the roundings of the sets themselves."""
+"""Metres subtracted from every claim, which cover the rounding of the sets."""
 _TOLERANCE = 0.02
 _MOST_CELLS = 2048
 _TOUCHES = 0.1
-"""A member nearer than this, m, ends the search: sets that hold the target have no lower bound to wait for."""
+"""A member nearer than this, m, ends the search, as a set that contains the target has no positive lower bound."""
 
 
 class Verdict(StrEnum):
@@ -60,7 +60,7 @@ class Proof:
 
     @property
     def gap(self) -> float:
-        """How much the proved least distance falls short of the keep-out radius, m; 0 where it does not."""
+        """Shortfall of the proved least distance against the keep-out radius, m; 0 without one."""
         return max(self.question.keep_out - self.least, 0.0)
 
 
@@ -70,8 +70,8 @@ _NO_STRAYS = np.zeros((1, 3))
 def prove(question: Question, *, tick: Callable[[int, int], None] | None = None, sharp: bool = True) -> Proof:
     """Prove or refute a plan.
 
-    ``sharp``: bound every case to 2 cm or 0.1 %, else only as far as the keep-out radius asks. ``tick`` hears how far
-    it is.
+    ``sharp``: bound every case to 2 cm or 0.1 %, otherwise only as tightly as the keep-out radius requires. ``tick``
+    receives the progress.
     """
     cases = cases_of(question)
     findings = []
@@ -111,14 +111,14 @@ def bound(case: Case, question: Question, enough: float) -> Finding:
         tolerance,
         _MOST_CELLS,
     )
-    # With strays that could not be bounded nothing is known: no distance is negative.
+    # With unbounded strays the only bound is 0, as no distance is negative.
     return Finding(case, max(least - SLACK, 0.0), nearest, when, cells, member, trials)
 
 
 def greatest_scale(question: Question, *, most: float = 100.0, accuracy: float = 1e-3) -> float:
-    """lambda: the largest multiple of the errors, up to ``most``, for which every case is proved; 0 where none is.
+    """lambda: the largest multiple of the errors, up to ``most``, for which every case is proved; 0 if none is.
 
-    Larger errors hold the smaller ones, so bisection finds it to a relative ``accuracy``, from below.
+    Larger errors include smaller ones, so bisection finds it to a relative ``accuracy``, from below.
     """
 
     def holds(scale: float) -> bool:

@@ -1,4 +1,4 @@
-"""A flight that one member of a case's set stands for: actual states and burns, to be flown again by anyone."""
+"""The flight of one member of a case's set: actual states and burns that anyone can fly again."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ class Flown:
 def flown_of(question: Question, case: Case, member: Floats, when: float) -> Flown:
     """The flight of a member (C,) of a case, ``when`` s after the case's time.
 
-    Its burns are taken back into what errors and failures allow, so its distance is to be measured, not believed.
+    Its burns are clipped to the allowed errors and failures, so its distance must be measured, not taken from the set.
     """
     plan, errors, failures = question.plan, question.errors, question.failures
     base = case.burn if errors.at_each_burn else 0

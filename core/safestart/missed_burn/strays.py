@@ -1,12 +1,12 @@
-"""How far the nonlinear motion may be from the linear one, by a bound on what the linearisation leaves out.
+"""How far the nonlinear motion may be from the linear one, by a bound on the error of the linearisation.
 
 About a circular orbit of radius r (mu = n^2 r^3) the relative motion is x' = A x + (0, w) with
 
     |w| <= 3 mu rho^2 / (r - rho)^4         (Lagrange's remainder, rho the distance to the target),
 
 so each axis i of the position differs from the linear one by at most int |row_i(t - s)| |w(s)| ds, row_i the rows of
-Phi_pv. rho holds the difference itself: over each part of the horizon a trial radius is accepted where the motion that
-it permits stays inside it; by continuity the true motion then does.
+Phi_pv. rho includes the difference itself. Over each part of the horizon a trial radius is accepted when the motion
+that it permits stays inside it; by continuity the true motion then does too.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from safestart.model.scenario import Floats
 
 PARTS = 96
 UNBOUNDED = 1e30
-"""Stands for a difference that could not be bounded: nothing is proved with it."""
+"""Stands for an unbounded difference, with which nothing can be proved."""
 
 _UP = 1.0 + 1e-12
 _TRIALS = 40
@@ -42,7 +42,7 @@ def strays_of(case: Case, question: Question, r: float) -> tuple[Floats, Floats]
     trials = np.full(PARTS, UNBOUNDED)
     pushes = np.zeros(PARTS)
     for k in range(PARTS):
-        # All parts before act on this one with the lag between them.
+        # All earlier parts act on this one with the lag between them.
         before = reach[k:0:-1].T @ pushes[:k] if k else np.zeros(3)
         least = pushes[k - 1] if k else 0.0
         trial = float(radii[k] + np.linalg.norm(before)) * (1.0 + 1e-9) + 1e-6
@@ -62,7 +62,7 @@ def strays_of(case: Case, question: Question, r: float) -> tuple[Floats, Floats]
 
 
 def detour(case: Case, question: Question) -> float:
-    """How far, m, a late or lasting burn lets the actual position be from that of its equivalent state meanwhile."""
+    """Largest distance, m, of the actual position during a late or lasting burn from its equivalent state's."""
     if case.kind not in ("late", "stuck"):
         return 0.0
     most, failures = 1.0 + question.errors.thrust_share, question.failures
@@ -99,7 +99,7 @@ def _sizes(rows: Floats, case: Case) -> Floats:
 
 
 def _influence(n: float, h: float) -> Floats:
-    """(PARTS, 3): bounds on int |row_i| over [m h, (m + 1) h], the mean of the ends plus what the chord may miss."""
+    """(PARTS, 3): bounds on int |row_i| over [m h, (m + 1) h], the mean of the ends plus the chord's error."""
     tau = n * h * np.arange(PARTS + 1)
     sway, swing = np.sin(tau), 2.0 * (1.0 - np.cos(tau))
     along = 4.0 * sway - 3.0 * tau

@@ -1,7 +1,7 @@
 """The target's Kepler orbit: how LVLH turns in inertial space, at any time and eccentricity.
 
-Inertial axes are those that LVLH has at t = 0: x radial, y along-track, z along the orbit's angular momentum. LVLH
-turns about z by what the true anomaly nu has gained. Kepler's equation is E - e sin E = M with M = n t + M(0).
+The inertial axes are those of LVLH at t = 0: x radial, y along-track, z along the orbit's angular momentum. LVLH turns
+about z by the increase of the true anomaly nu. Kepler's equation is E - e sin E = M with M = n t + M(0).
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class KeplerOrbit:
 
     @classmethod
     def of(cls, semi_major_axis: float, eccentricity: float, true_anomaly: float = 0.0) -> Self:
-        """The orbit of a semi-major axis in metres; raises ``InvalidInput`` where the perigee lies inside the Earth."""
+        """The orbit of a semi-major axis in metres; raises ``InvalidInput`` if the perigee lies inside the Earth."""
         number("semi_major_axis", semi_major_axis, EARTH_RADIUS, _FURTHEST)
         orbit = cls(math.sqrt(MU / semi_major_axis**3), 0.0, true_anomaly)
         number("eccentricity", eccentricity, 0.0, MAX_ECCENTRICITY)
@@ -82,13 +82,13 @@ class KeplerOrbit:
             step = miss / (slope - 0.5 * e * sine * miss / slope)
             found = found - step
             if float(np.abs(step).max(initial=0.0)) < 1e-9:
-                # The error of the next iterate is that of this one cubed.
+                # The error of the next iterate is the cube of this one's.
                 break
         out: Floats = found + turns
         return out
 
     def turned(self, times: Floats) -> Floats:
-        """By how much LVLH has turned about z since t = 0, rad (...): nu(t) - nu(0)."""
+        """Turn of LVLH about z since t = 0, rad (...): nu(t) - nu(0)."""
         times = np.asarray(times, dtype=np.float64)
         if self.circular:
             return self.mean_motion * times

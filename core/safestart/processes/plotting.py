@@ -1,4 +1,7 @@
-"""Shared by all pictures: headless figures, the corridor, PNG and NPZ bytes."""
+"""Shared by all pictures: headless figures, the corridor, PNG and NPZ bytes.
+
+No figure goes through pyplot, so that nothing needs a screen and a notebook keeps its own backend.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,6 @@ import io
 from collections.abc import Mapping
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -15,8 +17,6 @@ from numpy.typing import NDArray
 
 from safestart.model.scenario import CorridorShape
 from safestart.processes.base import Artifact
-
-mpl.use("Agg")
 
 NPZ = "application/x-npz"
 

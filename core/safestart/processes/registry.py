@@ -11,6 +11,7 @@ from safestart.processes.base import ProcessSpec
 _SPECS = {
     "go-no-go": "safestart.processes.go_no_go.spec",
     "certificate": "safestart.processes.certificate.spec",
+    "start-in-space": "safestart.processes.start_in_space.spec",
     "safe-region": "safestart.processes.safe_region.spec",
     "thrust-map": "safestart.processes.thrust_map.spec",
     "flight": "safestart.processes.flight.spec",
@@ -24,6 +25,7 @@ _SPECS = {
     "sweep": "safestart.processes.sweep.spec",
     "trade-study": "safestart.processes.trade_study.spec",
     "tracking-mpc": "safestart.processes.tracking_mpc.spec",
+    "commit-timeline": "safestart.processes.commit_timeline.spec",
     "hop-time": "safestart.processes.hop_time.spec",
     "passive-abort": "safestart.processes.passive_abort.spec",
 }

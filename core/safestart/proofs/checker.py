@@ -1,5 +1,5 @@
 """Check any proof document: single starts (``single.py``), families (``family.py``), disturbances
-(``disturbed.py``), plans with burns that fail (``abort/``)."""
+(``disturbed.py``), plans with burns that fail (``abort/``), starts in space (``space/``)."""
 
 from __future__ import annotations
 
@@ -13,6 +13,8 @@ from safestart.proofs.abort import check as abort
 from safestart.proofs.abort.statement import SCHEMA as ABORT
 from safestart.proofs.abort.wording import lines
 from safestart.proofs.single import Verified
+from safestart.proofs.space import check as space
+from safestart.proofs.space import statement as space_statement
 
 
 def check(document: Any) -> Verified:
@@ -22,6 +24,8 @@ def check(document: Any) -> Verified:
         return for_all.check(document)
     if schema == disturbed_statement.SCHEMA:
         return disturbed.check(document)
+    if schema == space_statement.SCHEMA:
+        return space.check(document)
     if schema == ABORT:
         asked, cells = abort.check(document)
         return Verified("PROVED", float(document["least_distance_m"]), cells, lines(asked))

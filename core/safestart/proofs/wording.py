@@ -88,7 +88,7 @@ def asked(document: Mapping[str, Any]) -> dict[str, Any]:
     """Question, start and bounds of a checked document, without the parts that a planar question does not use."""
     question = document["question"]
     if "corridor" not in question:
-        return {"question": question}
+        return {key: document[key] for key in ("question", "start") if key in document}
     unused = ("c_z", "z0_m") if question["dimensions"] == 2 else ()
     corridor = {key: value for key, value in question["corridor"].items() if key not in unused}
     bounds = {key: document[key] for key in ("disturbance", "feedback", "tube") if key in document}

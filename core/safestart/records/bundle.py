@@ -137,7 +137,7 @@ def _differences(manifest: Any, files: Mapping[str, bytes]) -> list[str]:
     """The parts that differ from the manifest."""
     try:
         if (manifest["format"], manifest["version"]) != (FORMAT, VERSION):
-            return [f"format {manifest['format']!r} version {manifest['version']!r} is not known here"]
+            return [f"format {manifest['format']!r} version {manifest['version']!r} is unknown"]
         listed = {name: (entry["sha256"], entry["size"]) for name, entry in manifest["files"].items()}
         artifacts = {_FOLDER + name for name, _ in manifest["media_types"].items()}
         unknown = [
@@ -146,13 +146,13 @@ def _differences(manifest: Any, files: Mapping[str, bytes]) -> list[str]:
         ]
     except (KeyError, TypeError, AttributeError):
         return ["its manifest is incomplete"]
-    wrong = [f"its manifest has a field {name!r} that is not known here" for name in sorted(unknown)]
+    wrong = [f"its manifest has an unknown field {name!r}" for name in sorted(unknown)]
     wrong += [
         f"{name} is missing" for name in sorted({"job.json", "events.json", *listed, *artifacts} - set(files))
     ]
     known = {*_DOCUMENTS, *artifacts}
     wrong += [f"{name} is not in the manifest" for name in sorted(set(files) - set(listed) - {MANIFEST})]
-    wrong += [f"{name} is no part of a bundle" for name in sorted(set(listed) - known)]
+    wrong += [f"{name} does not belong in a bundle" for name in sorted(set(listed) - known)]
     for name in sorted(set(listed) & set(files)):
         there, size = sha256(files[name]).hexdigest(), len(files[name])
         if (there, size) != listed[name]:
@@ -165,7 +165,7 @@ def _differences(manifest: Any, files: Mapping[str, bytes]) -> list[str]:
 def _contradictions(manifest: Any, job: Any, result: Any, artifacts: tuple[Artifact, ...]) -> list[str]:
     """Parts that contradict each other although each matches the manifest."""
     if job["id"] != manifest.get("job"):
-        return ["job.json is of another job"]
+        return ["job.json belongs to another job"]
     if (job["status"] == "successful") is (result is None):
         return [f"a {job['status']} job {'without' if result is None else 'with'} a result"]
     if result is None:
@@ -173,7 +173,7 @@ def _contradictions(manifest: Any, job: Any, result: Any, artifacts: tuple[Artif
     if digest(result) != manifest.get("result_sha256"):
         return ["result.json has another content hash than the manifest says"]
     if result["process"]["id"] != job["process_id"]:
-        return ["result.json is of another process than job.json"]
+        return ["result.json belongs to another process than job.json"]
     # The result has all inputs, defaults included; the job has only those that the client sent.
     wrong = [
         f"job.json and result.json differ in {path}" for path in _unlike(job["inputs"], result["inputs"])
@@ -205,7 +205,7 @@ def _json(files: Mapping[str, bytes], name: str) -> Any:
     except NameTwice as error:
         raise _refused(f"{name} holds {error}") from None
     except (ValueError, RecursionError):
-        raise _refused(f"{name} is no JSON") from None
+        raise _refused(f"{name} is not JSON") from None
 
 
 def _text(document: Any) -> bytes:

@@ -101,9 +101,7 @@ def _require_result(document: Mapping[str, Any]) -> None:
     unknown = sorted(set(document) - fields)
     if missing or unknown:
         required = "schema_version, process, inputs, outputs and provenance"
-        found = [f"no {name}" for name in missing] + [
-            f"{name!r}, which is not known here" for name in unknown
-        ]
+        found = [f"no {name}" for name in missing] + [f"the unknown field {name!r}" for name in unknown]
         raise invalid("result", required, "; ".join(found))
     if document["schema_version"] != SCHEMA_VERSION:
         raise invalid("result.schema_version", str(SCHEMA_VERSION), document["schema_version"])
@@ -190,7 +188,7 @@ def _files(before: Mapping[str, bytes], now: Mapping[str, Artifact], tolerance: 
     found = []
     for name in sorted({*before, *now}):
         if name not in before or name not in now:
-            found.append(f"artifact {name}: {'new' if name in now else 'not made any more'}")
+            found.append(f"artifact {name}: {'new' if name in now else 'no longer produced'}")
         elif before[name] != now[name].data and not _close(name, before[name], now[name].data, tolerance):
             found.append(f"artifact {name}: other content")
     return found

@@ -38,7 +38,7 @@ def backup(database: Database, target: Path) -> int:
 
 def _backup(database: Database, target: Path) -> int:
     if target.exists():
-        raise _refused(target, "a file that is not there yet", "one that is")
+        raise _refused(target, "a file that does not exist yet", "one that exists")
     if not target.parent.is_dir():
         raise _refused(target, "a path in an existing directory", "another")
     draft = target.with_name(target.name + ".part")
@@ -148,7 +148,7 @@ def _require_empty(connection: Connection) -> None:
         number = connection.scalar(select(func.count()).select_from(table))
         if number:
             raise Conflict(
-                f"the database holds {number} rows of {table.name}; required an empty one, so that nothing is mixed",
+                f"the database holds {number} rows of {table.name}; required an empty one",
                 required="an empty database",
                 received=f"{number} rows of {table.name}",
             )

@@ -103,9 +103,9 @@ def _require_same(session: Session, bundle: Bundle) -> None:
     )
     if not same:
         raise Conflict(
-            f"job {bundle.job['id']} is here already and has another result; nothing was imported",
+            f"job {bundle.job['id']} exists already and has another result; nothing was imported",
             field="jobID",
-            required="a job that is not here yet, or the same one",
+            required="a new job, or the same one",
             received=bundle.job["id"],
         )
 

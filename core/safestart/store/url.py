@@ -27,7 +27,7 @@ def parse(url: str) -> URL:
         parsed = make_url(url)
     except (ArgumentError, ValueError):
         # An unparsable URL may contain a password, so the message does not repeat it.
-        raise refused("something that is no URL") from None
+        raise refused("something that is not a URL") from None
     if "@" in (parsed.host or ""):
         raise refused("one with two @ (in a user's name or a password it is written %40)")
     if parsed.drivername not in _DRIVERS:

@@ -115,7 +115,7 @@ class Access:
             return Unavailable("the API keys cannot be read from the database", required="the database")
         if not from_this_machine(scope):
             return Unauthorized(
-                f"beyond this machine only a key is answered, and there is none; required {REMEDY}",
+                f"a request from another machine needs a key, and no key exists; required {REMEDY}",
                 required=REMEDY,
             )
         if not LOCAL.role.allows(needed):
@@ -163,7 +163,7 @@ def require_own(by: Caller, submitter: str | None) -> None:
     if by.key_id is None or by.role is Role.ADMIN or by.key_id == submitter:
         return
     raise Forbidden(
-        "the job was submitted by another; required the key that submitted it, or one with role admin",
+        "the job belongs to another key; required the key that submitted it, or one with role admin",
         field="jobID",
         required="the submitter's key, or role admin",
     )
@@ -197,7 +197,7 @@ def _without_host(scope: Scope) -> SafestartError | None:
     """HTTP/1.0 has no Host header; from HTTP/1.1 on every request has one."""
     if scope.get("http_version") == "1.0":
         return None
-    return _malformed_host("one, as the request is no HTTP/1.0", None)
+    return _malformed_host("one, as the request is not HTTP/1.0", None)
 
 
 def _malformed_host(required: str, received: str | None) -> MalformedRequest:

@@ -41,21 +41,22 @@ ANSWERS: tuple[type[BaseModel], ...] = (
 )
 _WHY = {
     304: "The caller has this content already (If-None-Match).",
-    400: "The body is not JSON, Host is no host, or a header comes twice that has one value.",
-    401: "Keys are in use, and none in force came with the request.",
+    400: "The body is not JSON, Host is invalid, or a single-valued header is repeated.",
+    401: "Keys are in use, and the request has none that is in force.",
     403: "The key's role is not enough.",
-    404: "There is nothing of this name.",
+    404: "Nothing has this name.",
     406: "None of the media types in Accept is offered.",
-    408: "The body did not come in time.",
-    409: "The present state of the job does not allow it.",
+    408: "The body did not arrive in time.",
+    409: "The current state of the job does not allow it.",
     413: "The body is too large.",
     414: "The query is too long.",
     415: "The body is not declared as JSON.",
     421: "The Host header names another server.",
-    422: "An input is not what is required; the problem names it.",
+    422: "An input is invalid; the problem names it.",
     429: "Too many requests or streams with this key, or too many jobs wait; Retry-After says when.",
     500: "An unexpected error.",
-    503: "The database does not answer, or too many connections are open.",
+    503: "The database does not answer, or the service is full; Retry-After says when.",
+    504: "The answer would take too long, or was not there in time; make a job of it.",
 }
 
 

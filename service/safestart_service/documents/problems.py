@@ -38,7 +38,7 @@ class Problem(BaseModel):
     status: int = Field(description="HTTP status.")
     detail: str = Field(description="What went wrong this time.")
     instance: str = Field(description="Path of the request.")
-    field: str | None = Field(description="The input that is wrong, if it is one.")
+    field: str | None = Field(description="The wrong input, if any.")
     required: str | None = Field(description="What was required of it.")
     received: Any = Field(description="What came.")
     request_id: str | None = Field(None, description="The X-Request-ID of the answer.")
@@ -168,7 +168,7 @@ async def _on_http(request: Request, error: Exception) -> Response:
     required = received = None
     headers = dict(error.headers or {})
     if status is HTTPStatus.NOT_FOUND and detail == status.phrase:
-        detail = f"there is nothing at {request.scope['path']}; /openapi.json lists what there is"
+        detail = f"nothing is at {request.scope['path']}; /openapi.json lists all paths"
     elif status is HTTPStatus.METHOD_NOT_ALLOWED:
         headers["Allow"] = required = _methods_at(request)
         if request.method == "OPTIONS":

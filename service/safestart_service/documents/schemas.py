@@ -48,7 +48,7 @@ class ProcessSummary(BaseModel):
     outputTransmission: list[Literal["value", "reference"]]
     links: list[Link]
     view_kinds: list[str] = Field(
-        alias="safestart:view_kinds", description="Kinds of the views that a page shows its outputs by."
+        alias="safestart:view_kinds", description="Kinds of the views of its outputs."
     )
 
 
@@ -100,7 +100,7 @@ _ABSENT: dict[str, Any] = {"json_schema_extra": lambda schema: schema.pop("defau
 class EngineDescription(BaseModel):
     """An engine of the benchmark, as pages show it."""
 
-    name: str = Field(description="What inputs, rows and arrays call it.")
+    name: str = Field(description="Its name in inputs, rows and arrays.")
     title: str
     colour: str = Field(description="#RRGGBB, legible on light and on dark.")
     summary: str
@@ -113,7 +113,7 @@ class ProcessDescription(ProcessSummary):
     outputs: dict[str, OutputDescription]
     example: dict[str, Any] = Field(description="Inputs to start from.")
     tables: list[TableDescription] = Field(
-        alias="safestart:tables", description="Tables of the outputs that are no lists of objects."
+        alias="safestart:tables", description="Tables over plain lists among the outputs."
     )
     views: list[ViewDescription] = Field(
         alias="safestart:views", description="How a page shows the outputs, the most important first."
@@ -147,7 +147,7 @@ class StatusInfo(BaseModel):
     eta_s: float | None = Field(description="Estimated seconds until it ends.")
     priority: int = Field(description="Higher is served first.")
     attempts: int
-    submitter: str | None = Field(description="Id of the key it was submitted with; null without one.")
+    submitter: str | None = Field(description="Id of the submitting key; null without one.")
     dismissal_requested: bool
     problem: dict[str, Any] | None = Field(description="Problem document of a failed job.")
     links: list[Link]
@@ -241,7 +241,7 @@ class KeyDocument(BaseModel):
     created: datetime
     expires: datetime | None
     revoked: datetime | None
-    last_used: datetime | None = Field(description="Noted about once a minute.")
+    last_used: datetime | None = Field(description="Updated about once a minute.")
     usable: bool = Field(description="Neither revoked nor expired.")
 
 
@@ -251,14 +251,14 @@ class KeyRequest(WireModel):
     name: str = Field(
         min_length=1, max_length=100, description="Who or what uses it.", examples=["ground segment"]
     )
-    role: Role = Field(Role.READ, description="read; submit reads, too; admin does everything.")
+    role: Role = Field(Role.READ, description="read; submit, which includes read; admin, which includes all.")
     days: float | None = Field(90.0, gt=0, le=3660, description="Days until it expires; null: never.")
 
 
 class NewKeyDocument(KeyDocument):
     """A key that was just made."""
 
-    key: str = Field(description="The key itself; it is not kept and cannot be shown again.")
+    key: str = Field(description="The key itself; it cannot be shown again.")
 
 
 class KeyList(BaseModel):

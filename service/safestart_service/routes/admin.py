@@ -33,7 +33,7 @@ class AuditQuery(BaseModel):
     subject: str | None = Field(None, max_length=64, description="Only about this job or key.")
     key_id: str | None = Field(None, max_length=12, description="Only by this key.")
     before: int | None = Field(
-        None, ge=1, le=2**53, description="Where to go on: `next_before` of the last page."
+        None, ge=1, le=2**53, description="Where to continue: `next_before` of the last page."
     )
     limit: int = Field(100, ge=1, le=1000, description="Entries per page.")
 
@@ -49,7 +49,7 @@ def keys(request: Request) -> Response:
     summary="Make a key",
     openapi_extra=json_body({"key": KeyRequest}, {"key": {"name": "ground segment", "role": "submit"}}),
     responses={
-        201: answer(NewKeyDocument, "The key, shown this once."),
+        201: answer(NewKeyDocument, "The key, shown only once."),
         **refusals(400, 413, 415, 422, 503),
     },
 )

@@ -31,7 +31,7 @@ router = APIRouter(tags=["jobs"], route_class=OnceRoute)
 async def events(
     request: Request,
     jobID: JobId,
-    last_event_id: Annotated[str | None, Header(description="Go on after this event.")] = None,
+    last_event_id: Annotated[str | None, Header(description="Continue after this event.")] = None,
 ) -> Response:
     """Server-sent events until the job has ended; ``Last-Event-ID`` resumes where a stream broke off."""
     found = services(request)

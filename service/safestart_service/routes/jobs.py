@@ -47,14 +47,14 @@ class JobQuery(BaseModel):
         examples=["2026-11-22T00:00:00Z/.."],
     )
     minDuration: int | None = Field(
-        None, ge=0, le=10**9, description="Only jobs that ran at least so long, s."
+        None, ge=0, le=10**9, description="Only jobs that ran at least this long, s."
     )
     maxDuration: int | None = Field(
-        None, ge=0, le=10**9, description="Only jobs that ran at most so long, s."
+        None, ge=0, le=10**9, description="Only jobs that ran at most this long, s."
     )
     limit: int = Field(50, ge=1, le=200, description="Jobs per page.")
     cursor: str | None = Field(
-        None, max_length=200, description="Where to go on: taken from the link `next` or `prev`."
+        None, max_length=200, description="Where to continue: taken from the link `next` or `prev`."
     )
 
 
@@ -101,7 +101,7 @@ async def job(
     jobID: JobId,
     wait: Annotated[
         float,
-        Query(ge=0, le=MAX_WAIT_S, description="Answer when the job has ended, or after so many seconds."),
+        Query(ge=0, le=MAX_WAIT_S, description="Answer when the job has ended, or after this many seconds."),
     ] = 0.0,
 ) -> Response:
     """Status with progress, place in the queue and why it waits, estimated time left.
@@ -132,7 +132,7 @@ async def job(
 
 @router.get(
     "/jobs/{jobID}/partial",
-    summary="What the finished shards of a job say already",
+    summary="Partial result of a job",
     responses={200: answer(Partial, "Finished shards and their summary."), **refusals(404, 422, 503)},
 )
 def partial(request: Request, jobID: JobId) -> Response:

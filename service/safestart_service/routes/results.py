@@ -46,8 +46,8 @@ _SHOWN = ("image/png", "image/jpeg", "application/json", "text/csv", "text/plain
     summary="Result of a job",
     responses={
         200: {
-            "description": "By Accept: the record (for whoever takes anything), outputs by id as OGC API - Processes "
-            "1.0 has them (application/json), or a table or arrays of the outputs.",
+            "description": "By Accept: the record (if the client accepts anything), outputs by id as in OGC API - "
+            "Processes 1.0 (application/json), or a table or arrays of the outputs.",
             "headers": {"ETag": {"description": _ETAG, "schema": {"type": "string"}}},
             "content": {form.media_type: _body(form) for form in FORMATS},
         },

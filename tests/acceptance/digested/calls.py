@@ -1,4 +1,4 @@
-"""What is asked on the command line and over HTTP."""
+"""The questions on the command line and over HTTP."""
 
 from __future__ import annotations
 

@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 from safestart.cli import build
 from safestart.errors import InvalidInput
 from safestart.processes.execute import execute
+from safestart.proofs.checker import check as check_any
 from safestart.proofs.single import check
 from tests.contract.api.service_client import service
 
@@ -85,6 +86,36 @@ def test_over_http(tmp_path: Path) -> None:
         refused = client.get("/go-no-go", params=query | {"method": "oracle"})
         assert refused.status_code == 422
         assert refused.json()["field"] == "method"
+
+
+def test_starts_in_space_over_http(tmp_path: Path) -> None:
+    """POST with ``starts`` is the question in space; the same as its process, refused under the fields' names."""
+    body = {
+        "starts": [{"position_m": [1, 30, 0.5], "velocity_m_s": [0, -0.1, 0], "frame": "body"}],
+        "attitude": {
+            "kind": "torque_free",
+            "inertia_kg_m2": [[120, 2, -1], [2, 100, 3], [-1, 3, 60]],
+            "body_rate_deg_s": [1, -1, 2],
+        },
+        "orbit": {"semi_major_axis_m": 24e6, "eccentricity": 0.7},
+        "a_max_m_s2": 0.1,
+        "proofs": True,
+    }
+    with service(tmp_path) as client:
+        found = client.post("/go-no-go", json=body)
+        assert found.status_code == 200
+        assert found.json()["verdict"] == ["GO"]
+        assert check_any(found.json()["proof"][0]).verdict == "GO"
+        same = client.post("/processes/start-in-space/execution", json={"inputs": body}).json()
+        assert same["verdict"] == ["GO"]
+        for change, field in (
+            ({"states": [{"x_m": 1, "y_m": 2}]}, "states"),
+            ({"orbit": {"semi_major_axis_m": 7e6, "eccentricity": 0.6}}, "orbit.eccentricity"),
+            ({"omega_t_deg_s": 1}, "attitude"),
+        ):
+            refused = client.post("/go-no-go", json=body | change)
+            assert refused.status_code == 422
+            assert refused.json()["field"] == field
 
 
 def test_command_line_writes_a_proof_that_verifies(tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
+from safestart.processes.registry import process
 from tests.contract.api.service_client import (
     HEAVY,
     POINT,
@@ -25,9 +26,7 @@ def test_process_list_and_description(client):
         assert described["inputs"]
         assert described["outputs"]
         assert "$ref" not in json.dumps(described), "each schema stands alone"
-        assert ("sync-execute" in described["jobControlOptions"]) == (
-            entry["id"] in ("go-no-go", "certificate", "safe-region", "flight", "thrust-map")
-        )
+        assert ("sync-execute" in described["jobControlOptions"]) == (process(entry["id"]).light)
     required = client.get("/processes/certificate").json()["inputs"]
     assert required["omega_t_deg_s"]["minOccurs"] == 1
     assert required["grid"]["minOccurs"] == 0

@@ -12,8 +12,8 @@ import pytest
 
 from safestart.processes.execute import execute
 from safestart.processes.registry import PROCESS_IDS, process
+from safestart.processes.tables import tables_of
 from safestart_service.documents.formats.registry import BY_NAME
-from safestart_service.documents.tables import tables_of
 
 STATES = [{"x_m": 5, "y_m": 40}, {"x_m": 0, "y_m": 140}, {"x_m": 90, "y_m": 20}]
 TWO = {"states": STATES[:2]}

@@ -24,12 +24,12 @@ import httpx
 
 from safestart.processes.execute import execute
 from safestart.processes.registry import PROCESS_IDS
+from safestart.processes.tables import tables_of
 from safestart.records.artifact import Artifact
 from safestart.runtime.access import Caller, Role
 from safestart.store.access.keys import KeyRepository
 from safestart.store.database import Database
 from safestart.store.jobs.repository import JobRepository
-from safestart_service.documents.tables import tables_of
 from tests.contract.api.service_client import url_of
 from tests.waiting import PATIENCE_S
 

@@ -37,7 +37,7 @@ def test_a_backup_restores_into_every_kind_of_database(
     file = tmp_path / "copy.sqlite3"
     assert backup(database, file) == 2
     assert [path.name for path in tmp_path.glob("copy*")] == ["copy.sqlite3"]
-    with pytest.raises(InvalidInput, match="required a file that is not there yet"):
+    with pytest.raises(InvalidInput, match="required a file that does not exist yet"):
         backup(database, file)
     with pytest.raises(Conflict, match="required an empty one"):
         restore(database, file)

@@ -225,6 +225,6 @@ def test_the_commands(execution: Any, tmp_path: Path, monkeypatch: pytest.Monkey
     nowhere = f"sqlite:///{tmp_path / 'mistyped.sqlite3'}"
     for command in (("backup", "d.sqlite3"), ("purge", "--older-than", "0s"), ("export", job)):
         said = run(*command, "--database-url", nowhere, code=2)
-        assert "required a database that is there" in said, command
+        assert "required an existing database" in said, command
     assert not list(tmp_path.glob("mistyped*"))
     assert "1 jobs would be deleted" in run("purge", "--older-than", "0s", "--dry-run", "--database-url", url)

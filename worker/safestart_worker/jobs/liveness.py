@@ -24,7 +24,7 @@ class Finding(Enum):
 
     ALIVE = "alive"
     HUNG = "their processes do nothing"
-    DEAF = "they are over, and this worker has not heard of it"
+    DEAF = "they have ended, but this worker has no report of it"
     HOMELESS = "no task process is left to run them"
 
 

@@ -20,7 +20,7 @@ class HamiltonJacobiInput(WireModel):
     )
     solver: Literal["fused", "hj_reachability"] = Field(
         "fused",
-        description="Who steps the value: compiled kernels, or hj-reachability (same scheme, 20 to 40 times slower).",
+        description="The solver: compiled kernels, or hj-reachability (same scheme, 20 to 40 times slower).",
     )
     nodes_xy: int = Field(41, ge=11, le=61, description="Nodes per position axis.")
     nodes_v: int = Field(15, ge=7, le=31, description="Nodes per velocity axis.")

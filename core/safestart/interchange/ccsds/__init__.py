@@ -1,1 +1,1 @@
-"""CCSDS navigation data messages: KVN and XML come apart into the same tokens, one file for each kind of message."""
+"""CCSDS navigation data messages: KVN and XML share one form of tokens; one file for each kind of message."""

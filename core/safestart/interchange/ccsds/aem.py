@@ -11,7 +11,7 @@ from safestart.interchange.ccsds.tokens import Kind, Token, decimal, number, ref
 from safestart.interchange.epochs import epochs_of, shortened, text_of
 
 TYPES = {"QUATERNION": 4, "QUATERNION/DERIVATIVE": 8, "QUATERNION/RATE": 7, "QUATERNION/ANGVEL": 7}
-"""Attitude types that are read, and the numbers in a row: rates behind the quaternion are left out."""
+"""Supported attitude types, and the numbers in a row; rates after the quaternion are ignored."""
 _META = (
     *("OBJECT_NAME", "OBJECT_ID", "CENTER_NAME", "REF_FRAME_A", "REF_FRAME_B", "ATTITUDE_DIR", "TIME_SYSTEM"),
     *(
@@ -81,7 +81,7 @@ def _rows(meta: Block, one: Block, texts: list[str], turns: list[list[float]]) -
         )
     for row in one.rows:
         epoch, *values = row.value.split()
-        # XML has the quaternion alone.
+        # XML has only the quaternion.
         if len(values) not in (4, TYPES[kind]):
             raise refused(row.line, f"an epoch and {TYPES[kind]} numbers", f"{len(values)} numbers")
         numbers = [number(text, row.line, "quaternion") for text in values]

@@ -23,7 +23,7 @@ _UNITS = ("m**2", "m**2/s", "m**2/s**2")
 class Encounter:
     """``first`` and ``second``, OBJECT1 and OBJECT2, as courses of one epoch: the time of closest approach.
 
-    ``miss_distance`` is what the message says of it, m.
+    ``miss_distance`` is the message's value, m.
     """
 
     first: Ephemeris
@@ -32,9 +32,9 @@ class Encounter:
 
 
 def encounter_of(message: Message, sense: Sense) -> Encounter:
-    """The two objects of a CDM; ``sense`` says how its RTN covariances are meant.
+    """The two objects of a CDM; ``sense`` gives the sense of its RTN covariances.
 
-    Raises ``InvalidInput``, also where the states are not as far apart as MISS_DISTANCE says, to 1 % and 10 m.
+    Raises ``InvalidInput``, also if the states' distance differs from MISS_DISTANCE by more than 1 % and 10 m.
     """
     head, *objects = _fields(message)
     if len(objects) != 2:

@@ -14,7 +14,7 @@ _LONGEST_LINE = 4096
 
 
 def tokens_of(text: str) -> Iterator[Token]:
-    """The tokens of a KVN text; raises ``InvalidInput`` with the line for what is none of them."""
+    """The tokens of a KVN text; raises ``InvalidInput`` with the line of an invalid token."""
     for line, raw in enumerate(text.splitlines(), 1):
         if len(raw) > _LONGEST_LINE:
             raise refused(line, f"at most {_LONGEST_LINE} characters in a line", len(raw))

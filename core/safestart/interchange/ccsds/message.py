@@ -1,4 +1,4 @@
-"""A message cut into header and blocks, the same for every kind."""
+"""A message split into header and blocks, the same for every kind."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ VERSIONS = {
     "APM": ("1.0", "2.0"),
     "CDM": ("1.0",),
 }
-# The keyword with which another of the same begins, by kind of message and block.
+# The keyword that begins another block of the same name, by kind of message and block.
 _AGAIN = {
     ("OEM", "COVARIANCE"): "EPOCH",
     ("OPM", ""): "MAN_EPOCH_IGNITION",
@@ -30,7 +30,7 @@ _HEADER = ("CLASSIFICATION", "CREATION_DATE", "ORIGINATOR", "MESSAGE_ID", "MESSA
 
 @dataclass(slots=True)
 class Block:
-    """Keywords and rows of one block; ``name`` is "" for what stands outside of blocks."""
+    """Keywords and rows of one block; ``name`` is "" outside of blocks."""
 
     name: str
     fields: Fields
@@ -72,14 +72,14 @@ class Message:
             yield current
 
     def _again(self, token: Token, current: Block) -> bool:
-        """Whether another of the same begins with this token: a covariance, a burn, an object."""
+        """Whether this token begins another block of the same name: a covariance, a burn, an object."""
         if token.kind is not Kind.KEY or token.name != _AGAIN.get((self.kind, current.name)):
             return False
         return token.name in current.fields.values or not current.name
 
 
 def message_of(data: bytes) -> Message:
-    """The message in a file's bytes, KVN or XML; raises ``InvalidInput`` for what is neither, ``Unavailable``."""
+    """The message in a file's bytes, KVN or XML; raises ``InvalidInput`` for other bytes, ``Unavailable``."""
     if data.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"<":
         tokens: Iterable[Token] = xml_form.tokens_of(data)
     else:

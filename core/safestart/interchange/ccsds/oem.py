@@ -78,7 +78,7 @@ def _same(meta: Block) -> dict[str, str]:
 
 
 def _within(meta: Block, texts: Sequence[str], system: str) -> None:
-    """Raise ``InvalidInput`` where states end before STOP_TIME or lie outside (truncated, mislabelled)."""
+    """Raise ``InvalidInput`` if states end before STOP_TIME or lie outside (truncated, mislabelled)."""
     start, stop = meta.fields.get("START_TIME"), meta.fields.get("STOP_TIME")
     first, last, begin, end = epochs_of([start, stop, texts[0], texts[-1]], system).tolist()
     if not first <= begin <= end <= last:

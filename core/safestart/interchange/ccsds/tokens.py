@@ -1,4 +1,4 @@
-"""What KVN and XML have in common: a sequence of keywords with values, beginnings and ends of blocks, rows of data."""
+"""The common form of KVN and XML: a sequence of keywords with values, begins and ends of blocks, and data rows."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Kind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Token:
-    """``name`` of a keyword or block, its ``value`` or row, the ``units`` beside it, and where it stood (``line``)."""
+    """``name`` of a keyword or block, its ``value`` or row, its ``units``, and its ``line`` in the file."""
 
     kind: Kind
     name: str = ""
@@ -31,7 +31,7 @@ class Token:
 
 @dataclass(slots=True)
 class Fields:
-    """Keywords of one block, each once; ``line`` is where it begins. What is not taken is refused by :meth:`done`."""
+    """Keywords of one block, each once; ``line`` is where it begins. :meth:`done` refuses keywords that nobody took."""
 
     block: str
     line: int = 0
@@ -39,13 +39,13 @@ class Fields:
     taken: set[str] = field(default_factory=set)
 
     def add(self, token: Token) -> None:
-        """One more keyword; raises ``InvalidInput`` for one that comes twice."""
+        """Add a keyword; raises ``InvalidInput`` for a repeated one."""
         if token.name in self.values:
             raise refused(token.line, f"{token.name} once in {self.block}", "it twice")
         self.values[token.name] = token
 
     def has(self, name: str) -> bool:
-        """Whether the keyword is there."""
+        """Whether the block has the keyword."""
         return name in self.values
 
     def get(self, name: str, default: str | None = None) -> str:
@@ -67,7 +67,7 @@ class Fields:
         return number(text, token.line, name, power)
 
     def done(self, known: Iterable[str] = ()) -> None:
-        """Raise ``InvalidInput`` for a keyword that is neither taken nor ``known`` (nor one of a user's own)."""
+        """Raise ``InvalidInput`` for a keyword that is neither taken nor ``known`` nor user-defined."""
         known = set(known)
         for name, token in self.values.items():
             if name not in self.taken and name not in known and not name.startswith("USER_DEFINED_"):
@@ -75,14 +75,14 @@ class Fields:
 
 
 def refused(line: int, required: str, received: object) -> InvalidInput:
-    """The refusal of something at a line of a file."""
+    """The error at a line of a file."""
     return invalid(f"line {line}" if line else "file", required, received)
 
 
 def number(text: str, line: int, name: str, power: int = 0) -> float:
     """The double nearest to the decimal times 10^power; raises ``InvalidInput`` for anything but a finite number."""
     try:
-        # The exponent is moved in the text, so that kilometres become metres in one rounding.
+        # Move the exponent in the text, so that kilometres become metres with one rounding.
         mantissa, _, exponent = text.lower().partition("e")
         value = float(f"{mantissa}e{int(exponent or 0) + power}" if power else text)
     except ValueError:
@@ -102,7 +102,7 @@ def decimal(value: float, power: int = 0) -> str:
     whole, _, part = digits.partition(".")
     shift = int(exponent or 0) - power
     if -12 <= shift <= 12:
-        # Written without an exponent, as most readers like it.
+        # Written without an exponent, which most readers expect.
         both, point = whole + part, len(whole) + shift
         if point <= 0:
             both, point = "0" * (1 - point) + both, 1
@@ -113,7 +113,7 @@ def decimal(value: float, power: int = 0) -> str:
 
 
 def blocks_of(tokens: Iterable[Token]) -> Iterator[Token]:
-    """The tokens, with every begin closed by its end; raises ``InvalidInput`` where a file stops inside a block."""
+    """The tokens, with every begin closed by its end; raises ``InvalidInput`` if a file stops inside a block."""
     opened: list[Token] = []
     for token in tokens:
         if token.kind is Kind.BEGIN:

@@ -1,6 +1,6 @@
 """The XML form of CCSDS messages (505.0-B-3) as the tokens of KVN, and back.
 
-No document type is read: entities, and so bombs and files from outside, are refused where they are declared.
+Document types are refused: declarations of entities, and so entity bombs and external files, raise an error.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ TRIANGLE = tuple(
 """The lower triangle of a covariance, row by row."""
 STATE = ("EPOCH", "X", "Y", "Z", "X_DOT", "Y_DOT", "Z_DOT", "X_DDOT", "Y_DDOT", "Z_DDOT")
 _TURN, _TURN_SCALAR_FIRST = ("EPOCH", "Q1", "Q2", "Q3", "QC"), ("EPOCH", "QC", "Q1", "Q2", "Q3")
-# Containers that are blocks in KVN, by kind of message; every other one is seen through.
+# Containers that are blocks in KVN, by kind of message; other containers are ignored.
 _BLOCKS = {
     "oem": {"metadata": "META", "covarianceMatrix": "COVARIANCE"},
     "aem": {"metadata": "META", "data": "DATA"},

@@ -128,12 +128,10 @@ class JudgedRow(WireModel):
 
     state: list[float]
     answer: Literal["PROVED_UNSAFE", "UNSAFE", "UNDECIDED", "SAFE", "PROVED_SAFE"] = Field(
-        description="Proved for the linear model, or called so by the grid beyond its measured error."
+        description="Proved for the linear model, or judged by the grid beyond its measured error."
     )
-    least_m: float | None = Field(
-        description="The separation above the keep-out one can keep, no less than this."
-    )
-    most_m: float = Field(description="The same, no more than this.")
+    least_m: float | None = Field(description="Lower bound on the separation above the keep-out distance.")
+    most_m: float = Field(description="Upper bound on it.")
 
 
 class EncounterRow(WireModel):
@@ -171,7 +169,9 @@ class EscapeRow(WireModel):
     paper_says: str
     drift_m_s: float = Field(description="Mean tangential speed after the burn.")
     altitude_m: float = Field(description="Mean radial position after the burn.")
-    overtakes_s: float | None = Field(description="When it comes back past its start; null: not in an orbit.")
+    overtakes_s: float | None = Field(
+        description="Time at which it passes its start again; null: not in an orbit."
+    )
 
 
 class CaptureRow(WireModel):
@@ -192,15 +192,13 @@ class CollisionAvoidanceOutputs(WireModel):
     states: list[JudgedRow]
     encounters: list[EncounterRow]
     grid_error_m: float | None = Field(description="Largest error of the grid near the boundary.")
-    nodes: dict[str, int] = Field(
-        description="Nodes by what is proved of them and what the grid called them."
-    )
+    nodes: dict[str, int] = Field(description="Numbers of nodes by proof and by the grid's verdict.")
     unsafe_percent: float | None = Field(description="Unsafe share of the grid's box.")
     supervisor: dict[str, int] = Field(description="Transitions and recoveries of the supervised flights.")
     escape: list[EscapeRow]
     capture: list[CaptureRow]
     capture_level_set: dict[str, int | str] = Field(
-        description="Nodes by what flight and level set say of capture; the flight is right."
+        description="Numbers of nodes by flight and by level set; the flight is the truth."
     )
     notes: list[str]
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -12,7 +14,7 @@ from safestart.dynamics.cwh import Cwh
 from safestart.exact.best_flight import best_thrust
 from safestart.exact.decide import decide
 from safestart.exact.question import Goal, Question
-from safestart.model.scenario import Floats, Rest
+from safestart.model.scenario import Floats, Rest, Scenario
 from safestart.optim.prediction import prediction_of
 from safestart.processes.base import ProcessOutput
 from safestart.processes.flight.spec import FlightInputs
@@ -24,14 +26,25 @@ _PARTS = 4
 
 def run(inputs: FlightInputs, context: Context) -> ProcessOutput:
     """Fly and measure."""
-    start, scenario = inputs.start, inputs.scenario()
+    start = inputs.start
     point = [start.x_m, start.y_m] if start.z_m is None else [start.x_m, start.y_m, start.z_m]
+    flown = best_flight(
+        inputs.scenario(), point, inputs.rest, inputs.question, inputs.horizon_s, inputs.within_s
+    )
+    context.step(1, 1)
+    return ProcessOutput(flown)
+
+
+def best_flight(
+    scenario: Scenario, point: Sequence[float], rest: Rest, asked: str, horizon_s: float, within_s: float
+) -> dict[str, Any]:
+    """The outputs for a start at rest at ``point``, body frame, m; see :class:`FlightOutputs`."""
     d, rate = len(point), scenario.target.tumble_rate
-    stay = Question(scenario, DT_S, round(inputs.horizon_s / DT_S), d)
+    stay = Question(scenario, DT_S, round(horizon_s / DT_S), d)
     question = stay
-    if inputs.question == "synchronize":
-        question = Question(scenario, DT_S, round(inputs.within_s / DT_S), d, Goal())
-    spin = rate if inputs.rest is Rest.BODY else 0.0
+    if asked == "synchronize":
+        question = Question(scenario, DT_S, round(within_s / DT_S), d, Goal())
+    spin = rate if rest is Rest.BODY else 0.0
     at, speed = body_to_lvlh(np.array(point), np.zeros(d), spin, 0.0)
     state = np.concatenate([at, speed])
     answer = decide(question, state)
@@ -44,20 +57,17 @@ def run(inputs: FlightInputs, context: Context) -> ProcessOutput:
     corridor = corridor_of(scenario.corridor, d)
     distance: Floats = corridor.slack(body) / corridor.lengths
     when, face = np.unravel_index(int(np.argmin(distance)), distance.shape)
-    context.step(1, 1)
-    return ProcessOutput(
-        {
-            "verdict": answer.verdict.value,
-            "margin_m": finite(answer.margin_m),
-            "time_s": times.tolist(),
-            "body_m": body.tolist(),
-            "lvlh_m": states[:, :d].tolist(),
-            "thrust_m_s2": [*np.repeat(thrust, _PARTS, axis=0).tolist(), thrust[-1].tolist()],
-            "faces": list(corridor.names),
-            "distance_m": distance.tolist(),
-            "closest_face": corridor.names[int(face)],
-            "closest_m": float(distance[when, face]),
-            "closest_s": float(times[when]),
-            "delta_v_m_s": DT_S * math.fsum(np.linalg.norm(thrust, axis=1)),
-        }
-    )
+    return {
+        "verdict": answer.verdict.value,
+        "margin_m": finite(answer.margin_m),
+        "time_s": times.tolist(),
+        "body_m": body.tolist(),
+        "lvlh_m": states[:, :d].tolist(),
+        "thrust_m_s2": [*np.repeat(thrust, _PARTS, axis=0).tolist(), thrust[-1].tolist()],
+        "faces": list(corridor.names),
+        "distance_m": distance.tolist(),
+        "closest_face": corridor.names[int(face)],
+        "closest_m": float(distance[when, face]),
+        "closest_s": float(times[when]),
+        "delta_v_m_s": DT_S * math.fsum(np.linalg.norm(thrust, axis=1)),
+    }

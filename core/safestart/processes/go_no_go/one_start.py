@@ -32,9 +32,7 @@ class GoNoGoAnswer(WireModel):
     binding: str = Field(
         description="The paper's conditions: what gives the smallest margin, a face or 'range'."
     )
-    violated_faces: list[str] = Field(
-        description="Faces of the corridor that the start itself is outside of."
-    )
+    violated_faces: list[str] = Field(description="Faces of the corridor that the start itself violates.")
     reason: str = Field(description="The verdict in a sentence.")
     face_margins_m: dict[str, float] = Field(
         description="The paper's conditions (not sound): margin after erosion by face, m."
@@ -47,7 +45,7 @@ class GoNoGoAnswer(WireModel):
         description="With half-widths, when UNDECIDED: members looked at, if possible one GO and one NO_GO.",
     )
     proof: dict[str, Any] | None = Field(
-        None, description="Proof document for `safestart verify`, when asked for."
+        None, description="Proof document for `safestart verify`, if requested."
     )
     proof_url: str | None = Field(
         None,

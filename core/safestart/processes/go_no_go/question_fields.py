@@ -61,7 +61,9 @@ class QuestionFields(HalfWidths):
         "disturbance, by a feedback whose margin and thrust are set aside; its proof holds the tube.",
     )
     start_error_m: float = Field(
-        0.0, ge=0, le=1000, description="How far the start may be from where it is said to be, m (stay)."
+        0.0, ge=0, le=1000, description="Bound on the error of the start's position, m (stay)."
     )
-    start_error_m_s: float = Field(0.0, ge=0, le=10, description="The same of its velocity, m/s (stay).")
+    start_error_m_s: float = Field(
+        0.0, ge=0, le=10, description="Bound on the error of its velocity, m/s (stay)."
+    )
     proofs: bool = Field(False, description="Return proof documents (exact, auto); at most 100 starts.")

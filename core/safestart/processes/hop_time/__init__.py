@@ -1,1 +1,1 @@
-"""The hop-time process: how long one hop takes, at once."""
+"""The hop-time process: the duration of one hop, answered at once."""

@@ -74,7 +74,9 @@ class SetRow(WireModel):
     code: str
     message: str
     cells: int | None = Field(description="Cells in the set.")
-    undecided_cells: int | None = Field(description="Cells of which neither in nor out is known.")
+    undecided_cells: int | None = Field(
+        description="Cells that are neither known to be in nor known to be out."
+    )
     area_m2: float | None
     run_s: float
     detail: dict[str, Any]

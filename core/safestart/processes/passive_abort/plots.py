@@ -1,4 +1,4 @@
-"""Picture of a missed-burn proof: the drifts in the orbit plane, and what every burn keeps."""
+"""Picture of a missed-burn proof: the drifts in the orbit plane, and the distance that every burn keeps."""
 
 from __future__ import annotations
 

@@ -83,11 +83,11 @@ def failures_of(failures: FailuresInput) -> Failures:
 
 
 def cases_of(proof: Proof) -> list[dict[str, Any]]:
-    """What every burn keeps with every failure, over all pieces. A burn is missed where the one before was the last."""
+    """Distances of every burn and failure, over all pieces. A burn is missed if the one before was the last."""
     out: dict[tuple[int, str], dict[str, Any]] = {}
     for finding in proof.findings:
         case = finding.case
-        # Drifting on after a burn that was made is missing the one that follows.
+        # Drifting after a completed burn means missing the next one.
         missed = case.kind in ("start", "made")
         key = (case.burn + 1 if missed else case.burn, "missed" if missed else case.kind)
         row = out.setdefault(

@@ -61,9 +61,7 @@ class CaseOutput(WireModel):
     burn: int = Field(description="Number of the burn, from 0; -1: none is made.")
     failure: Literal["missed", "partial", "misdirected", "late", "stuck"]
     least_distance_m: float = Field(description="Proved: at no time nearer than this; 0: nothing is proved.")
-    nearest_m: float | None = Field(
-        description="A state within the errors comes this near; null: not looked for."
-    )
+    nearest_m: float | None = Field(description="A state within the errors comes this near; null: no search.")
     when_s: float | None = Field(description="When it does, s after the burn.")
 
 
@@ -88,7 +86,7 @@ class PassiveAbortOutputs(WireModel):
     verdict: VerdictName
     model: ModelName
     least_distance_m: float = Field(description="Proved over all cases and all times, m.")
-    gap_m: float = Field(description="How much of keep_out_m is not proved, m.")
+    gap_m: float = Field(description="The part of keep_out_m that is not proved, m.")
     error_level: float | None = Field(
         description="lambda: the greatest multiple of all errors for which every case is proved; null: not asked for."
     )

@@ -51,13 +51,13 @@ class ErrorsInput(WireModel):
 class FailuresInput(WireModel):
     """What may happen to any one burn; none follows a failure. A missed burn is always asked for."""
 
-    late_s: float = Field(0.0, ge=0, le=1e4, description="Late by up to so many s.")
+    late_s: float = Field(0.0, ge=0, le=1e4, description="Largest delay, s.")
     partial: bool = Field(False, description="Burnt in part, 0 to 100 %.")
-    stuck_s: float = Field(0.0, ge=0, le=1e4, description="Stuck on for up to so many s.")
+    stuck_s: float = Field(0.0, ge=0, le=1e4, description="Longest time that a burn stays stuck on, s.")
     acceleration_m_s2: float = Field(
         0.0, ge=0, le=100, description="Thrust of an engine that is stuck on, m/s^2."
     )
-    misdirected_deg: float = Field(0.0, ge=0, le=180, description="Misdirected by up to so many deg.")
+    misdirected_deg: float = Field(0.0, ge=0, le=180, description="Largest error of direction, deg.")
 
 
 def radians(degrees: float) -> float:

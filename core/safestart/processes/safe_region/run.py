@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from safestart.constraints.corridor import corridor_of
 from safestart.errors import invalid
 from safestart.exact.question import Question
-from safestart.model.scenario import Floats
+from safestart.model.scenario import Floats, Scenario
 from safestart.processes.base import ProcessOutput
 from safestart.processes.go_no_go.atlases import atlas_for
 from safestart.processes.safe_region.spec import SafeRegionInputs
@@ -17,21 +19,27 @@ from safestart.runtime.progress import Context
 
 def run(inputs: SafeRegionInputs, context: Context) -> ProcessOutput:
     """Find or build the atlas and clip its two polygons."""
-    scenario = inputs.scenario()
+    found = region_of(inputs.scenario(), inputs.horizon_s, inputs.y_max_m, context)
+    context.step(1, 1)
+    return ProcessOutput(found)
+
+
+def region_of(scenario: Scenario, horizon_s: float, y_max: float, context: Context) -> dict[str, Any]:
+    """The outputs for a corridor cut at ``y_max`` metres; see :class:`SafeRegionOutputs`."""
     shape = scenario.corridor
-    if inputs.y_max_m <= shape.hold_radius:
-        raise invalid("y_max_m", f"more than corridor.r_h_m, {shape.hold_radius:g}", inputs.y_max_m)
-    question = Question(scenario, DT_S, round(inputs.horizon_s / DT_S))
-    atlas = atlas_for(question, inputs.y_max_m, context, make=True)
+    if y_max <= shape.hold_radius:
+        raise invalid("y_max_m", f"more than corridor.r_h_m, {shape.hold_radius:g}", y_max)
+    question = Question(scenario, DT_S, round(horizon_s / DT_S))
+    atlas = atlas_for(question, y_max, context, make=True)
     assert atlas is not None  # built if none existed
     corridor = corridor_of(shape)
-    half = shape.x0 + shape.c_x * (inputs.y_max_m - shape.hold_radius)
+    half = shape.x0 + shape.c_x * (y_max - shape.hold_radius)
     box = np.array(
         [
             [-half, shape.hold_radius],
             [half, shape.hold_radius],
-            [half, inputs.y_max_m],
-            [-half, inputs.y_max_m],
+            [half, y_max],
+            [-half, y_max],
         ]
     )
     outer = box
@@ -40,19 +48,16 @@ def run(inputs: SafeRegionInputs, context: Context) -> ProcessOutput:
     for slope, level in zip(atlas.slopes, atlas.levels, strict=True):
         outer = clip(outer, slope, float(level))
     inner = np.array([witness.start for witness in atlas.rim]).reshape(-1, 2)
-    inner = clip(inner, np.array([0.0, -1.0]), inputs.y_max_m) if len(inner) >= 3 else np.empty((0, 2))
-    context.step(1, 1)
-    return ProcessOutput(
-        {
-            "inner_polygon_m": inner.tolist(),
-            "outer_polygon_m": outer.tolist(),
-            "inner_area_m2": area(inner),
-            "outer_area_m2": area(outer),
-            "deepest_start_m": atlas.deepest.start.tolist(),
-            "deepest_margin_m": atlas.deepest.margin,
-            "message": atlas.message,
-        }
-    )
+    inner = clip(inner, np.array([0.0, -1.0]), y_max) if len(inner) >= 3 else np.empty((0, 2))
+    return {
+        "inner_polygon_m": inner.tolist(),
+        "outer_polygon_m": outer.tolist(),
+        "inner_area_m2": area(inner),
+        "outer_area_m2": area(outer),
+        "deepest_start_m": atlas.deepest.start.tolist(),
+        "deepest_margin_m": atlas.deepest.margin,
+        "message": atlas.message,
+    }
 
 
 def clip(polygon: Floats, slope: Floats, level: float) -> Floats:

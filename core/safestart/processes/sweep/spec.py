@@ -53,7 +53,7 @@ class TruthInput(WireModel):
     )
     check: Literal["continuous", "substeps", "nodes"] = Field(
         "continuous",
-        description="Where a violation is looked for: at all times, at the paper's three sub-steps, at control nodes.",
+        description="Where to look for a violation: at all times, at the paper's three sub-steps, at control nodes.",
     )
     navigation_position_sigma_m: Sigma = Field(
         0.0, description="White navigation noise per axis and step, m."
@@ -64,7 +64,7 @@ class TruthInput(WireModel):
     thrust_magnitude_sigma: Sigma = Field(0.0, description="Relative error of each held thrust.")
     thrust_direction_sigma_deg: Sigma = Field(0.0, description="Direction error of each held thrust, deg.")
     minimum_impulse_m_s: Sigma = Field(
-        0.0, description="Impulse per interval below which nothing is fired, m/s."
+        0.0, description="Impulse per interval below which no thruster fires, m/s."
     )
 
 

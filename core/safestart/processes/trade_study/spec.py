@@ -45,7 +45,7 @@ class TradePoint(WireModel):
 
     omega_t_deg_s: float
     a_max_m_s2: float
-    certified_fraction: float = Field(description="By the closed form that was asked.")
+    certified_fraction: float = Field(description="By the requested closed form.")
     paper_fraction: float = Field(description="By the paper's conditions, which are not sound.")
     exact_inner_m2: float = Field(description="Area proved GO: some thrust history stays for horizon_s.")
     exact_outer_m2: float = Field(description="Area outside of which NO_GO is proved.")

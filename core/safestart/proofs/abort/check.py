@@ -41,7 +41,7 @@ class Checker:
         self.bends = p, q
 
     def check(self) -> int:
-        """All cases are there and all cells hold; how many cells."""
+        """Check that no case is missing and all cells hold; returns the number of cells."""
         self._complete()
         cells = 0
         for event in self.asked.events:
@@ -52,7 +52,7 @@ class Checker:
         return cells
 
     def _complete(self) -> None:
-        """Every event that the statement names has its case, and the pieces of [0, tau] leave no hole."""
+        """Check that every event of the statement has its case, and that the pieces of [0, tau] leave no gap."""
         asked = self.asked
         lasting = {"late": asked.late, "stuck": asked.stuck}
         found: dict[tuple[str, int], list[tuple[fmpq, fmpq]]] = {}
@@ -79,7 +79,7 @@ class Checker:
                     )
 
     def _covered(self, event: Event) -> None:
-        """The cells cover the drift."""
+        """Check that the cells cover the drift."""
         duration = self._duration(event)
         reached = fmpq(0)
         for cell in sorted(event.cells):
@@ -93,7 +93,7 @@ class Checker:
             )
 
     def _duration(self, event: Event) -> fmpq:
-        """How long a drift is looked at: the horizon, and the wait for the next burn, which may be late."""
+        """Duration of a drift: the horizon, and the wait for the next burn, which may be late."""
         asked, k = self.asked, event.burn
         if event.kind == "start":
             return max(asked.horizon, asked.late)
@@ -131,7 +131,7 @@ class Checker:
             span = arb(end - begin)
             rest = span * span / 8 * _swing(one, two, sizes)
             if strays:
-                # A cell that ends within a part is met by what the motion strays up to the end of that part.
+                # A cell that ends within a part gets the stray up to the end of that part.
                 at = min(max(int((end * len(strays) / duration).ceil()), 1), len(strays))
                 rest = rest + sum((abs(e) * s for e, s in zip(d, strays[at - 1], strict=True)), arb(0))
             room = arb.min(*ends) - rest - claim * sum((e * e for e in d), arb(0)).sqrt()

@@ -1,4 +1,4 @@
-"""The checker's own sets: where a plan's chaser may be after each event, in ball arithmetic.
+"""The checker's own sets of a chaser's possible states after each event, in ball arithmetic.
 
 States are (x, y, z, vx, vy, vz), LVLH. A set is a centre and blocks of columns M_k b_k, |b_k|_2 <= 1.
 """
@@ -144,8 +144,8 @@ class Sets:
         return (self._late if kind == "late" else self._stuck)(burn, impulse, first, last)
 
     def detour(self, event: Event) -> arb:
-        """How far a late or lasting burn lets the actual position be from its equivalent state's: less than twice what
-        its velocity covers meanwhile, as |Phi_pv(t)| < 2 t for n t <= 1/2."""
+        """Bound on the distance between the actual position during a late or lasting burn and its equivalent state's:
+        less than twice the path at its velocity, as |Phi_pv(t)| < 2 t for n t <= 1/2."""
         if event.kind not in ("late", "stuck"):
             return arb(0)
         last, most = arb(event.last), 1 + self.share
@@ -157,7 +157,7 @@ class Sets:
     def _burnt(
         self, state: Reached, impulse: list[fmpq], least: arb, angle: arb, back: arb_mat | None = None
     ) -> Reached:
-        """A burn added, its errors as blocks; ``back`` moves what is added."""
+        """Add a burn with its errors as blocks, moved by ``back``."""
         along, one, two, size = axes([arb(e) for e in impulse])
         middle, half, across = shell(least, 1 + self.share, angle)
 
@@ -171,7 +171,7 @@ class Sets:
         )
 
     def _loose(self, size: arb) -> arb:
-        """How long the error of a thrust of a size can be."""
+        """Largest length of the error of a thrust of this size."""
         _, half, across = shell(1 - self.share, 1 + self.share, self.angle)
         return size * (half * half + across * across).sqrt()
 

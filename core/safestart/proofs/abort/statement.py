@@ -1,4 +1,4 @@
-"""What a missed-burn proof states, read strictly: every number the double it is, as an exact rational."""
+"""The statement of a missed-burn proof, read strictly: every number is a double, taken as an exact rational."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class Asked:
 
 
 def read(document: Any) -> Asked:
-    """The statement of a document; raise ``ProofRejected`` when it is malformed or its digest is another's."""
+    """The statement of a document; raise ``ProofRejected`` when it is malformed or its digest is wrong."""
     check_seal(document, SCHEMA)
     fields(document, "document", ("schema", "digest", "verdict", "least_distance_m", "question", "cases"))
     if document["verdict"] != "PROVED":

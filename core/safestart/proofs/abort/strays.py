@@ -1,7 +1,7 @@
-"""How far the nonlinear motion may be from the linear one, in ball arithmetic: the trial radii of a document checked.
+"""How far the nonlinear motion may be from the linear one: checks a document's trial radii in ball arithmetic.
 
-What the linearisation leaves out is at most 3 mu rho^2 / (r - rho)^4 at the distance rho, mu = n^2 r^3. A radius holds
-over a part where the motion that it and those before it permit stays inside: by continuity no motion then leaves it.
+The error of the linearisation is at most 3 mu rho^2 / (r - rho)^4 at the distance rho, mu = n^2 r^3. A radius holds
+over a part if the motion that it and the earlier radii permit stays inside: by continuity no motion then leaves it.
 """
 
 from __future__ import annotations
@@ -12,16 +12,16 @@ from safestart.proofs.strict import ProofRejected
 
 
 def remainder(n: arb, r: arb, rho: arb) -> arb:
-    """Lagrange's bound on the acceleration left out, up to the distance rho < r/2."""
+    """Lagrange's bound on the omitted acceleration, up to the distance rho < r/2."""
     if not rho < r / 2:
         raise ProofRejected(f"radii_m: required less than half the orbit's radius, received {float(rho):.9g}")
     return 3 * n * n * r**3 * rho * rho / (r - rho) ** 4
 
 
 def strays(n: arb, r: arb, h: arb, linear: list[arb], radii: list[arb]) -> list[list[arb]]:
-    """Bounds on each axis up to the end of each part of ``h`` s; raise ``ProofRejected`` where a radius does not hold.
+    """Bounds on each axis up to the end of each part of ``h`` s; raise ``ProofRejected`` if a radius does not hold.
 
-    ``linear``: what the linear motion does not exceed over each part, m.
+    ``linear``: bounds on the linear motion over each part, m.
     """
     reach = [_reach(n, h, m) for m in range(len(radii))]
     pushes: list[arb] = []

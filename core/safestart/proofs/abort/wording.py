@@ -10,7 +10,7 @@ from safestart.proofs.abort.statement import Asked
 
 
 def lines(asked: Asked) -> tuple[str, ...]:
-    """The statement, a line for each part of it."""
+    """The statement, one line per part."""
     box = [_double(e) for e in asked.box]
     held = "before every burn" if asked.anew else "before the first burn; the errors of the burns add up"
     failures = ["missed, as all after it"]

@@ -67,7 +67,7 @@ def require_unaltered(job_id: str, stored: ResultRow | None, files: Sequence[Art
     ]
     if altered:
         raise Altered(
-            f"job {job_id} is not as it was stored: {', '.join(altered)} does not have the SHA-256 on record",
+            f"job {job_id} was altered: {', '.join(altered)} does not have the SHA-256 on record",
             field="jobID",
             required="a result and artifacts with the SHA-256 on record",
             received=", ".join(altered),

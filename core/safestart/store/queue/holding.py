@@ -47,6 +47,6 @@ def change(session: Session, claim: Claim, statement: Update = HELD, **values: A
     if not try_change(session, claim, statement, **values):
         raise LeaseLost(
             f"job {claim.job_id} is no longer held by {claim.owner}, claim {claim.token}; nothing written",
-            required="a claim that still holds",
+            required="a claim that is still valid",
             received=claim.token,
         )

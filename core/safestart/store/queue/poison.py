@@ -36,7 +36,7 @@ def poison(session: Session, job_id: str, most: int) -> dict[str, Any]:
         "title": "Too many attempts",
         "status": 500,
         "detail": (
-            f"the job was started {most} times and never came to an end: {' and '.join(ends)}; at most {most} "
+            f"the job was started {most} times and never ended: {' and '.join(ends)}; at most {most} "
             "attempts are made"
         ),
     }

@@ -11,7 +11,7 @@ from pydantic import BaseModel
 from safestart.errors import invalid
 from safestart.processes.base import Table
 from safestart.processes.registry import PROCESS_IDS, process
-from safestart_service.documents.tables import Rows, tables_of
+from safestart.processes.tables import Rows, tables_of
 from safestart_service.errors import NotAcceptable
 
 Record = dict[str, Any]

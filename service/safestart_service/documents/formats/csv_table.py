@@ -5,8 +5,8 @@ from __future__ import annotations
 import csv
 import io
 
+from safestart.processes.tables import columns_of
 from safestart_service.documents.formats.base import Format, Record, rows_of
-from safestart_service.documents.tables import columns_of
 
 
 def _encode(record: Record, table: str | None) -> bytes:

@@ -8,8 +8,8 @@ from __future__ import annotations
 import io
 from typing import Any
 
+from safestart.processes.tables import columns_of, tables_of
 from safestart_service.documents.formats.base import Format, Record
-from safestart_service.documents.tables import columns_of, tables_of
 
 
 def _encode(record: Record, _: str | None) -> bytes:

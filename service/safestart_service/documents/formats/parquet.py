@@ -6,8 +6,8 @@ import io
 from typing import Any
 
 from safestart.errors import Unavailable
+from safestart.processes.tables import columns_of
 from safestart_service.documents.formats.base import Format, Record, rows_of
-from safestart_service.documents.tables import columns_of
 
 
 def _encode(record: Record, table: str | None) -> bytes:

@@ -1,4 +1,4 @@
-// The geometry that the pictures share.
+// Geometry shared by the pictures.
 
 /** Corners of the corridor cut at yMax, closed. */
 export function corridor({ c_x, x0_m, r_h_m }, yMax) {

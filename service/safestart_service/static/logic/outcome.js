@@ -1,26 +1,26 @@
-// What a result says: its findings, the worst of them first, and where a start of it leads.
+// The outcome of a result: its findings, worst first, and links of its starts to Explore.
 
 const SENSES = ["bad", "open", "good"];
 
-/** The sense of a verdict's word in a view of findings: "good", "bad", or "open" where it decides nothing. */
+/** The sense of a verdict's word in a view of findings: "good", "bad", or "open" if it decides nothing. */
 export const sense = ({ good, bad }, word) => (bad.includes(word) ? "bad" : good.includes(word) ? "good" : "open");
 
-/** What the verdicts of a view rest on where that is no proof, null otherwise. */
+/** The basis of a view's verdicts if it is not a proof, else null. */
 export function claim({ basis, unproved }, tables) {
   const found = basis ? tables[""][0][basis] : null;
   return unproved.includes(found) ? found : null;
 }
 
 /**
- * The findings of a view, worst first: rows with their word, its sense, and `shown`, the sense it is shown in, which is
- * "open" for what rests on no proof. Within a sense they keep their order.
+ * The findings of a view, worst first: rows with their word, its sense, and `shown`, the displayed sense, which is
+ * "open" without a proof. Within a sense they keep their order.
  */
 export const findings = (view, tables) => (tables[view.table] ?? []).map((row) => ({ row, word: row[view.word], sense: sense(view, row[view.word]) }))
   .filter(({ word }) => word !== null && word !== undefined)
   .map((found) => ({ ...found, basis: claim(view, tables), shown: claim(view, tables) === null ? found.sense : "open" }))
   .sort((one, two) => SENSES.indexOf(one.sense) - SENSES.indexOf(two.sense));
 
-/** A result's verdict: the worst word of its findings, and how many say so; null where a process has no findings. */
+/** A result's verdict: the worst word of its findings, and how many have it; null if a process has no findings. */
 export function outcome(views, tables) {
   const all = views.filter(({ kind }) => kind === "findings").flatMap((view) => findings(view, tables));
   if (!all.length) return null;
@@ -29,7 +29,7 @@ export function outcome(views, tables) {
   return { word: so[0].word, sense: so[0].shown, basis: so[0].basis, count: so.length, of: all.length };
 }
 
-/** The address at which Explore asks about a start of a result, as it was asked there: corridor, orbit and time with it. */
+/** The address of Explore for a start of a result, with the result's corridor, orbit and time. */
 export function exploreAddress(row, inputs) {
   const corridor = inputs.corridor ?? {}, of = (name) => row[name] ?? inputs[name];
   const asked = {

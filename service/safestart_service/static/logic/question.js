@@ -1,8 +1,8 @@
-// The question that Explore's inputs pose: from the text in its fields to what each panel asks, and to words.
+// The question of Explore's inputs: from the texts of its fields to each panel's request, and to words.
 
 import { figure } from "./words.js";
 
-/** Fields by name: what stands in them at first, and what they are called. `words` are the choices of a select. */
+/** Fields by name: their initial texts and their labels. `words` are the choices of a select. */
 export const FIELDS = {
   omega_t_deg_s: { first: "3", title: "Tumble rate", unit: "deg/s" },
   a_max_m_s2: { first: "0.1", title: "Thrust acceleration", unit: "m/s²" },
@@ -27,12 +27,12 @@ export const FIRST = Object.fromEntries(Object.entries(FIELDS).map(([name, field
 const SPREADS = ["omega_t_half_width_deg_s", "a_max_half_width_m_s2", "position_half_width_m", "velocity_half_width_m_s", "disturbance_m_s2"];
 const SHAPE = ["c_x", "x0_m", "r_h_m"];
 
-/** What a number field of HTML takes for a number; anything else would stand in the address and not in the field. */
+/** Texts that an HTML number field accepts; any other text would be in the address but not in the field. */
 const NUMBER = /^-?(\d+(\.\d+)?|\.\d+)(e[+-]?\d+)?$/i;
 
 /**
- * Values of the texts, and what is wrong with them by field: `{ values, wrong }`. A start is given by both coordinates
- * or by none. What a number may be is the service's to judge; only what is no number is found here.
+ * Values of the texts, and errors by field: `{ values, wrong }`. A start has both coordinates or none. Only texts that
+ * are not numbers are errors here; the service checks the ranges.
  */
 export function read(texts) {
   const values = {}, wrong = {};
@@ -54,38 +54,38 @@ export function read(texts) {
 const pick = (values, names) => Object.fromEntries(names.map((name) => [name, values[name]]));
 const shape = (values) => pick(values, SHAPE);
 const scenario = (values) => ({ ...pick(values, ["omega_t_deg_s", "a_max_m_s2", "mean_motion_rad_s"]), corridor: shape(values) });
-/** Spreads that are not 0: a negative one is asked too, so that it is refused and not passed over. */
+/** Spreads other than 0; a negative one is sent too, so that the service refuses it. */
 const spreads = (values) => pick(values, SPREADS.filter((name) => values[name] !== 0));
 
 export const spread = (values) => Object.keys(spreads(values)).length > 0;
 
-/** What the map's certified set is asked by: the sound certificate, on a grid. */
+/** The request for the map's certified set: the sound certificate, on a grid. */
 export const certificate = (values) => ({ ...scenario(values), rest: values.rest, grid: { nx: 81, ny: 81, y_max_m: values.y_max_m } });
 
-/** What the map's exact region is asked by; null where there is none: it is known for starts at rest in LVLH. */
+/** The request for the map's exact region, which exists only for starts at rest in LVLH; otherwise null. */
 export const region = (values) => (values.rest === "lvlh" ? { ...scenario(values), horizon_s: values.horizon_s, y_max_m: values.y_max_m } : null);
 
 const nominal = (values, start) => ({
   ...pick(values, ["omega_t_deg_s", "a_max_m_s2", "mean_motion_rad_s"]), ...shape(values), rest: values.rest, ...start,
 });
 
-/** The paper's conditions about one start, not sound: they know neither time, requirement nor spread. */
+/** The paper's conditions for one start; they are not sound and ignore time, requirement and spread. */
 export const paper = (values, start) => ({ ...nominal(values, start), method: "paper" });
 
-/** What the verdict is asked by: the service's own choice of method, which says no GO without a proof. */
+/** The request for the verdict, with the service's choice of method, which gives no GO without a proof. */
 export const proven = (values, start) => ({
   ...nominal(values, start), question: values.question, horizon_s: values.horizon_s,
   ...(values.question === "synchronize" ? { within_s: values.within_s } : {}), ...spreads(values),
 });
 
-/** What is flown: one flight, at the nominal values, undisturbed. */
+/** The request for the flight, at the nominal values, undisturbed. */
 export const flight = (values, start) => ({
   ...scenario(values), rest: values.rest, question: values.question, horizon_s: values.horizon_s,
   ...(values.question === "synchronize" ? { within_s: values.within_s } : {}), start,
 });
 
 const said = (name, value) => `${FIELDS[name].title[0].toLowerCase()}${FIELDS[name].title.slice(1)} ${value}${FIELDS[name].unit ? ` ${FIELDS[name].unit}` : ""}`;
-/** Orbit and corridor where they are not the usual ones. */
+/** Orbit and corridor values that differ from the usual ones. */
 const unusual = (values) => ["mean_motion_rad_s", ...SHAPE].filter((name) => values[name] !== Number(FIELDS[name].first)).map((name) => said(name, values[name]));
 const operating = (values) => [`${values.omega_t_deg_s} deg/s`, `${values.a_max_m_s2} m/s²`];
 const atRest = (values) => `at rest in ${values.rest === "lvlh" ? "LVLH" : "the body frame"}`;
@@ -103,7 +103,7 @@ export const mapWords = (values) => [
   `Map: ${values.rest === "lvlh" ? `${staying(values)}, nominal` : "certified for ever, nominal"}`, ...operating(values), atRest(values), ...unusual(values),
 ].join(" · ");
 
-/** What the verdict asks and the map does not, in words; empty where they ask the same. */
+/** What the verdict asks beyond the map, in words; empty if they ask the same. */
 export function mapLacks(values) {
   const lacks = [];
   if (values.question !== "stay") lacks.push(required(values));
@@ -112,7 +112,7 @@ export function mapLacks(values) {
   return lacks;
 }
 
-/** What decided, in words, by its name on the wire. */
+/** The deciding method in words, by its name on the wire. */
 export const DECIDED = {
   certified: "by the certificate in closed form: a known manoeuvre, for ever", exact: "by a cone program", atlas: "by an atlas of cone programs",
   families: "by cone programs", tube: "by a cone program in the tightened corridor",
@@ -125,7 +125,7 @@ export function proved(verdict, values) {
   return verdict === "UNDECIDED" ? `neither proved nor refuted${whom}` : `proved${whom}`;
 }
 
-/** What is flown, in words, for the caption of the flight. `verdict` is the flight's own: nominal, undisturbed. */
+/** The flight in words, for its caption. `verdict` is the flight's own: nominal, undisturbed. */
 export function flownWords(verdict, values) {
   const where = spread(values) ? " at the nominal values, undisturbed" : "";
   if (verdict === "GO") return `Flown: the proof's thrust history, to ${required(values)}${where}`;
@@ -134,8 +134,8 @@ export function flownWords(verdict, values) {
 }
 
 /**
- * The flight in words, and whether there is one to look at: from a start outside the corridor nothing is flown, as all
- * that could be said of such a flight is where it began.
+ * The flight in words, and whether to show one: from a start outside the corridor none is flown, as it would already
+ * have failed.
  */
 export function flightWords(flown, values) {
   const [first] = flown.distance_m, outside = first.reduce((least, distance, k) => (distance < first[least] ? k : least), 0);
@@ -152,15 +152,15 @@ export function flightWords(flown, values) {
 /** The start that the values give, null without one. */
 export const start = ({ x_m, y_m }) => (x_m === null || y_m === null ? null : { x_m, y_m });
 
-/** Texts for the fields from a job's inputs: the operating point that its sets are about. */
+/** Texts for the fields from a job's inputs: the operating point of its sets. */
 export const textsOf = ({ omega_t_deg_s, a_max_m_s2, rest, mean_motion_rad_s, corridor, grid }) => Object.fromEntries(
   Object.entries({ omega_t_deg_s, a_max_m_s2, rest, mean_motion_rad_s, ...pick(corridor, SHAPE), y_max_m: grid.y_max_m }).map(([name, value]) => [name, String(value)]));
 
-/** Whether a job's sets are about the operating point of these values; how far the map shows makes no difference. */
+/** Whether a job's sets are for the operating point of these values, whatever the extent of the map. */
 export const isAbout = (inputs, values) => Object.entries(textsOf(inputs)).every(
   ([name, text]) => name === "y_max_m" || (FIELDS[name].words ? values[name] === text : values[name] === Number(text)));
 
-/** Texts for the fields from an address; `unknown` are the names it has that no field has. */
+/** Texts for the fields from an address; `unknown` are its names without a field. */
 export function fromAddress(search) {
   const texts = { ...FIRST }, unknown = [];
   for (const [name, text] of new URLSearchParams(search)) {
@@ -170,7 +170,7 @@ export function fromAddress(search) {
   return { texts, unknown };
 }
 
-/** The address that gives these texts; only what is not there at first. */
+/** The address that gives these texts; it leaves initial texts out. */
 export function toAddress(texts) {
   const told = new URLSearchParams(Object.entries(texts).filter(([name, text]) => name in FIELDS && text !== FIELDS[name].first));
   return told.size ? `?${told}` : "";

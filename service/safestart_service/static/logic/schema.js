@@ -1,9 +1,9 @@
-// What a JSON schema says of a field: its own type behind references and alternatives, its bounds, the values typed into it.
+// A field by its JSON schema: its type behind references and alternatives, its bounds, its typed values.
 
 const at = (whole, reference) => reference.slice(2).split("/").reduce((part, key) => part[key], whole);
 const isNull = (schema) => schema.type === "null" || (schema.enum?.length === 1 && schema.enum[0] === null);
 
-/** The schema behind references and alternatives; `optional` where null is one of them. */
+/** The schema behind references and alternatives; `optional` if null is one of them. */
 export function resolve(schema, whole) {
   let found = schema;
   for (let k = 0; k < 9; k++) {
@@ -18,7 +18,7 @@ export function resolve(schema, whole) {
   return found;
 }
 
-/** A bound as people write it. The service writes "more than" as the next number a computer has: 5e-324 is more than 0. */
+/** A bound for people. The service writes "more than" as the next floating-point number: 5e-324 means more than 0. */
 function bound(value, sign, strict) {
   if (Math.abs(value) < 1e-300) return value === 0 ? `${sign} 0` : `${strict} 0`;
   const plain = Number(value.toPrecision(12));
@@ -36,11 +36,11 @@ export function bounds({ minimum, maximum, exclusiveMinimum, maxItems, multipleO
   return said.length ? `(${said.join(", ")})` : "";
 }
 
-/** Numbers separated by commas; what is none stays text, so that the service refuses it by name. Undefined for nothing. */
+/** Numbers separated by commas; other parts stay text, so that the service refuses them by name. Undefined if empty. */
 export const numbers = (text) => (text.trim() === "" ? undefined
   : text.split(",").map((part) => (part.trim() !== "" && Number.isFinite(Number(part)) ? Number(part) : part.trim())));
 
-/** JSON, or the text itself where it is none; undefined for nothing. */
+/** JSON, or the text itself if it is not JSON; undefined if empty. */
 export function parsed(text) {
   if (text.trim() === "") return undefined;
   try {
@@ -50,7 +50,7 @@ export function parsed(text) {
   }
 }
 
-/** An object of entries [name, value] without the undefined ones; undefined where nothing is left and nothing need be. */
+/** An object of entries [name, value] without undefined ones; undefined if none is left and none is required. */
 export function filled(entries, optional) {
   const there = entries.filter(([, value]) => value !== undefined);
   return optional && !there.length ? undefined : Object.fromEntries(there);

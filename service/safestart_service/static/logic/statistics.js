@@ -1,4 +1,4 @@
-// Shares with their intervals, and two masks against each other.
+// Shares with their intervals, and the comparison of two masks.
 
 /** Wilson interval of a share, 95 %; null without trials. */
 export function wilson(hits, of) {
@@ -8,7 +8,7 @@ export function wilson(hits, of) {
   return [Math.max(0, middle - half), Math.min(1, middle + half)];
 }
 
-/** Cells of a map by kind: 0 outside, 1 in neither mask, 2 in both, 3 in the first alone, 4 in the second alone; and their counts. */
+/** Cells of a map by kind: 0 outside, 1 in neither mask, 2 in both, 3 only in the first, 4 only in the second; and their counts. */
 export function agreement(inside, first, second) {
   const counts = [0, 0, 0, 0, 0];
   const z = inside.map((row, iy) => row.map((within, ix) => {

@@ -1,17 +1,17 @@
-// The state of a page: its inputs in one place, and panels that show the answer to the question these inputs pose.
+// The state of a page: its inputs in one place, and panels that show the answers to the inputs' questions.
 
-/** For how long an answer that has become old may stay in sight, greyed, until the next one is there (ms). */
+/** Longest time (ms) for which an old answer stays visible, greyed, while the next one is awaited. */
 export const OLD_MS = 1000;
 
-/** A question as text: the same for the same question, whatever the order of its keys. */
+/** A question as text, independent of the order of its keys. */
 export const digest = (question) => JSON.stringify(question, (_, value) => (value && typeof value === "object" && !Array.isArray(value)
   ? Object.fromEntries(Object.entries(value).sort(([one], [two]) => (one < two ? -1 : 1))) : value));
 
 /**
- * One panel. `poses(inputs)` gives its question, null when the inputs pose none; `asks(question, signal)` gets the
- * answer; `shows(panel)` draws what the panel holds after each change: `state` is "none", "asking", "there" or
- * "failed"; `answer` is there only while "there", `old` (the answer before) only while "asking", `error` only while
- * "failed". Before anything is asked the inputs must have rested for `quiet` ms.
+ * One panel. `poses(inputs)` gives its question, or null without one; `asks(question, signal)` fetches the answer;
+ * `shows(panel)` draws the panel after each change. `state` is "none", "asking", "there" or "failed"; `answer` exists
+ * only while "there", `old` (the previous answer) only while "asking", `error` only while "failed". A request waits
+ * until the inputs have not changed for `quiet` ms.
  */
 class Panel {
   #parts;
@@ -21,7 +21,7 @@ class Panel {
   #fades = 0;
   state = "none";
   question = null;
-  digest; // undefined until the first question: to pose none is news, too
+  digest; // undefined until the first question, so that even "no question" counts as a change
   answer = null;
   old = null;
   error = null;
@@ -30,7 +30,7 @@ class Panel {
     this.#parts = { quiet: 0, ...parts };
   }
 
-  /** Take the inputs as they are now; true when they pose another question, and what was shown is no answer to it. */
+  /** Take the current inputs; true if the question has changed, so that the shown answer is old. */
   pose(inputs) {
     const question = this.#parts.poses(inputs);
     const next = question === null ? null : digest(question);
@@ -39,7 +39,7 @@ class Panel {
     return true;
   }
 
-  /** Ask the same again, and show the answer until the next one is there: for what changes with time. */
+  /** Ask the same again and show the answer until the next one arrives, for answers that change with time. */
   refresh() {
     if (this.state !== "there") return;
     this.#turn?.abort();
@@ -47,14 +47,14 @@ class Panel {
     this.#fetch(this.#turn);
   }
 
-  /** Ask the same again, where it failed. */
+  /** Ask the same again after a failure. */
   retry() {
     if (this.state !== "failed") return;
     this.#ask(this.question, this.digest);
     this.show();
   }
 
-  /** Ask at once what still waits for the inputs to rest. */
+  /** Send a waiting request at once. */
   hasten() {
     if (!this.#waits) return;
     clearTimeout(this.#begins);
@@ -91,7 +91,7 @@ class Panel {
     } catch (error) {
       found = ["failed", { error }];
     }
-    // The answer to a question that is no longer posed comes too late, whatever became of its request.
+    // The answer to an abandoned question comes too late, even if its request succeeded.
     if (turn !== this.#turn) return;
     this.#rest(...found);
     this.show();
@@ -104,7 +104,7 @@ class Panel {
   }
 }
 
-/** The inputs of a page and its panels. There is one way to change an input, and that is `set`. */
+/** The inputs of a page and its panels. Only `set` changes an input. */
 export class Store {
   #panels = [];
 
@@ -112,21 +112,21 @@ export class Store {
     this.inputs = Object.freeze({ ...inputs });
   }
 
-  /** Add a panel; it is posed its first question by the next `set`. */
+  /** Add a panel; the next `set` gives it its first question. */
   panel(parts) {
     const panel = new Panel(parts);
     this.#panels.push(panel);
     return panel;
   }
 
-  /** Change inputs. Before this returns, every answer to another question is marked old or withdrawn. */
+  /** Change inputs. Before this returns, every answer to another question is marked as old or removed. */
   set(change = {}) {
     this.inputs = Object.freeze({ ...this.inputs, ...change });
     const changed = this.#panels.filter((panel) => panel.pose(this.inputs));
     for (const panel of changed) panel.show();
   }
 
-  /** Ask at once, and again what failed. */
+  /** Send waiting requests at once, and failed ones again. */
   hasten() {
     for (const panel of this.#panels) {
       panel.retry();
@@ -135,7 +135,7 @@ export class Store {
   }
 }
 
-/** `work` with arguments, and `use` of its answer, unless a newer one has been used already. */
+/** Call `work`, then `use` its answer, unless a newer answer has been used already. */
 export function newest(work, use) {
   let asked = 0, used = 0;
   return async (...given) => {

@@ -1,12 +1,12 @@
-// Outputs as tables, as the service gives them as CSV: declared ones, lists of objects, and lists within their rows.
+// Outputs as tables, as in the service's CSV: declared ones, lists of objects, and lists within their rows.
 
-/** A list of at most so many entries is a vector, and gets a column for each. */
+/** A list of at most this many entries is a vector, with one column per entry. */
 const MOST_ENTRIES = 8;
 
 const isObject = (value) => value !== null && typeof value === "object" && !Array.isArray(value);
 const areObjects = (value) => Array.isArray(value) && value.length > 0 && value.every(isObject);
 
-/** The scalars of a row: of inner objects as `name.member`, of vectors as `name.0`; short words as one text. */
+/** The scalars of a row: inner objects as `name.member`, vectors as `name.0`, lists of short words as one text. */
 export function flat(row) {
   const found = {};
   for (const [name, value] of Object.entries(row)) {
@@ -18,7 +18,7 @@ export function flat(row) {
   return found;
 }
 
-/** Rows of a declared table; none where its columns are not there, or not of one length. */
+/** Rows of a declared table; none if columns are missing or differ in length. */
 function declared(outputs, { columns, axes }) {
   const there = columns.filter((name) => outputs[name] !== null && outputs[name] !== undefined);
   if (!there.length || axes.some((name) => !(name in outputs))) return [];
@@ -34,7 +34,7 @@ function declared(outputs, { columns, axes }) {
   })));
 }
 
-/** The tables among outputs by name; "" is the one row of their own scalars. */
+/** The tables among outputs by name; "" is the single row of the outputs' own scalars. */
 export function tablesOf(outputs, known = []) {
   const found = { "": [flat(outputs)] };
   for (const table of known) {
@@ -53,10 +53,10 @@ export function tablesOf(outputs, known = []) {
   return found;
 }
 
-/** Names of all columns, in the order in which they first come, without those that are empty in every row. */
+/** Names of all columns, in the order of their first appearance, without those that are empty in every row. */
 export const columnsOf = (rows) => [...new Set(rows.flatMap(Object.keys))].filter((name) => rows.some((row) => row[name] !== null && row[name] !== undefined && row[name] !== ""));
 
-/** What a path leads to, `*` standing for every entry: `{ value, names }`; `named` are the members that name entries, "" for their keys. */
+/** Values at a path, with `*` for every entry: `{ value, names }`; `named` are the members that name entries, "" for their keys. */
 export function each(outputs, path, named = []) {
   let found = [{ value: outputs, names: [] }], stars = 0;
   for (const part of path.split(".")) {

@@ -2,7 +2,7 @@
 
 const THRUSTS = Array.from({ length: 25 }, (_, k) => Number((10 ** (-2.3 + k / 12)).toPrecision(3)));
 
-/** Inputs of the map from the texts of the fields; null where one of them holds no number. */
+/** Inputs of the map from the texts of the fields; null if one of them is not a number. */
 export function readTrade({ low, high, stand_off_m, y_max_m, rest }) {
   const texts = [low, high, stand_off_m, y_max_m].map((text) => text.trim()), numbers = texts.map(Number);
   if (texts.includes("") || !numbers.every(Number.isFinite)) return null;
@@ -18,7 +18,7 @@ export const tradeAddress = (texts) => `?${new URLSearchParams(texts)}`;
 /** The question in words. */
 export const closedWords = ({ stand_off_m, y_max_m, rest }) => `Certified for ever · stand-off ${stand_off_m} m · corridor cut at ${y_max_m} m · at rest in ${rest === "lvlh" ? "LVLH" : "the body frame"}`;
 
-/** The address at which Explore asks about one point of the map. */
+/** The address of Explore for one point of the map. */
 export const tradeExplore = (rate, thrust, inputs) => `?${new URLSearchParams({
   omega_t_deg_s: String(rate), a_max_m_s2: String(thrust), rest: inputs.rest, y_max_m: String(inputs.y_max_m), x_m: "0", y_m: String(inputs.stand_off_m),
 })}`;

@@ -1,6 +1,6 @@
 // Figures, times and tables as text.
 
-/** A value for people: `digits` significant ones; – for none. */
+/** A value for people, with `digits` significant digits; – for a missing value. */
 export function figure(value, digits = 4) {
   if (value === null || value === undefined) return "–";
   if (typeof value === "boolean") return value ? "yes" : "no";
@@ -19,10 +19,10 @@ export function duration(seconds) {
 
 export const moment = (text) => (text ? `${new Date(text).toISOString().slice(0, 19).replace("T", " ")} UTC` : "–");
 
-/** A text as a sentence: a capital first, one full stop last. */
+/** A text as a sentence: begins with a capital, ends with one full stop. */
 export const sentence = (text) => (text ? `${text[0].toUpperCase()}${text.slice(1)}${/[.!?]$/.test(text) ? "" : "."}` : "");
 
-/** A text whose parts are set apart by dots, in lines (<br>) of at most so many letters where its parts allow that. */
+/** Break a text at its dots into lines (<br>) of at most `letters` characters if its parts allow that. */
 export function lines(text, letters) {
   const found = [];
   for (const part of text.split(" · ")) {

@@ -1,4 +1,4 @@
-// Compare: runs of one process side by side, by what its description says they are compared by.
+// Compare: runs of one process side by side, by the measures that its description names.
 
 import { differing } from "../logic/outcome.js";
 import { tablesOf } from "../logic/tables.js";

@@ -1,4 +1,4 @@
-// Explore: the operating point, the regions, one start, its flight. The store holds the text of every field, the address the same.
+// Explore: the operating point, the regions, one start, its flight. Store and address hold the text of every field.
 
 import { FIELDS, certificate, flight as flightOf, flightWords, fromAddress, mapLacks, mapWords, paper, proven, read, region as regionOf, start as startOf, toAddress } from "../logic/question.js";
 import { Store } from "../logic/store.js";
@@ -17,19 +17,19 @@ const map = $("map"), flight = new Flight(redraw);
 const query = (question) => `/go-no-go?${new URLSearchParams(question)}`;
 let begun = 0;
 
-/** What the fields say, null where one of them says nothing that can be asked. */
+/** The values of the fields; null if one of them is invalid. */
 function given(inputs) {
   const { values, wrong } = read(inputs);
   return Object.keys(wrong).length ? null : values;
 }
 
-/** The same and a start. */
+/** The same with a start. */
 function started(inputs) {
   const values = given(inputs), start = values && startOf(values);
   return start && { values, start };
 }
 
-// ---- the panels, each with its own question
+// ---- the panels, each with its question
 
 const certified = store.panel({
   poses: (inputs) => { const values = given(inputs); return values && certificate(values); },
@@ -75,11 +75,11 @@ const stored = store.panel({
   shows: () => redraw(),
 });
 
-// ---- what they show
+// ---- their pictures and texts
 
 function redraw() {
   const values = given(store.inputs), old = certified.old !== null || region.old !== null;
-  // While the next answer is on its way, the picture before stands there greyed: at once, and drawn only once.
+  // While the next answer is awaited, the previous picture stays, greyed at once and not drawn again.
   map.classList.toggle("old", old && values !== null);
   map.dataset.digest = certified.state === "there" ? certified.digest : "";
   map.dataset.proved = region.state === "there" ? region.digest : "";
@@ -101,7 +101,7 @@ function redraw() {
   return undefined;
 }
 
-/** The stored sets, where they answer the question of the fields. */
+/** The stored sets, if they answer the question of the fields. */
 function setsOf(values) {
   const { sets, note } = storedNote(stored, values);
   $("stored-note").replaceChildren(note);
@@ -164,7 +164,7 @@ function showPointed({ state, answer: found, question }) {
 // ---- the fields
 
 
-/** Change inputs; `writing` is the field whose text the user is writing, which is left as it is. */
+/** Change inputs; `writing` is the field that the user is typing in, whose text stays unchanged. */
 function change(inputs, writing = null) {
   begun = performance.now();
   store.set(inputs);
@@ -185,7 +185,7 @@ function change(inputs, writing = null) {
 function typed({ target }) {
   const name = target.dataset.for ?? target.name;
   if (!(name in FIELDS)) return;
-  // A number field gives no text for what is no number.
+  // A number field gives no text for an invalid number.
   let text = target.validity.badInput ? "no number" : target.value;
   if ("log" in target.dataset) text = String(Number((10 ** Number(text)).toPrecision(3)));
   change({ [name]: text }, target.dataset.for ? null : name);

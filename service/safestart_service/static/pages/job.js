@@ -1,4 +1,4 @@
-// One job: live while it waits or runs, then its results. What is shown survives a reload: it is all on the server.
+// One job: live while it waits or runs, then its results. Everything is on the server and survives a reload.
 
 import { newest } from "../logic/store.js";
 import { duration, moment } from "../logic/words.js";
@@ -56,7 +56,7 @@ function progress(part, text, eta) {
   message.textContent = text ?? "";
 }
 
-/** The job as it is now; an answer that was overtaken by a newer one is dropped. */
+/** The current job; an answer that arrives after a newer one is dropped. */
 const show = newest(() => get(`/jobs/${id}`), (found) => { job = found; frame(); });
 
 async function live() {
@@ -65,7 +65,7 @@ async function live() {
   try {
     await show();
     const waiting = setInterval(() => {
-      // The stream below tells of a service that is away.
+      // The stream below reports an unavailable service.
       if (job.status === "accepted") show().catch(() => null);
     }, 2000);
     const part = job.links.some((link) => link.rel === "partial") ? setInterval(() => partial(over.signal), 3000) : 0;
@@ -97,7 +97,7 @@ async function finished() {
   title();
 }
 
-/** What the finished parts say already, for a process that is cut into parts; nothing once the job is over. */
+/** The partial result of a sharded process; nothing once the job has ended. */
 async function partial(signal) {
   try {
     const { shards, outputs } = await get(`/jobs/${id}/partial`, { signal });
@@ -106,7 +106,7 @@ async function partial(signal) {
     const { head, parts } = shown(known(spec, outputs, job.inputs));
     $("results").replaceChildren(el("h2", {}, `So far: ${shards.done} of ${shards.total} parts`), ...head, ...parts);
   } catch {
-    // Nothing yet, or the service is away, of which the stream tells.
+    // Nothing yet, or the service is unavailable, which the stream reports.
   }
 }
 

@@ -1,4 +1,4 @@
-// Submit: any process by a form made from its schema; light ones answer here, the others become jobs.
+// Submit: any process, by a form made from its schema; light ones answer here, others become jobs.
 
 import { Store } from "../logic/store.js";
 import { call, execute, get, root } from "../parts/api.js";
@@ -12,7 +12,7 @@ const address = new URLSearchParams(location.search);
 const isLight = (one) => one.jobControlOptions.includes("sync-execute");
 let entry = null;
 
-// `entered` is what stands in the form, `sent` what was run: an answer is shown while they are the same.
+// `entered` is the content of the form, `sent` the inputs of the run; the answer is shown while both are equal.
 const store = new Store({ process: null, from: address.get("from"), entered: null, sent: null });
 
 store.panel({
@@ -49,10 +49,10 @@ function showForm({ state, answer, error }) {
     light ? el("button", { type: "button", class: "plain", onclick: queue }, "Queue it") : null));
 }
 
-/** One schema of all inputs, from the description's separate ones. */
+/** One schema of all inputs, from the description's separate schemas. */
 function whole({ inputs, example }) {
   const properties = {}, defs = {}, required = [];
-  // What must be given comes first.
+  // Required fields come first.
   const order = Object.entries(inputs).sort(([, one], [, two]) => two.minOccurs - one.minOccurs);
   for (const [name, { schema, minOccurs, title, description: said }] of order) {
     const { $defs, ...own } = schema;
@@ -63,7 +63,7 @@ function whole({ inputs, example }) {
   return { properties, required, $defs: defs, examples: example ? [example] : [] };
 }
 
-/** Outputs of an answer at once: the standard wraps objects. */
+/** Outputs of an instant answer, in which the standard wraps objects. */
 const plain = (outputs) => Object.fromEntries(Object.entries(outputs).map(([name, value]) => [name, value?.mediaType === "application/json" ? value.value : value]));
 
 function showAnswer({ state, answer, error, question }) {
@@ -87,7 +87,7 @@ function text(answer) {
 
 const entered = () => (entry ? JSON.stringify(entry.value()) : null);
 
-/** Make a job of what stands in the form. */
+/** Make a job from the form. */
 async function queue() {
   const buttons = $("form").querySelectorAll("button"), { process } = store.inputs;
   store.set({ sent: null });

@@ -1,4 +1,4 @@
-// Trade study: certified share over (tumble rate, thrust), and the thrust that a stand-off asks for.
+// Trade study: certified share over (tumble rate, thrust), and the thrust that a stand-off needs.
 
 import { Store } from "../logic/store.js";
 import { closedWords, readTrade, tradeAddress, tradeExplore } from "../logic/trade.js";

@@ -1,9 +1,9 @@
-// The public API from a page: JSON in, JSON out, every refusal a Problem.
+// The public API from a page: JSON in, JSON out, and every refusal is a Problem.
 
 export const root = document.documentElement.dataset.root ?? "";
 const KEY = "safestart-key";
 
-/** A refusal, as the problem document tells it; status 0 when no answer came at all. */
+/** A refusal, from its problem document; status 0 when no answer came. */
 export class Problem extends Error {
   constructor(status, document) {
     super(document.detail ?? document.title ?? "the service does not answer");
@@ -28,7 +28,7 @@ export async function call(path, options = {}) {
   const url = path.startsWith("http") || (root && path.startsWith(`${root}/`)) ? path : root + path;
   let response;
   try {
-    // Without stored credentials: a refusal is told on the page, and no browser dialog asks for a password.
+    // Without stored credentials, so that the page shows a refusal and no browser dialog asks for a password.
     response = await fetch(url, { ...options, headers, body, credentials: "omit" });
   } catch (error) {
     if (error.name === "AbortError") throw error;
@@ -39,7 +39,7 @@ export async function call(path, options = {}) {
   try {
     document = await response.json();
   } catch {
-    // A proxy's page instead of a problem document: the status alone must do.
+    // A proxy's page instead of a problem document: only the status is known.
   }
   throw new Problem(response.status, document);
 }
@@ -48,10 +48,10 @@ export const get = async (path, options) => (await call(path, options)).json();
 export const post = async (path, json, options) => (await call(path, { ...options, method: "POST", json })).json();
 export const remove = async (path) => (await call(path, { method: "DELETE" })).json();
 
-/** Outputs of a light process, at once. */
+/** Outputs of a light process, run at once. */
 export const execute = (id, inputs, options) => post(`/processes/${id}/execution`, { inputs }, options);
 
-/** Events of a job, through breaks of the connection, until it has ended or `signal` aborts. */
+/** Events of a job, also across broken connections, until it has ended or `signal` aborts. */
 export async function follow(job, onEvent, onBreak, signal) {
   let last = "";
   while (!signal.aborted) {

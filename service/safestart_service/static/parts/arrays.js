@@ -1,4 +1,4 @@
-// Pictures of the arrays that a job has kept: masks against each other, and flights.
+// Pictures of a job's stored arrays: comparisons of masks, and flights.
 
 import { corridor } from "../logic/geometry.js";
 import { agreement } from "../logic/statistics.js";
@@ -9,7 +9,7 @@ import { el, fail } from "./page.js";
 const AXES = { xaxis: { title: { text: "x body [m]" }, constrain: "domain" }, yaxis: { title: { text: "y body [m]" }, scaleanchor: "x", constrain: "domain" } };
 const arraysOf = ({ job }, { artifact }) => get(`/jobs/${job}/artifacts/${artifact}/arrays`);
 
-/** Two masks against each other; `one` and `two` are the selects that name them. */
+/** The comparison of two masks; `one` and `two` are the selects that name them. */
 export async function drawOverlay({ view, result, chart, said, one, two }) {
   try {
     const arrays = await arraysOf(result, view);

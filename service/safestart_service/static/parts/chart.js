@@ -5,14 +5,14 @@ import { lines } from "../logic/words.js";
 const shades = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const SHADES = ["ink", "soft", "line", "card", "certified", "exact", "limit", "lost"];
 
-/** The colours of the style sheet, as they are now. */
+/** The current colours of the style sheet. */
 export const theme = () => Object.fromEntries(SHADES.map((name) => [name, shades(`--${name}`)]));
 
 const drawn = new Map(), paper = matchMedia("print");
 
 /**
- * Draw or redraw; the picture follows the colour scheme and the width of its place. A title is broken at its dots where it
- * is too long; the legend, where the layout does not place it, stands below everything else.
+ * Draw or redraw; the picture follows the colour scheme and the width of its place. A title that is too long is broken
+ * at its dots; a legend without a place in the layout goes below everything else.
  */
 export function draw(place, traces, layout = {}, config = {}) {
   drawn.set(place, [traces, layout, config]);
@@ -26,14 +26,14 @@ export function draw(place, traces, layout = {}, config = {}) {
     legend: { orientation: "h", yref: "container", y: 0, yanchor: "bottom", x: 0, font: { color: soft } }, ...layout, title,
     xaxis: { ...axis, ...layout.xaxis }, yaxis: { ...axis, ...layout.yaxis },
   };
-  // Plotly fits a picture to its place a moment later, which on paper is too late.
+  // Plotly fits a picture to its place a moment later, which is too late for printing.
   if (paper.matches) Object.assign(whole, { width: place.clientWidth, height: place.clientHeight });
   if (layout.yaxis2) whole.yaxis2 = { ...axis, ...layout.yaxis2 };
   const bar = { displaylogo: false, responsive: true, modeBarButtonsToRemove: ["lasso2d", "select2d", "autoScale2d", "sendChartToCloud"], plotlyServerURL: "", ...config };
   return Plotly.react(place, traces, whole, bar);
 }
 
-/** Colours and sizes change with these; no window is resized when a page is printed. */
+/** Colours and sizes change with these; printing a page resizes no window. */
 for (const medium of [matchMedia("(prefers-color-scheme: dark)"), paper]) medium.addEventListener("change", () => {
   for (const [place, args] of drawn) if (place.isConnected) draw(place, ...args);
 });

@@ -1,4 +1,4 @@
-// One flight: its curves, its clock, and what the map shows of it at the clock's time.
+// One flight: its curves, its clock, and its state on the map at the clock's time.
 
 import { figure } from "../logic/words.js";
 import { draw, theme } from "./chart.js";
@@ -17,7 +17,7 @@ export class Flight {
     $("clock").addEventListener("input", () => { this.stop(); this.show(Number($("clock").value)); });
   }
 
-  /** Withdraw the flight; `text` says why there is none. */
+  /** Remove the flight; `text` says why there is none. */
   clear(text = "") {
     this.stop();
     this.data = null;
@@ -27,7 +27,7 @@ export class Flight {
     $("flight").classList.toggle("empty-flight", true);
   }
 
-  /** Show a flight at its end; `text` says what is flown. */
+  /** Show a flight at its end; `text` describes it. */
   load(data, text) {
     this.stop();
     this.data = data;

@@ -1,9 +1,9 @@
-// A form from a JSON schema: what a process's description says is all it needs to know.
+// A form from a JSON schema; it needs only a process's description.
 
 import { bounds, filled, numbers, parsed, resolve } from "../logic/schema.js";
 import { el } from "./page.js";
 
-/** `{ node, value() }` of one schema; `value()` gives undefined where nothing was entered. */
+/** `{ node, value() }` of one schema; `value()` gives undefined if nothing was entered. */
 export function field(schema, whole, name, path, given) {
   schema = resolve(schema, whole);
   const fallback = given ?? schema.default ?? schema.const;
@@ -91,7 +91,7 @@ function json(schema, name, path, given) {
   return { node: dial({ ...schema, description: `${schema.description ?? ""} JSON.` }, name, path, control), value: () => parsed(control.value) };
 }
 
-/** Mark the field that a problem names; true when there is one. */
+/** Mark the field that a problem names; true if it exists. */
 export function mark(form, name) {
   for (const old of form.querySelectorAll('[aria-invalid="true"]')) old.removeAttribute("aria-invalid");
   const plain = String(name ?? "").replace(/^inputs\.?/, "");

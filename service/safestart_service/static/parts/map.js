@@ -5,7 +5,7 @@ import { draw, theme } from "./chart.js";
 
 const FILL = "rgba(128,128,128,0.09)";
 
-/** The corridor at rest with everything known of the starts in it. `sets` are stored ones: { title, colour, x, y, mask }. */
+/** The corridor at rest with all sets of starts. `sets` are stored ones: { title, colour, x, y, mask }. */
 function body({ values, certified, region, sets }) {
   const { ink, soft, certified: green, exact: blue, limit } = theme();
   const shape = values, traces = [];
@@ -50,7 +50,7 @@ function orbit({ values, region }, turn) {
 
 const target = (ink) => ({ name: "target", x: [0], y: [0], mode: "markers", marker: { symbol: "square", size: 11, color: ink }, hoverinfo: "name", showlegend: false });
 
-/** Draw what is given; `says` are the words on the picture, `overlay(frame)` the traces of start and flight. */
+/** Draw the map; `says` are the words on the picture, `overlay(frame)` the traces of start and flight. */
 export function drawMap(place, { values, certified, region, sets, turn, overlay, says }) {
   const inOrbit = turn !== null;
   const reach = corridor(values, values.y_max_m).half * 1.03;
@@ -58,7 +58,7 @@ export function drawMap(place, { values, certified, region, sets, turn, overlay,
   const known = { values, certified, region, sets };
   const traces = [...(inOrbit ? orbit(known, turn) : body(known)), ...overlay(inOrbit ? "lvlh" : "body")];
   const high = inOrbit ? 2 * far : 1.09 * values.y_max_m, wide = 2 * (inOrbit ? far : reach);
-  // As tall as equal axes need, beside title, ticks and legend.
+  // As tall as equal axes need, plus title, ticks and legend.
   const beside = 100 + 20 * Math.ceil(7 / Math.max(1, Math.floor((place.clientWidth - 64) / 190)));
   place.style.height = `${Math.min(0.85 * innerHeight, ((place.clientWidth - 70) * high) / wide + beside)}px`;
   return draw(place, traces, {
@@ -68,7 +68,7 @@ export function drawMap(place, { values, certified, region, sets, turn, overlay,
   });
 }
 
-/** The point of the map under a pointer event, to a centimetre; null beside the axes. */
+/** The point of the map under a pointer event, to a centimetre; null outside the axes. */
 export function pointAt(place, event) {
   const { xaxis, yaxis } = place._fullLayout ?? {};
   if (!xaxis) return null;

@@ -1,4 +1,4 @@
-// What every page shares: elements, tables, the states empty, loading and failed, the key dialog.
+// Shared by all pages: elements, tables, the states empty, loading and failed, the key dialog.
 
 import { figure } from "../logic/words.js";
 import { Problem, hasKey, useKey } from "./api.js";
@@ -17,12 +17,12 @@ export function el(tag, attributes = {}, ...children) {
 
 export const $ = (id) => document.getElementById(id);
 
-/** Put a failure where the content would stand, with the way out of it. */
+/** Show a failure in place of the content, with a way to continue. */
 export function fail(place, error, again) {
   if (error.name === "AbortError") return;
   const known = error instanceof Problem;
   const asks = document.getElementById("key");
-  // Somebody may be typing a key there: a second refusal must not wipe it out.
+  // The user may be typing a key there; a second refusal must not erase it.
   if (known && error.status === 401 && asks && place.contains(asks)) return;
   const box = el("div", { class: "problem", role: "alert" });
   box.append(el("h2", {}, known ? error.document.title ?? "Refused" : "This page has a fault"));
@@ -53,7 +53,7 @@ function keyForm() {
   return form;
 }
 
-/** A word in a frame, and what it is about: that a job ended says nothing of the verdict it came to. */
+/** A word in a frame, and its subject: a job's status says nothing about the verdict of its result. */
 export const badge = (about, word, kind) => el("span", { class: `badge ${about}` }, el("span", { class: "about" }, about), " ", el("b", { class: about === "job" ? `status ${kind}` : `outcome ${kind}` }, word));
 
 export const status = (job) => badge("job", job.dismissal_requested && job.status === "running" ? "stopping" : job.status, job.status);

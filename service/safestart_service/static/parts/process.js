@@ -1,4 +1,4 @@
-// What the API says of processes: their descriptions, kept for the page; titles and colours of what stands in results by name.
+// Process descriptions from the API, cached for the page; titles and colours of names in results.
 
 import { get } from "./api.js";
 
@@ -17,7 +17,7 @@ export function description(id) {
 /** Views of one kind. */
 export const viewsOf = (spec, kind) => spec["safestart:views"].filter((view) => view.kind === kind);
 
-/** Titles and colours by name: `title(name)` is the name itself where there is none. */
+/** Titles and colours by name; `title(name)` is the name itself if it has no title. */
 export function names(spec) {
   const engines = new Map((spec["safestart:engines"] ?? []).map((engine) => [engine.name, engine]));
   return { title: (name) => engines.get(name)?.title ?? name, colour: (name) => engines.get(name)?.colour };

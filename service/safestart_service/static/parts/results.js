@@ -1,4 +1,4 @@
-// The result of a job: what it says first, then its pictures, what no view shows, downloads, provenance.
+// The result of a job: first its verdicts, then pictures, outputs without a view, downloads, provenance.
 
 import { outcome } from "../logic/outcome.js";
 import { columnsOf, tablesOf } from "../logic/tables.js";
@@ -8,12 +8,12 @@ import { badge, definition, download, el } from "./page.js";
 import { names } from "./process.js";
 import { listed, shown } from "./views.js";
 
-/** Everything that views need: outputs with the tables in them, and the names for what stands there. */
+/** The data for the views: outputs with their tables, and the names in them. */
 export const known = (spec, outputs, inputs, { artifacts = [], job = null } = {}) => ({
   spec, outputs, inputs, artifacts, job, names: names(spec), tables: tablesOf(outputs, spec["safestart:tables"]),
 });
 
-/** The badge of a result's verdict; null where its process gives none. */
+/** The badge of a result's verdict; null if its process gives none. */
 export function verdictBadge({ spec, tables }) {
   const found = outcome(spec["safestart:views"], tables);
   if (found === null) return null;
@@ -21,7 +21,7 @@ export function verdictBadge({ spec, tables }) {
   return badge("verdict", found.word.replace("_", " ") + many + claimed, found.sense);
 }
 
-/** Put the result of a job into its place. */
+/** Show the result of a job. */
 export async function results(place, job, spec, call) {
   const document = await (await call(`/jobs/${job.jobID}/results`)).json();
   const result = known(spec, document.outputs, document.inputs, { artifacts: document.artifacts, job: job.jobID });

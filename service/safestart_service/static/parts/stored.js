@@ -1,4 +1,4 @@
-// Sets of stored jobs on Explore's map: shown only where they are about the operating point in the fields.
+// Sets of stored jobs on Explore's map, shown only if they are for the operating point in the fields.
 
 import { isAbout, textsOf } from "../logic/question.js";
 import { get, root } from "./api.js";
@@ -27,7 +27,7 @@ export async function listStored() {
   }
 }
 
-/** Texts for the fields, so that they ask what the job asked. */
+/** Texts for the fields that repeat the job's question. */
 export const storedInputs = (job) => (job ? textsOf(known.get(job)) : {});
 
 /** The sets of a job. */
@@ -38,7 +38,7 @@ export async function storedSets(job, signal) {
     { title: title(name), colour: colour(name), x: arrays.x_m, y: arrays.y_m, mask: arrays[`${name}_mask`].map((row) => row.map(Number)) }));
 }
 
-/** What to draw of a chosen job, and what to say of it. */
+/** The sets and the text to show for a chosen job. */
 export function storedNote({ state, answer, error, question }, values) {
   if (state === "none") return { sets: [], note: "" };
   if (state === "failed") return { sets: [], note: `Not shown: ${error.message}` };

@@ -1,4 +1,4 @@
-// Explore's verdict: one word that counts, the question it answers, what decided, and the paper's conditions beside it, small.
+// Explore's verdict: one word, its question, the deciding method, and beside it, small, the paper's conditions.
 
 import { DECIDED, proved, verdictWords } from "../logic/question.js";
 import { figure, sentence } from "../logic/words.js";
@@ -7,7 +7,7 @@ import { download, el } from "./page.js";
 
 const margin = (name, value) => el("li", { class: value > 0 ? "in" : "out" }, `${name} `, el("b", {}, `${figure(value, 3)} m`));
 
-/** The cards of one answer: `{ values, start, found, paper }`; `old` where the inputs have changed since. */
+/** The cards of one answer: `{ values, start, found, paper }`; `old` if the inputs have changed since. */
 export function verdict({ values, start, found, paper }, old) {
   const word = found.verdict.replace("_", " ");
   const proof = found.proof_url && !old
@@ -25,7 +25,7 @@ export function verdict({ values, start, found, paper }, old) {
   ];
 }
 
-/** Members of an undecided family that were decided: why there is no verdict for all. */
+/** Decided members of an undecided family, which show why there is no verdict for all. */
 function members(examples) {
   if (!examples?.length) return null;
   return el("ul", { class: "members" }, ...examples.map((one) => el("li", {},

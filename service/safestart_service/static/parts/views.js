@@ -1,4 +1,4 @@
-// The kinds of views by which a process's description has its outputs shown. Each makes elements; some are drawn when these are on the page.
+// The kinds of views that a process's description names for its outputs. Each makes elements; some are drawn once these are on the page.
 
 import { exploreAddress, findings } from "../logic/outcome.js";
 import { wilson } from "../logic/statistics.js";
@@ -13,7 +13,7 @@ const MOST_ROWS = 500;
 const SHORT = 12;
 
 /**
- * Elements and pictures of a result by its views: `{ head, parts, draws }`, `head` being what stands before any picture.
+ * Elements and pictures of a result by its views: `{ head, parts, draws }`; `head` precedes all pictures.
  * `result` is `{ spec, names, outputs, tables, inputs,
  * artifacts, job }`; `draws` are to be called once the parts are on the page.
  */
@@ -23,7 +23,7 @@ export function shown(result) {
   return { head, parts, draws };
 }
 
-/** Whether a view takes much room: the pictures stand before the first one that does. */
+/** Whether a view is large: the pictures precede the first large one. */
 const isLong = ({ kind, table: name }, { tables }) => ["overlay", "flights"].includes(kind) || (kind === "rows" && (tables[name] ?? []).length > SHORT);
 
 const KINDS = {
@@ -81,7 +81,7 @@ const KINDS = {
   },
 };
 
-/** Columns that hold something, as [title, function of the row]; names among their values by their titles. */
+/** Non-empty columns as [title, function of the row]; names among their values are replaced by titles. */
 function used(columns, rows, names) {
   const there = columns.filter(({ path }) => rows.some((row) => row[path] !== null && row[path] !== undefined && row[path] !== ""));
   return there.map(({ title, path }) => [title, (row) => (typeof row[path] === "string" ? names.title(row[path]) : row[path])]);
@@ -97,7 +97,7 @@ export function listed(rows, columns, title, name) {
 
 const explored = (row, inputs) => el("a", { href: `${root}/dashboard${exploreAddress(row, inputs)}` }, "explore");
 
-/** A confusion matrix as a labelled picture: what was claimed against what was so. */
+/** A confusion matrix as a labelled picture: claim against truth. */
 function matrix({ claims, facts, cells }, title, { tp, fp, fn, tn, precision, recall }) {
   const cell = (count, of, kind, text) => {
     const span = wilson(count, of);

@@ -21,7 +21,7 @@ def decide(disturbance: Disturbance, question: Question, starts: Floats, context
     """One answer per start."""
     if not question.plain:
         raise invalid(
-            "disturbance_m_s2", "question stay without a speed limit: the tube knows no other", question.kind
+            "disturbance_m_s2", "question stay without a speed limit: the tube covers no other", question.kind
         )
     answers = []
     for k, start in enumerate(starts):

@@ -1,0 +1,105 @@
+"""Proof documents in space; :mod:`safestart.proofs.space` checks them, sharing no code."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from safestart.attitude.in_lvlh import InLvlh
+from safestart.attitude.spin import Spin
+from safestart.attitude.table import Table
+from safestart.attitude.torque_free import TorqueFree
+from safestart.attitude.turning import SmoothAttitude
+from safestart.errors import invalid
+from safestart.exact.answer import Answer, Verdict
+from safestart.exact.prove import GO_STAND_BACK_M, NO_GO_STAND_BACK_M, multiplier_of
+from safestart.exact.space.question import SpaceQuestion
+from safestart.model.scenario import Floats
+from safestart.proofs.space.statement import SCHEMA
+from safestart.proofs.statement import digest_of
+
+
+def proof_in_space(question: SpaceQuestion, state: Floats, answer: Answer) -> dict[str, Any]:
+    """JSON-able proof of a GO or NO_GO for the start ``state`` (6,); see :func:`safestart.exact.prove.proof_of`.
+
+    Raises ``InvalidInput`` for an UNDECIDED answer.
+    """
+    start = np.asarray(state, dtype=np.float64)
+    document: dict[str, Any] = {
+        "schema": SCHEMA,
+        "verdict": answer.verdict.value,
+        "question": question_of(question),
+        "start": {"frame": "lvlh", "position_m": start[:3].tolist(), "velocity_m_s": start[3:].tolist()},
+    }
+    if answer.verdict is Verdict.GO and answer.thrust is not None:
+        document["margin_m"] = max(answer.lower - GO_STAND_BACK_M, 0.5 * answer.lower)
+        document["thrust_m_s2" if question.thrust.kind == "ball" else "throttle"] = answer.thrust.tolist()
+    elif answer.verdict is Verdict.NO_GO:
+        document["margin_m"] = min(answer.upper + NO_GO_STAND_BACK_M, 0.5 * answer.upper)
+        document["multipliers"] = [multiplier_of(row, question.latest) for row in answer.multipliers]
+    else:
+        raise invalid("answer", "a GO or NO_GO", answer.verdict.value)
+    document["digest"] = digest_of(document)
+    return document
+
+
+def question_of(question: SpaceQuestion) -> dict[str, Any]:
+    """The question as a document states it, in SI units."""
+    orbit, limit = question.orbit, question.thrust
+    thrust: dict[str, Any] = {"kind": limit.kind, "a_max_m_s2": list(limit.a_max)}
+    if limit.kind != "ball":
+        thrust["frame"] = limit.frame
+    if limit.kind == "thrusters":
+        thrust["directions"] = [[float(e) for e in direction] for direction in limit.directions]
+    return {
+        "kind": "stay",
+        "dt_s": float(question.dt),
+        "steps": question.steps,
+        "orbit": {
+            "mean_motion_rad_s": float(orbit.mean_motion),
+            "eccentricity": float(orbit.eccentricity),
+            "true_anomaly_rad": float(orbit.true_anomaly),
+        },
+        "attitude": _attitude(question.attitude),
+        "faces": [
+            {
+                "name": face.name,
+                "normal": [float(e) for e in face.normal],
+                "offset_m": float(face.offset),
+                "frame": face.frame,
+            }
+            for face in question.faces
+        ],
+        "thrust": thrust,
+    }
+
+
+def _attitude(attitude: SmoothAttitude) -> dict[str, Any]:
+    """How the body turns, by what it turns against."""
+    reference = "inertial" if isinstance(attitude, InLvlh) else "lvlh"
+    inner = attitude.inertial if isinstance(attitude, InLvlh) else attitude
+    if isinstance(inner, Spin):
+        return {
+            "kind": "spin",
+            "axis": list(inner.axis),
+            "axis_frame": reference,
+            "rate_rad_s": float(inner.rate),
+            "phase_rad": float(inner.phase),
+        }
+    if isinstance(inner, Table):
+        return {
+            "kind": "table",
+            "times_s": list(inner.times),
+            "attitude_wxyz": [list(entry) for entry in inner.quaternions],
+            "reference": reference,
+        }
+    if isinstance(inner, TorqueFree) and reference == "inertial":
+        return {
+            "kind": "torque_free",
+            "inertia_kg_m2": [list(row) for row in inner.inertia],
+            "attitude_wxyz": list(inner.attitude),
+            "body_rate_rad_s": list(inner.body_rate),
+            "reference": reference,
+        }
+    raise invalid("attitude", "a spin, a torque-free body or a table", type(inner).__name__)

@@ -1,0 +1,1 @@
+"""The start-in-space process: verdicts for any start, attitude, orbit, corridor and set of thrusts."""

@@ -1,0 +1,158 @@
+"""The question of a request and its starts, in SI units; errors use the wire names."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+
+import numpy as np
+
+from safestart.attitude.in_lvlh import InLvlh, torque_free
+from safestart.attitude.spin import Spin
+from safestart.attitude.table import Table
+from safestart.attitude.turning import SmoothAttitude
+from safestart.constraints.thrust_limit import ThrustLimit, ball
+from safestart.errors import InvalidInput, invalid
+from safestart.exact.space.question import Face, SpaceQuestion, five_faces, starts_in_lvlh
+from safestart.model.orbit import KeplerOrbit
+from safestart.model.scenario import Floats
+from safestart.processes.start_in_space.parts import (
+    BallThrust,
+    BoxThrust,
+    EllipticOrbit,
+    Faces,
+    SpinAttitude,
+    TorqueFreeAttitude,
+)
+from safestart.processes.start_in_space.spec import SpaceInputs
+from safestart.processes.wire import DT_S
+
+_ATTITUDE = {
+    "inertia": "inertia_kg_m2",
+    "attitude": "attitude_wxyz",
+    "body_rate": "body_rate_deg_s",
+    "axis": "axis",
+    "rate": "rate_deg_s",
+    "phase": "phase_deg",
+    "times": "times_s",
+}
+_ORBIT = {
+    "eccentricity": "eccentricity",
+    "semi_major_axis": "semi_major_axis_m",
+    "mean_motion": "mean_motion_rad_s",
+}
+_THRUST = {"directions": "directions", "a_max": "a_max_m_s2"}
+
+
+def question_of(inputs: SpaceInputs) -> SpaceQuestion:
+    """The question; raises ``InvalidInput`` for objects beside the short form, and for invalid parts."""
+    for name, short in (
+        ("attitude", "omega_t_deg_s"),
+        ("orbit", "mean_motion_rad_s"),
+        ("thrust", "a_max_m_s2"),
+    ):
+        both = getattr(inputs, name) is not None and getattr(inputs, short) is not None
+        neither = getattr(inputs, name) is None and getattr(inputs, short) is None and name != "orbit"
+        if both or neither:
+            raise invalid(name, f"either {name} or {short}", "both" if both else "neither")
+    with _named("orbit", _ORBIT):
+        orbit = _orbit(inputs)
+    with _named("attitude", _ATTITUDE):
+        attitude = _attitude(inputs, orbit)
+    with _named("thrust", _THRUST):
+        thrust = _thrust(inputs)
+    try:
+        return SpaceQuestion(orbit, attitude, _faces(inputs), thrust, DT_S, round(inputs.horizon_s / DT_S))
+    except InvalidInput as error:
+        places = {
+            "faces": "corridor.faces",
+            "normal": "corridor.faces.normal",
+            "offset": "corridor.faces.offset_m",
+        }
+        field = str(error.field)
+        place = "attitude.times_s" if field == "times" else places.get(field, field)
+        raise invalid(place, str(error.required), error.received) from None
+
+
+def states_of(inputs: SpaceInputs, question: SpaceQuestion) -> Floats:
+    """The starts (S, 6), LVLH, m and m/s."""
+    positions = np.array([start.position_m for start in inputs.starts])
+    velocities = np.array([start.velocity_m_s for start in inputs.starts])
+    if float(np.abs(positions).max()) > 10_000.0 or float(np.abs(velocities).max()) > 1000.0:
+        raise invalid("starts", "positions within 10 000 m and velocities within 1 000 m/s", "more")
+    body = np.array([start.frame == "body" for start in inputs.starts])
+    states: Floats = np.concatenate([positions, velocities], axis=1)
+    if body.any():
+        states[body] = starts_in_lvlh(question.attitude, positions[body], velocities[body])
+    return states
+
+
+@contextmanager
+def _named(part: str, names: Mapping[str, str]) -> Iterator[None]:
+    """Report a part's errors under its wire names."""
+    try:
+        yield
+    except InvalidInput as error:
+        field = str(error.field)
+        raise invalid(f"{part}.{names.get(field, field)}", str(error.required), error.received) from None
+
+
+def _orbit(inputs: SpaceInputs) -> KeplerOrbit:
+    said = inputs.orbit
+    if isinstance(said, EllipticOrbit):
+        return KeplerOrbit.of(said.semi_major_axis_m, said.eccentricity, math.radians(said.true_anomaly_deg))
+    if said is not None:
+        return KeplerOrbit(said.mean_motion_rad_s)
+    return KeplerOrbit(1.1e-3 if inputs.mean_motion_rad_s is None else inputs.mean_motion_rad_s)
+
+
+def _attitude(inputs: SpaceInputs, orbit: KeplerOrbit) -> SmoothAttitude:
+    said = inputs.attitude
+    if said is None:
+        return Spin(math.radians(inputs.omega_t_deg_s or 0.0))
+    made: SmoothAttitude
+    if isinstance(said, SpinAttitude):
+        made = Spin(math.radians(said.rate_deg_s), _three(said.axis), math.radians(said.phase_deg))
+        return InLvlh(made, orbit) if said.axis_frame == "inertial" else made
+    if isinstance(said, TorqueFreeAttitude):
+        rows = said.inertia_kg_m2
+        return torque_free(
+            (_three(rows[0]), _three(rows[1]), _three(rows[2])),
+            _four(said.attitude_wxyz),
+            _three([math.radians(e) for e in said.body_rate_deg_s]),
+            said.reference,
+            orbit,
+        )
+    made = Table(tuple(said.times_s), tuple(_four(entry) for entry in said.attitude_wxyz))
+    return InLvlh(made, orbit) if said.reference == "inertial" else made
+
+
+def _faces(inputs: SpaceInputs) -> tuple[Face, ...]:
+    said = inputs.corridor
+    if isinstance(said, Faces):
+        return tuple(Face(e.name, _three(e.normal), e.offset_m, e.frame) for e in said.faces)
+    with _named("corridor", {}):
+        return five_faces(said.shape(), _three(said.axis))
+
+
+def _thrust(inputs: SpaceInputs) -> ThrustLimit:
+    said = inputs.thrust
+    if said is None:
+        return ball(inputs.a_max_m_s2 or 0.0)
+    if isinstance(said, BallThrust):
+        return ball(said.a_max_m_s2)
+    if isinstance(said, BoxThrust):
+        return ThrustLimit("box", tuple(said.a_max_m_s2), frame=said.frame)
+    directions = tuple(_three(direction) for direction in said.directions)
+    return ThrustLimit("thrusters", tuple(said.a_max_m_s2), directions, said.frame)
+
+
+def _three(values: Sequence[float]) -> tuple[float, float, float]:
+    x, y, z = (float(e) for e in values)
+    return x, y, z
+
+
+def _four(values: Sequence[float]) -> tuple[float, float, float, float]:
+    s, x, y, z = (float(e) for e in values)
+    return s, x, y, z

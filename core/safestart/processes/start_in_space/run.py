@@ -1,0 +1,64 @@
+"""Run start-in-space: one cone program per start."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from safestart.errors import invalid
+from safestart.exact.answer import Answer, Verdict
+from safestart.exact.space.decide import decide_in_space
+from safestart.exact.space.prove import proof_in_space
+from safestart.exact.space.question import SpaceQuestion
+from safestart.exact.space.watch import space_watch_of
+from safestart.processes.base import ProcessOutput
+from safestart.processes.start_in_space.question import question_of, states_of
+from safestart.processes.start_in_space.spec import MOST_PROOFS, SpaceInputs
+from safestart.processes.wire import finite
+from safestart.runtime.progress import Context
+
+
+def run(inputs: SpaceInputs, context: Context) -> ProcessOutput:
+    """Answer for every start."""
+    if inputs.proofs and len(inputs.starts) > MOST_PROOFS:
+        raise invalid("proofs", f"at most {MOST_PROOFS} starts", len(inputs.starts))
+    question = question_of(inputs)
+    states = states_of(inputs, question)
+    watch = space_watch_of(question)
+    answers = []
+    for k, state in enumerate(states):
+        answers.append(decide_in_space(question, state))
+        context.step(k + 1, len(states), "starts")
+    distances = (watch.offsets - states[:, :3] @ watch.normals.T).tolist()
+    proof: list[dict[str, Any] | None] | None = None
+    if inputs.proofs:
+        proof = [
+            None if answer.verdict is Verdict.UNDECIDED else proof_in_space(question, state, answer)
+            for state, answer in zip(states, answers, strict=True)
+        ]
+    return ProcessOutput(
+        {
+            "method": inputs.method,
+            "question": "stay",
+            "faces": list(watch.names),
+            "verdict": [answer.verdict.value for answer in answers],
+            "margin_m": [finite(answer.margin_m) for answer in answers],
+            "violated_faces": [
+                [name for name, distance in zip(watch.names, row, strict=True) if distance < 0.0]
+                for row in distances
+            ],
+            "position_m": states[:, :3].tolist(),
+            "velocity_m_s": states[:, 3:].tolist(),
+            "reason": [_sentence(question, answer) for answer in answers],
+            "proof": proof,
+        }
+    )
+
+
+def _sentence(question: SpaceQuestion, answer: Answer) -> str:
+    """The verdict in words."""
+    span = question.horizon
+    if answer.verdict is Verdict.UNDECIDED:
+        return f"undecided: {answer.reason}; margin between {answer.lower:.3g} and {answer.upper:.3g} m"
+    if answer.verdict is Verdict.GO:
+        return f"a thrust history keeps {answer.lower:.2f} m to every face for {span:g} s"
+    return f"no thrust history stays for {span:g} s: each is at some time at least {-answer.upper:.2f} m outside a face"

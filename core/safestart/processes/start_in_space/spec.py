@@ -1,0 +1,123 @@
+"""start-in-space: may a chaser that arrives like this start its approach to a target that tumbles like that?"""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from pydantic import Field
+
+from safestart.model.scenario import MAX_ACCELERATION, MAX_MEAN_MOTION, MIN_ACCELERATION
+from safestart.processes.base import ProcessSpec, Table, WireModel
+from safestart.processes.costs import FIRST_S, program_s
+from safestart.processes.start_in_space.parts import (
+    AttitudeInput,
+    CorridorChoice,
+    FiveFaces,
+    OrbitInput,
+    SpaceStart,
+    ThrustInput,
+)
+from safestart.processes.views import Column, Facts, Findings
+from safestart.processes.wire import Horizon
+
+MOST_STARTS = 1000
+MOST_PROOFS = 100
+
+
+class SpaceInputs(WireModel):
+    """One question in space and up to 1 000 starts; numbers of the short form stand for the objects left out."""
+
+    starts: list[SpaceStart] = Field(min_length=1, max_length=MOST_STARTS, description="States at t = 0.")
+    attitude: AttitudeInput | None = Field(None, description="How the target turns; absent: omega_t_deg_s.")
+    orbit: OrbitInput | None = Field(None, description="The target's orbit; absent: mean_motion_rad_s.")
+    corridor: CorridorChoice = Field(
+        default_factory=FiveFaces, description="What the chaser must stay inside of."
+    )
+    thrust: ThrustInput | None = Field(
+        None, description="What thrust it can hold over 2 s; absent: a_max_m_s2."
+    )
+    omega_t_deg_s: float | None = Field(
+        None,
+        ge=-60,
+        le=60,
+        description="Spin about LVLH z from the axes of LVLH on, deg/s; instead of attitude.",
+    )
+    a_max_m_s2: float | None = Field(
+        None,
+        ge=MIN_ACCELERATION,
+        le=MAX_ACCELERATION,
+        description="Ball of thrusts, m/s^2; instead of thrust.",
+    )
+    mean_motion_rad_s: float | None = Field(
+        None, ge=0, le=MAX_MEAN_MOTION, description="Circular orbit, rad/s; instead of orbit. Default 1.1e-3."
+    )
+    method: Literal["exact", "auto"] = Field(
+        "exact", description="Cone programs, proved either way; both the same."
+    )
+    horizon_s: Horizon = Field(60.0, description="How long to stay, s.")
+    proofs: bool = Field(
+        False, description="Return proof documents for `safestart verify`; at most 100 starts."
+    )
+
+
+class SpaceOutputs(WireModel):
+    """Arrays over the starts, in their order; margins in metres."""
+
+    method: Literal["exact", "auto"]
+    question: Literal["stay"]
+    faces: list[str] = Field(description="Names of the faces.")
+    verdict: list[Literal["GO", "NO_GO", "UNDECIDED"]]
+    margin_m: list[float | None] = Field(
+        description="Proved bound on the margin (distance to every face), m: from below for GO, from above for NO_GO."
+    )
+    violated_faces: list[list[str]] = Field(description="Faces that the start itself is outside of.")
+    position_m: list[list[float]] = Field(description="Starts, LVLH, m.")
+    velocity_m_s: list[list[float]] = Field(description="Starts, LVLH, m/s.")
+    reason: list[str] = Field(description="The verdict in a sentence.")
+    proof: list[dict[str, Any] | None] | None = Field(
+        None, description="Proof documents for `safestart verify`, when asked for; null for UNDECIDED."
+    )
+
+
+SPEC = ProcessSpec(
+    id="start-in-space",
+    title="Go/no-go for any start, tumble, orbit and corridor",
+    description=(
+        "Whether any thrust history keeps the chaser inside the faces at all times of the horizon: proved either way "
+        "for any start, a spin, a torque-free body or a table of attitudes, a circular or an elliptic orbit, faces in "
+        "the body frame or LVLH, and thrust from a ball, a box or thrusters. The motion is linear in the distance."
+    ),
+    inputs=SpaceInputs,
+    outputs=SpaceOutputs,
+    run="safestart.processes.start_in_space.run:run",
+    light=True,
+    cost=lambda inputs: FIRST_S + 3.0 * program_s(inputs.horizon_s) * len(inputs.starts),
+    states="starts",
+    tables=(
+        Table("starts", ("verdict", "margin_m", "position_m", "velocity_m_s", "violated_faces", "reason")),
+    ),
+    views=(
+        Findings(
+            "Verdicts",
+            "starts",
+            word="verdict",
+            columns=(
+                Column("margin [m]", "margin_m"),
+                Column("why", "reason"),
+                Column("faces violated at the start", "violated_faces"),
+            ),
+        ),
+        Facts((Column("Method", "method"), Column("Question", "question"), Column("Faces", "faces"))),
+    ),
+    keywords=("certificate", "go/no-go", "torque-free", "elliptic orbit"),
+    example={
+        "starts": [{"position_m": [2, 25, 1], "velocity_m_s": [0, 0, 0], "frame": "body"}],
+        "attitude": {
+            "kind": "torque_free",
+            "inertia_kg_m2": [[17023, 0, 0], [0, 124826, 0], [0, 0, 129112]],
+            "body_rate_deg_s": [0.3, 0.5, -2.0],
+        },
+        "orbit": {"mean_motion_rad_s": 0.00105},
+        "thrust": {"kind": "ball", "a_max_m_s2": 0.1},
+    },
+)

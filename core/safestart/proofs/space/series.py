@@ -1,0 +1,82 @@
+"""Taylor series of polynomial differential equations in ball arithmetic, with the rest enclosed.
+
+Time within a piece is x in [0, 1]. A series is a polynomial with ball coefficients that contains the function at every
+x: what is cut off lies in the ball of its constant coefficient.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from flint import arb, arb_poly, fmpq
+
+from safestart.proofs.strict import ProofRejected
+
+Series = list[arb_poly]
+_MOST_PIECES = 100_000
+
+
+def picard(start: Sequence[arb], rates: Callable[[Series], Series], length: arb, order: int) -> Series:
+    """Taylor polynomials of y' = rates(y), y = ``start`` at x = 0, over ``length`` s; every round gains an order."""
+    found = [arb_poly([value]) for value in start]
+    for k in range(1, order + 1):
+        slopes = rates(found)
+        found = [
+            (length * slope.truncate(k)).integral() + value
+            for slope, value in zip(slopes, start, strict=True)
+        ]
+    return found
+
+
+def rest(size: arb, ratio: arb, order: int) -> arb:
+    """A ball around 0 that holds sum_(k > order) c_k x^k, |x| <= 1, where |c_k| <= ``size`` ``ratio``^k."""
+    if not ratio < arb(1) / 2:
+        raise ProofRejected("a step in time is too long for its series")
+    return arb(0, (2 * size * ratio ** (order + 1)).abs_upper())
+
+
+def folded(series: arb_poly, order: int) -> arb_poly:
+    """The same with every term beyond ``order`` taken into the constant's ball."""
+    if series.degree() <= order:
+        return series
+    over = sum((c.abs_upper() for c in series.coeffs()[order + 1 :]), arb(0))
+    return series.truncate(order + 1) + arb(0, over.abs_upper())
+
+
+def between(series: arb_poly, begin: arb, width: arb) -> arb_poly:
+    """The series of x in begin + width [0, 1]."""
+    return series(arb_poly([begin, width]))
+
+
+def require_positive(series: arb_poly, name: str, begin: fmpq, length: fmpq, budget: list[int]) -> None:
+    """Prove that a series is >= 0 on [0, 1]; raise :class:`ProofRejected` where it is not, or not shown in time.
+
+    ``budget`` holds the number of pieces that are left. Around the middle of a piece the Bernstein coefficients of the
+    cubic bound it, and the sizes of the other coefficients what is left.
+    """
+    work = [(fmpq(1, 2), fmpq(1, 2))]
+    while work:
+        centre, half = work.pop()
+        budget[0] -= 1
+        a = between(series, arb(centre), arb(half)).coeffs()
+        a0, a1, a2, a3 = [*a, *[arb(0)] * 4][:4]
+        level = a0 - sum((c.abs_upper() for c in a[4:]), arb(0))
+        if a0 < 0 or budget[0] < 0:
+            at = begin + length * centre
+            raise ProofRejected(
+                f"distance to {name} >= margin_m at t = {int(at.p) / int(at.q):.9g} s: short by {-float(a0):.9g} m"
+                + ("" if a0 < 0 else f", not settled after {_MOST_PIECES} pieces")
+            )
+        bends = (a2 - a1 - a3, a3 - (a1 + a2) / 3, (a1 - a2) / 3 - a3, a1 + a2 + a3)
+        if not all(level + bend >= 0 for bend in bends):
+            work += [(centre - half / 2, half / 2), (centre + half / 2, half / 2)]
+
+
+def fresh_budget() -> list[int]:
+    """The number of pieces that one document may take."""
+    return [_MOST_PIECES]
+
+
+def pieces_of(budget: list[int]) -> int:
+    """How many were used."""
+    return _MOST_PIECES - budget[0]

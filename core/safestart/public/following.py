@@ -1,0 +1,52 @@
+"""Follow a job to its end, with a progress bar."""
+
+from __future__ import annotations
+
+import time
+from contextlib import AbstractContextManager, nullcontext
+from typing import Any
+
+from safestart.errors import JobFailed, Unavailable
+from safestart.public.wire import Wire
+from safestart.runtime.progress import Context
+
+_WAIT_S = 10
+_LEAST_S = 0.2
+
+
+def followed(wire: Wire, place: str, *, progress: bool, limit_s: float | None) -> str:
+    """Wait for the job at ``place`` to succeed; returns its process id.
+
+    Raises ``JobFailed`` if it failed or was dismissed, ``Unavailable`` after ``limit_s`` seconds.
+    """
+    start = time.monotonic()
+    status = wire.get(place)
+    with _shown(status["processID"], progress=progress) as context:
+        while status["status"] not in ("successful", "failed", "dismissed"):
+            context.step(status.get("progress") or 0, 100, _said(status))
+            left = float("inf") if limit_s is None else limit_s - (time.monotonic() - start)
+            if left <= 0.0:
+                raise Unavailable(
+                    f"{place}: required the end of the job within {limit_s:g} s: {_said(status)}"
+                )
+            time.sleep(min(_LEAST_S, left))
+            most = 1 if progress else _WAIT_S
+            status = wire.get(f"{place}?wait={most if left > most else 0}")
+    if status["status"] != "successful":
+        problem = status.get("problem") or {}
+        raise JobFailed(f"{place} {status['status']}: {problem.get('detail') or status.get('message')}")
+    return str(status["processID"])
+
+
+def _said(status: dict[str, Any]) -> str:
+    return str(status.get("reason") or status.get("message") or status["status"])
+
+
+def _shown(title: str, *, progress: bool) -> AbstractContextManager[Context]:
+    if not progress:
+        return nullcontext(Context())
+    from rich.console import Console
+
+    from safestart.runtime.reporting import reporting_on
+
+    return reporting_on(Console(stderr=True, highlight=False), title)

@@ -1,0 +1,167 @@
+"""The question in space as a process: its parts, the short form, its refusals, its proofs."""
+
+from __future__ import annotations
+
+import copy
+import json
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from safestart.attitude.in_lvlh import InLvlh
+from safestart.attitude.spin import Spin
+from safestart.attitude.torque_free import TorqueFree
+from safestart.errors import InvalidInput
+from safestart.processes.execute import execute
+from safestart.processes.registry import process
+from safestart.processes.start_in_space.question import question_of, states_of
+from safestart.proofs.checker import check
+from safestart.runtime.progress import Context
+
+SPEC = process("start-in-space")
+SHORT = {"starts": [{"position_m": [1, 30, 0.5]}], "omega_t_deg_s": 3, "a_max_m_s2": 0.1}
+BODY = [[120, 2, -1], [2, 100, 3], [-1, 3, 60]]
+
+
+def asked(**changes: Any) -> Any:
+    return SPEC.parse(copy.deepcopy(SHORT) | changes)
+
+
+def answered(**changes: Any) -> dict[str, Any]:
+    outputs: dict[str, Any] = execute(SPEC.id, copy.deepcopy(SHORT) | changes, Context()).document["outputs"]
+    return outputs
+
+
+def test_the_short_form_is_go_no_go_s_answer() -> None:
+    states = [{"x_m": 1, "y_m": 30, "z_m": 0.5}, {"x_m": 1, "y_m": 148, "z_m": 0.5}]
+    point = {"omega_t_deg_s": 3, "a_max_m_s2": 0.1}
+    old = execute("go-no-go", point | {"states": states, "method": "exact"}, Context()).document["outputs"]
+    starts = [{"position_m": [s["x_m"], s["y_m"], s["z_m"]]} for s in states]
+    new = execute(SPEC.id, point | {"starts": starts}, Context()).document["outputs"]
+    assert new["verdict"] == old["verdict"] == ["GO", "NO_GO"]
+    np.testing.assert_allclose(new["margin_m"], old["margin_m"], atol=2e-4)
+    assert new["faces"] == old["faces"]
+
+
+def test_proofs_verify() -> None:
+    found = answered(
+        starts=[
+            {"position_m": [1, 30, 0.5], "velocity_m_s": [0, -0.1, 0], "frame": "body"},
+            {"position_m": [1, 9, 20]},
+        ],
+        omega_t_deg_s=None,
+        attitude={"kind": "torque_free", "inertia_kg_m2": BODY, "body_rate_deg_s": [1, -1, 2]},
+        orbit={"semi_major_axis_m": 2.4e7, "eccentricity": 0.7, "true_anomaly_deg": 10},
+        proofs=True,
+    )
+    assert found["verdict"][1] == "NO_GO"
+    assert found["violated_faces"][1] == ["top"]
+    for verdict, margin, document in zip(found["verdict"], found["margin_m"], found["proof"], strict=True):
+        verified = check(json.loads(json.dumps(document)))
+        assert verified.verdict == verdict
+        assert abs(verified.margin_m - margin) < 1e-6
+
+
+def test_parts_are_what_they_say() -> None:
+    spin = {"kind": "spin", "axis": [1, 2, 2], "axis_frame": "inertial", "rate_deg_s": -3, "phase_deg": 90}
+    question = question_of(asked(omega_t_deg_s=None, attitude=spin, mean_motion_rad_s=1e-3))
+    assert isinstance(question.attitude, InLvlh)
+    assert question.attitude.inertial == Spin(math.radians(-3), (1 / 3, 2 / 3, 2 / 3), math.pi / 2)
+    assert question.orbit.mean_motion == 1e-3
+    free = {"kind": "torque_free", "inertia_kg_m2": BODY, "body_rate_deg_s": [0, 0, 2], "reference": "lvlh"}
+    seen = question_of(asked(omega_t_deg_s=None, attitude=free)).attitude
+    assert isinstance(seen, InLvlh)
+    assert isinstance(seen.inertial, TorqueFree)
+    np.testing.assert_allclose(seen.angular_velocity(np.zeros(1))[0], [0, 0, math.radians(2)], atol=1e-15)
+    axis = question_of(asked(corridor={"axis": [0, 0, -2], "r_h_m": 1.0}))
+    assert axis.faces[0].name == "hold_plane"
+    np.testing.assert_allclose(axis.faces[0].normal, [0, 0, 1], atol=1e-15)
+    assert axis.faces[0].offset == -1.0
+
+
+def test_starts_in_the_body_frame_are_turned() -> None:
+    """At rest against the turning body: v = omega x r in LVLH."""
+    inputs = asked(starts=[{"position_m": [1, 30, 0.5], "frame": "body"}])
+    state = states_of(inputs, question_of(inputs))[0]
+    rate = math.radians(3)
+    np.testing.assert_allclose(state, [1, 30, 0.5, -30 * rate, rate, 0], atol=1e-14)
+
+
+def test_faces_of_both_frames_and_thrusters() -> None:
+    cone = {
+        "faces": [
+            {"name": f"f{k}", "normal": n, "offset_m": 2, "frame": f}
+            for k, (n, f) in enumerate(
+                (([0, -1, 0], "body"), ([1, -1, 0], "body"), ([-1, -1, 0], "lvlh"), ([0, 1, 0], "lvlh"))
+            )
+        ]
+    }
+    cone["faces"][3]["offset_m"] = 60
+    arms = {
+        "kind": "thrusters",
+        "directions": [[1, 1, 1], [-1, -1, 1], [-1, 1, -1], [1, -1, -1]],
+        "a_max_m_s2": [0.1, 0.1, 0.1, 0.1],
+        "frame": "body",
+    }
+    found = answered(corridor=cone, thrust=arms, a_max_m_s2=None, proofs=True)
+    assert check(json.loads(json.dumps(found["proof"][0]))).verdict == found["verdict"][0]
+    assert found["faces"] == ["f0", "f1", "f2", "f3"]
+
+
+TABLE = {"kind": "table", "times_s": [0, 10], "attitude_wxyz": [[1, 0, 0, 0], [1, 0, 0, 0]]}
+FREE = {"kind": "torque_free", "inertia_kg_m2": BODY, "body_rate_deg_s": [1, 0, 0]}
+
+
+@pytest.mark.parametrize(
+    ("changes", "field"),
+    [
+        ({"attitude": TABLE}, "attitude"),
+        ({"omega_t_deg_s": None}, "attitude"),
+        ({"a_max_m_s2": None}, "thrust"),
+        ({"omega_t_deg_s": None, "attitude": TABLE}, "attitude.times_s"),
+        (
+            {"omega_t_deg_s": None, "attitude": TABLE | {"attitude_wxyz": [[1, 0, 0, 0], [0, 0, 0, 0]]}},
+            "attitude.attitude_wxyz",
+        ),
+        (
+            {"omega_t_deg_s": None, "attitude": FREE | {"inertia_kg_m2": [[1, 0, 0], [0, 1, 0], [0, 0, 3]]}},
+            "attitude.inertia_kg_m2",
+        ),
+        (
+            {
+                "omega_t_deg_s": None,
+                "attitude": FREE | {"inertia_kg_m2": [[1, 0.1, 0], [0, 1, 0], [0, 0, 1]]},
+            },
+            "attitude.inertia_kg_m2",
+        ),
+        (
+            {"omega_t_deg_s": None, "attitude": FREE | {"body_rate_deg_s": [61, 0, 0]}},
+            "attitude.body_rate_deg_s",
+        ),
+        (
+            {"omega_t_deg_s": None, "attitude": {"kind": "spin", "axis": [0, 0, 0], "rate_deg_s": 1}},
+            "attitude.axis",
+        ),
+        ({"orbit": {"semi_major_axis_m": 7.0e6, "eccentricity": 0.5}}, "orbit.eccentricity"),
+        ({"orbit": {"semi_major_axis_m": 7.0e7, "eccentricity": 0.85}}, "orbit.elliptic.eccentricity"),
+        ({"corridor": {"faces": []}}, "corridor.faces.faces"),
+        ({"corridor": {"faces": [{"name": "a", "normal": [0, 0, 1], "offset_m": 9}] * 2}}, "corridor.faces"),
+        ({"corridor": {"axis": [0, 0, 0]}}, "corridor.axis"),
+        (
+            {
+                "a_max_m_s2": None,
+                "thrust": {"kind": "thrusters", "directions": [[1, 0, 0]] * 3, "a_max_m_s2": [1, 1, 1]},
+            },
+            "thrust.directions",
+        ),
+        ({"a_max_m_s2": None, "thrust": {"kind": "box", "a_max_m_s2": [0, 0, 0]}}, "thrust.a_max_m_s2"),
+        ({"starts": [{"position_m": [1, 2]}]}, "starts.0.position_m"),
+        ({"starts": [{"position_m": [1, 20_000, 0]}]}, "starts"),
+    ],
+)
+def test_refusals_name_the_field(changes: dict[str, Any], field: str) -> None:
+    with pytest.raises(InvalidInput) as refused:
+        answered(**changes)
+    assert refused.value.field == field
