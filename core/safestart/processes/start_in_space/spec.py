@@ -8,6 +8,7 @@ from pydantic import Field
 
 from safestart.model.scenario import MAX_ACCELERATION, MAX_MEAN_MOTION, MIN_ACCELERATION
 from safestart.processes.base import ProcessSpec, Table, WireModel
+from safestart.processes.costs import FIRST_S, program_s
 from safestart.processes.start_in_space.parts import (
     AttitudeInput,
     CorridorChoice,
@@ -94,6 +95,7 @@ SPEC = ProcessSpec(
     outputs=SpaceOutputs,
     run="safestart.processes.start_in_space.run:run",
     light=True,
+    cost=lambda inputs: FIRST_S + 3.0 * program_s(inputs.horizon_s) * len(inputs.starts),
     states="starts",
     tables=(
         Table(
