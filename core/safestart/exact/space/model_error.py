@@ -1,7 +1,7 @@
 """About how far a flight of the linear model is from one of two bodies with J2: an estimate, not a bound.
 
 Over T seconds about T^2 / 2 times what the linear equations leave out: J2's gradient, 6 J2 (R_E / R)^2 mu / R^3 r,
-and the second order of the point mass's, 3 mu r^2 / R^4, both at the radius R of the perigee (``benchmarks.model_error``).
+and the second order of the point mass, 3 mu r^2 / R^4, both at the perigee (``benchmarks.model_error`` measures it).
 """
 
 from __future__ import annotations
