@@ -11,7 +11,7 @@ ClosedForm = Literal["certified", "paper"]
 
 
 def go_of(name: ClosedForm, scenario: Scenario, points: Floats, rest: Rest = Rest.LVLH) -> Bools:
-    """Which starts at rest (..., 2) or (..., 3), body frame, m, the closed form says GO to, (...)."""
+    """Whether the closed form says GO to starts at rest (..., 2) or (..., 3), body frame, m; (...)."""
     if name == "paper":
         return paper.certify(scenario, points, rest).safe
     return certified.certify(scenario, points, rest).go

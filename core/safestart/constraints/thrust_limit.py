@@ -1,7 +1,7 @@
-"""What thrusts a chaser can hold over an interval: a ball, a box, or what a set of thrusters gives.
+"""The thrusts that a chaser can hold over an interval: a ball, a box, or the hull of a set of thrusters.
 
 Every set is a linear image u = P w of a unit set (:mod:`safestart.optim.thrust_shapes`): ball, cube or simplex. Axes
-are those of LVLH, or of the body as it is turned at the beginning of the interval; the thrust itself is held in LVLH.
+are those of LVLH, or of the body at the beginning of the interval; the thrust itself is held in LVLH.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ MOST_THRUSTERS = 32
 class ThrustLimit:
     """``kind`` "ball" (``a_max``: one number), "box" (three half-widths) or "thrusters" (one for each), m/s^2.
 
-    Thrusters may be throttled and used together as far as their shares sum to 1: the hull of their thrusts and 0.
+    Thrusters may be throttled and combined with shares of sum at most 1: the hull of their thrusts and 0.
     ``directions`` are scaled to unit length. Raises ``InvalidInput`` for numbers out of range and for thrusters that do
     not span space.
     """
@@ -62,7 +62,7 @@ class ThrustLimit:
 
     @property
     def channels(self) -> int:
-        """Numbers that make one thrust."""
+        """The number of components of one point."""
         return len(self.directions) if self.kind == "thrusters" else 3
 
     @property
@@ -81,5 +81,5 @@ class ThrustLimit:
 
 
 def ball(a_max: float) -> ThrustLimit:
-    """Every direction alike, ``a_max`` m/s^2."""
+    """The same limit in every direction, ``a_max`` m/s^2."""
     return ThrustLimit("ball", (a_max,))

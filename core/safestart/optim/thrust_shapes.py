@@ -1,7 +1,7 @@
 """Unit sets of thrusts, one point of which is chosen in every interval: ball, cube, simplex.
 
-A thrust is a linear map of the point: a ball's radius times it, a box's half-widths times it, the pushes of thrusters
-summed by it. A program knows the points as its variable ``thrust``, all channels of one interval after the other.
+A thrust is a linear map of the point: a ball's radius times it, a box's half-widths times it, or the sum of thrusters
+weighted by it. A program has the points as its variable ``thrust``, ordered by interval, then channel.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from safestart.optim.thrust_ball import INSIDE, bound, into_balls, keep_in_balls
 
 
 class UnitSet(Protocol):
-    """What points w (channels,) may be chosen."""
+    """The set of admissible points w (channels,)."""
 
     def keep(self, program: ConeProgram, count: int, channels: int) -> None:
         """Blocks of the program that keep ``count`` points in the set."""
         ...
 
     def repaired(self, w: Floats) -> Floats:
-        """Points (N, channels), those that the solver left a hair outside moved back in."""
+        """Points (N, channels); those slightly outside are moved back in."""
         ...
 
     def support(self, pulls: Floats) -> Floats:
@@ -87,7 +87,7 @@ class Cube(_Polytope):
 
 
 class Simplex(_Polytope):
-    """w_i >= 0, together at most 1."""
+    """w_i >= 0 with sum at most 1."""
 
     def keep(self, program: ConeProgram, count: int, channels: int) -> None:
         """See :class:`UnitSet`."""

@@ -103,7 +103,7 @@ def _require_same(session: Session, bundle: Bundle) -> None:
     )
     if not same:
         raise Conflict(
-            f"job {bundle.job['id']} exists already with another result; nothing was imported",
+            f"job {bundle.job['id']} exists already and has another result; nothing was imported",
             field="jobID",
             required="a new job, or the same one",
             received=bundle.job["id"],

@@ -1,1 +1,1 @@
-"""Answers about the tracking MPC of paper 002: what any impulse history can do, regions, flights, certificates."""
+"""Answers about the tracking MPC of paper 002: possible impulse histories, regions, flights, certificates."""

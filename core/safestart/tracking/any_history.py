@@ -1,4 +1,4 @@
-"""What any impulse history can do: is there one from a start that keeps a chaser in the turning corridor at all nodes?
+"""Does any impulse history from a start keep the chaser in the turning corridor at all nodes?
 
 Positions at nodes 0 and 1 follow from the start; those at the nodes k >= 2 are free, for u(k) = P r(k+2) + Q r(k+1) +
 R r(k). So the positions in the body, p_k = C(k) r_k, are the variables, and every row touches three neighbours at most:
@@ -21,7 +21,7 @@ from safestart.control.tracking_mpc.tuning import DockingCorridor
 from safestart.model.scenario import Floats
 
 FEASIBLE = 1e-7
-"""A history that oversteps the corridor by less, m, counts as one that does not: the solver's own tolerance."""
+"""A smaller violation of the corridor, m, counts as none: the solver's own tolerance."""
 _FARTHEST = 1e4
 """Positions in the body are within this, m; the proof of infeasibility multiplies its residual by it."""
 
@@ -30,7 +30,7 @@ _FARTHEST = 1e4
 class Answer:
     """``feasible``: some history keeps every row to 1e-7 m. ``violation``, m: the least possible in the corridor.
 
-    ``proved``: the dual's rows alone, in floating point with their residual counted, show that no history exists.
+    ``proved``: the dual, in floating point with its residual included, shows that no history exists.
     ``positions`` (K + 1, 3), body, of the best history found.
     """
 
@@ -94,7 +94,7 @@ class AnyHistory:
     def extent(self, base: Floats, along: Floats) -> tuple[float, float] | None:
         """The interval of s for which base + s along, LVLH states (6,), is a start of a history; None: there is none.
 
-        Each end is off by what the solver leaves, about 1e-8 of the set's size.
+        Each end has the solver's error, about 1e-8 of the set's size.
         """
         column, bound = self._given @ along, self._bound - self._given @ base
         ends = []

@@ -1,6 +1,6 @@
-"""The safe-start question of the tracking MPC: which starts at rest it can take, and which any history can bring in.
+"""The safe-start question of the tracking MPC: the starts at rest that it can fly, and those that any history can.
 
-Starts stand in the plane z = 0 of the body at t = 0: rows y = 0.25 + 0.5 i, x = +-(0.25 + 0.5 j) inside the corridor,
+Starts lie in the plane z = 0 of the body at t = 0: rows y = 0.25 + 0.5 i, x = +-(0.25 + 0.5 j) inside the corridor,
 at rest in LVLH. A row's starts of all histories are an interval: two programs with x as a variable.
 """
 

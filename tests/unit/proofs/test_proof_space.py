@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from flint import arb, fmpq
 
+from benchmarks.peers.space_cases import drawn
 from safestart.attitude.in_lvlh import torque_free
 from safestart.attitude.spin import Spin
 from safestart.constraints.thrust_limit import ThrustLimit, ball
@@ -30,7 +31,6 @@ from safestart.proofs.space.orbit import Orbit
 from safestart.proofs.space.statement import read
 from safestart.proofs.strict import ProofRejected
 from safestart.runtime.precision import precise
-from tests.unit.exact.space_cases import drawn
 from tests.unit.proofs.forgery import assert_every_digit_counts, assert_refused, changed, sealed
 
 Document = dict[str, Any]

@@ -1,9 +1,9 @@
 """Quadratic programs of a dozen variables by a dual active-set method, compiled.
 
 Minimise z' H z / 2 + g' z subject to low <= rows' z <= high. Goldfarb and Idnani (Mathematical Programming 27, 1983):
-from the free minimum on, the most violated row enters and rows whose multiplier would turn negative leave. The method
-ends with the minimum, or with a row whose normal is a nonpositive combination of the active ones: a proof of
-infeasibility. Both sides of a row are one row, and all values are found in one pass over contiguous memory.
+starting at the free minimum, the most violated row enters, and rows whose multiplier would turn negative leave. The
+method ends with the minimum, or with a row whose normal is a nonpositive combination of the active ones: a proof of
+infeasibility. Both sides of a row count as one row, and one pass over contiguous memory gives all values.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from safestart.runtime.kernels import compiled
 SOLVED, INFEASIBLE, STALLED = 0, 1, 2
 
 VIOLATION = 1e-11
-"""Rows count as satisfied up to this, in their own units."""
+"""Rows count as satisfied up to this violation, in their own units."""
 DEPENDENT = 1e-20
-"""A normal is in the span of the active ones where less than this share of its squared length lies outside of it."""
+"""A normal counts as in the span of the active ones if less than this share of its squared length is outside."""
 
 
 @compiled(error_model="numpy", fastmath={"contract", "reassoc", "nsz"})
@@ -40,7 +40,7 @@ def inner(left, right):  # type: ignore[no-untyped-def]
 
 @compiled(error_model="numpy")
 def inverse_factor(hessian, out):  # type: ignore[no-untyped-def]
-    """Write L^-1 (n, n) of H = L L' into ``out``; False where H is not positive definite."""
+    """Write L^-1 (n, n) of H = L L' into ``out``; False if H is not positive definite."""
     n = len(hessian)
     lower = np.zeros((n, n))
     for j in range(n):
@@ -75,7 +75,7 @@ def minimise(factor, gradient, rows, low, high, z, dual):  # type: ignore[no-unt
 
     ``factor`` (n, n) is L^-1, H = L L', and is overwritten; ``gradient`` (n,), ``rows`` (n, R), ``low`` and ``high``
     (R,), infinite where there is no bound. ``z`` (n,) becomes the minimum. ``dual`` (R,) becomes the multipliers,
-    positive at ``high``, negative at ``low``: H z + g + rows dual = 0. Where the status is INFEASIBLE, it is a proof:
+    positive at ``high``, negative at ``low``: H z + g + rows dual = 0. With the status INFEASIBLE it is a proof:
     rows dual = 0 and sum of max(dual, 0) high + min(dual, 0) low < 0.
     """
     n, count = rows.shape

@@ -1,11 +1,11 @@
-"""The program of one step from the attitudes ahead, compiled: rows, Hessian, and what the start adds to them.
+"""The program of one step from the attitudes ahead, compiled: rows, Hessian, and the effect of the start.
 
 Variables are z = (w_0 .. w_{Nc-1}, theta): deviations of the free inputs from the equilibrium's, LVLH axes, and the
 artificial reference, body axes. Rows, in this order, for F faces and H rows that limit theta alone:
 
     corridor at steps 2 .. N_p - 1 (F rows each), inputs at steps 0 .. N_p - 1 (3 rows each, both sides), theta (H).
 
-No input reaches the corridor at steps 0 and 1: these rows are checked apart. At step N_p the deviation is 0.
+No input affects the corridor rows at steps 0 and 1, which are checked separately. At step N_p the deviation is 0.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def equilibrium_input(attitudes, j, motion, back, out):  # type: ignore[no-untyp
 
 @compiled(error_model="numpy")
 def place(source, start, column, rows, shift):  # type: ignore[no-untyped-def]
-    """One row from ``source`` (m,) on (e_0, w): its part on z into ``rows``, on x_0 into ``shift``."""
+    """One row from ``source`` (m,) on (e_0, w): writes its part on z to ``rows`` and its part on x_0 to ``shift``."""
     free = len(source) - 6
     for k in range(free):
         rows[k, column] = source[6 + k]

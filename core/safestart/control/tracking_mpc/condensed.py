@@ -1,8 +1,8 @@
-"""What the program of every step shares, whatever the attitude (paper 002, eqs. 8-17, condensed).
+"""The parts of every step's program that do not depend on the attitude (paper 002, eqs. 8-17, condensed).
 
 With deviations e = x - x_e(theta) and w = u - u_e(theta), both in LVLH axes, e_{j+1} = A e_j + B w_j. So deviations at
-all steps, tail inputs and the cost are constant functions of (e_0, w_0 .. w_{Nc-1}), found once per tuning. Only
-e_0 = x_0 - x_e(0; theta) and the rotation of each step's rows into the body change.
+all steps, tail inputs and the cost are constant functions of (e_0, w_0 .. w_{Nc-1}), computed once per tuning. Only e_0
+= x_0 - x_e(0; theta) and the rotation of each step's rows into the body change.
 """
 
 from __future__ import annotations

@@ -18,16 +18,16 @@ from safestart.errors import invalid
 from safestart.model.scenario import Bools, Floats
 
 FIXED_TOLERANCE = 1e-9
-"""Corridor rows that no input reaches, at this step and the next, may be overstepped by so much, m."""
+"""Allowed violation (m) of corridor rows that no input affects, at this step and the next."""
 
 
 @dataclass(frozen=True)
 class Plan:
-    """What one program says.
+    """The result of one program.
 
-    ``feasible``: all rows hold. ``violation`` t, m: by how much soft rows are overstepped (0 where feasible); inf where
-    there is no plan at all, then the arrays are NaN. ``theta`` (3,) body axes; ``inputs`` (N_p, 3) body axes, m/s;
-    ``states`` (N_p + 1, 6) LVLH; ``dual`` (R,) multipliers. ``status`` is the solver's.
+    ``feasible``: all rows hold. ``violation`` t, m: violation of soft rows (0 if feasible); inf without any plan, and
+    then the arrays are NaN. ``theta`` (3,) body axes; ``inputs`` (N_p, 3) body axes, m/s; ``states`` (N_p + 1, 6) LVLH;
+    ``dual`` (R,) multipliers. ``status`` is the solver's.
     """
 
     feasible: bool
@@ -41,7 +41,7 @@ class Plan:
 
 
 class Program:
-    """The rows, bounds and cost of one tuning; assembled anew for every step's attitudes."""
+    """The rows, bounds and cost of one tuning, assembled for every step's attitudes."""
 
     def __init__(
         self,
@@ -51,7 +51,7 @@ class Program:
         limit: ThetaSet,
         tightening: tuple[Floats, Floats] | None = None,
     ) -> None:
-        """``tightening``: what is taken off corridor rows (N_p + 1,), m, and inputs (N_p,), m/s, at every step."""
+        """``tightening``: reduction of corridor rows (N_p + 1,), m, and inputs (N_p,), m/s, at every step."""
         self.motion, self.shape, self.tuning, self.limit = motion, shape, tuning, limit
         self.faces = shape.faces()
         self.condensed: Condensed = condense(motion, tuning.n_c, tuning.n_lqr, tuning.rho)
@@ -64,7 +64,7 @@ class Program:
             raise invalid("u_max", required, float(off_input.max()))
         theta_high = limit.high.copy()
         if tuning.theta_limit != "zero":
-            # Theta is where the chaser stays for ever: it keeps the distance of the last step.
+            # The chaser stays at theta for ever, so theta keeps the distance of the last step.
             theta_high[:count] -= off_corridor[-1]
         self.high = np.concatenate([room.ravel(), pushing, theta_high])
         self.low = np.concatenate([np.full(room.size, -np.inf), -pushing, limit.low])
@@ -92,7 +92,7 @@ class Program:
 
     @property
     def ahead(self) -> int:
-        """How many attitudes a program reads: those of this step and of N_p + 1 more."""
+        """Number of attitudes that a program reads: this step's and N_p + 1 more."""
         return self.tuning.inputs + 2
 
     def assemble(self, attitudes: Floats) -> None:
@@ -103,7 +103,7 @@ class Program:
         assemble(attitudes, *self.fixed, self.rows, self.shift, self.hessian, self.slope)
 
     def fixed_violation(self, attitudes: Floats, states: Floats) -> Floats:
-        """(...), m: how far LVLH states (..., 6) overstep the corridor at this step and the next; <= 0 inside."""
+        """(...), m: largest violation of the corridor by LVLH states (..., 6), this step and the next; <= 0 inside."""
         now = states[..., :3] @ attitudes[0].T
         after = (states @ self.motion.a[:3].T) @ attitudes[1].T
         both = np.stack([now, after], axis=-2)
@@ -111,7 +111,7 @@ class Program:
         return out
 
     def plan(self, attitudes: Floats, state: Floats, *, soft: bool = False) -> Plan:
-        """Assemble and solve from an LVLH ``state`` (6,); ``soft``: least violation where no plan keeps every row."""
+        """Assemble and solve from an LVLH ``state`` (6,); ``soft``: least violation if no plan keeps every row."""
         self.assemble(attitudes)
         state = np.ascontiguousarray(state, dtype=np.float64)
         z, dual = np.empty(len(self.rows)), np.empty(len(self.high))
@@ -162,10 +162,10 @@ class PlannedImpulse(Command):
 
 
 class TrackingMpc:
-    """The controller for the loop: step k's program is solved from the state navigated then.
+    """The controller for the loop: step k solves its program from navigation's current state.
 
-    The planned input belongs to the end of its step, the loop's impulse to the start of its interval: what step k - 1
-    decided is given at the start of interval k, and step k plans from the state after it.
+    The planned input belongs to the end of its step, the loop's impulse to the start of its interval: the impulse
+    decided in step k - 1 acts at the start of interval k, and step k plans from the state after it.
     """
 
     def __init__(self, program: Program, attitudes: Floats, *, soft: bool = True) -> None:

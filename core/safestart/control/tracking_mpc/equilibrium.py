@@ -1,7 +1,7 @@
 """Equilibrium trajectories: a point theta fixed in the body, followed exactly (corrects paper 002, eqs. 24-26).
 
-The paper's kernel solves x = A(k) x + B(k) u, which is no trajectory, because v_e changes from step to step. A chaser
-that is at theta at every node has
+The paper's kernel solves x = A(k) x + B(k) u, which is not a trajectory, because v_e changes from step to step. A
+chaser at theta at every node has
 
     v_e(k) = P [C(k+1)^T - A_rr C(k)^T] theta,    u_e(k) = P r(k+2) + Q r(k+1) + R r(k),  r(k) = C(k)^T theta,
 

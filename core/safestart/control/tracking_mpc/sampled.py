@@ -16,7 +16,8 @@ from safestart.errors import invalid
 from safestart.model.scenario import Floats
 
 LARGEST_PHASE = 0.5
-"""Of an orbit's turn in two steps, rad: beyond it A_rv comes close to singular and the bounds on theta mean nothing."""
+"""Largest turn of the orbit in two steps, rad; beyond it A_rv is nearly singular and the bounds on theta are
+useless."""
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,8 @@
-"""One control step, compiled: assembly, solution, and where there is none the least violation (hard and soft form).
+"""One control step, compiled: assembly, solution, and without one the least violation (hard and soft form).
 
-Soft rows may be overstepped by ``give`` times a common measure t >= 0, in metres. The least t comes from proofs of
+Soft rows may be violated by ``give`` times a common measure t >= 0, in metres. The least t comes from proofs of
 infeasibility: a proof y gives t >= -y'bounds / y'give, the program is solved at that t, and so on (Dinkelbach). Every
-round ends at another vertex of the dual, so a handful do. Then the cost is minimised at that t.
+round ends at another vertex of the dual, so a handful of rounds is enough. Then the cost is minimised at that t.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from safestart.runtime.kernels import compiled
 NOT_CONVEX = 3
 _ROUNDS = 60
 _SLACK = 1e-9
-"""Above the least t, m, so that rounding does not make the last program infeasible."""
+"""Added to the least t, m, so that rounding does not make the last program infeasible."""
 
 
 @compiled(error_model="numpy", fastmath={"contract", "reassoc", "nsz"})

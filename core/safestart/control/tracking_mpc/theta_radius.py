@@ -1,7 +1,7 @@
-"""Up to which distance from the target the input suffices to stay on an equilibrium, for every attitude.
+"""The distance from the target up to which the input suffices to stay on an equilibrium, for every attitude.
 
-``printed`` is paper 002, (35)-(41): it leaves the centripetal term out and is NOT safe near spins about a principal
-axis. ``ball`` bounds u_e(k) = P r(k+2) + Q r(k+1) + R r(k) by Taylor's formula about the middle position: with
+``printed`` is paper 002, (35)-(41): it omits the centripetal term and is NOT safe near spins about a principal axis.
+``ball`` bounds u_e(k) = P r(k+2) + Q r(k+1) + R r(k) by Taylor's formula about the middle position: with
 |r'| <= Omega |theta| and |r''| <= alpha |theta|, alpha = Omega^2 + max |omega dot|,
 
     |u_e| <= (|P + Q + R| + T |P - R| Omega + T^2 (|P| + |R|) alpha / 2) |theta|.
@@ -51,7 +51,7 @@ def printed_radius(tumble: Tumble, motion: Sampled, u_max: float) -> float:
 
 
 def ball_radius(tumble: Tumble, motion: Sampled, u_max: float) -> float:
-    """A radius, m, within which |u_e| <= u_max at all times and attitudes (rigorous); inf where nothing is needed."""
+    """A radius, m, within which |u_e| <= u_max at all times and attitudes (rigorous); inf if no input is needed."""
     omega, alpha = _seen_rates(tumble)
     p, q, r, period = motion.p, motion.q, motion.r, motion.period
     need = (
@@ -67,7 +67,7 @@ def bracket(tumble: Tumble, motion: Sampled, u_max: float) -> tuple[float, float
 
     C(k) u-map = C P R2 C' D2' + C Q R1 C' D1' + C R C' with D_j the body's own turn over j steps, R_j that of LVLH and
     C any attitude. Its part of P ~ 1/T, Q ~ -2/T, R ~ 1/T is the same for every C; it is taken at 20 000 phases, with a
-    Lipschitz bound between them (|dD_j/dt| <= j T max |omega dot|). What is left is bounded by norms for ``low`` and
+    Lipschitz bound between them (|dD_j/dt| <= j T max |omega dot|). The rest is bounded by norms for ``low`` and
     sampled for ``high``.
     """
     period, body = motion.period, tumble.body
@@ -101,7 +101,7 @@ def bracket(tumble: Tumble, motion: Sampled, u_max: float) -> tuple[float, float
 
 
 def _seen_rates(tumble: Tumble) -> tuple[float, float]:
-    """Bounds on |omega| and |omega dot| against LVLH: those of the body, and LVLH's own where it is kept."""
+    """Bounds on |omega| and |omega dot| against LVLH: those of the body, plus LVLH's own if included."""
     omega, change = tumble.rates()
     if tumble.reference == "lvlh":
         return omega, change
@@ -109,7 +109,7 @@ def _seen_rates(tumble: Tumble) -> tuple[float, float]:
 
 
 def _turn(tumble: Tumble, time: float) -> Floats:
-    """LVLH coordinates to those ``time`` s later, or the identity where LVLH's turn is left out."""
+    """LVLH coordinates to those ``time`` s later, or the identity without LVLH's turn."""
     if tumble.reference == "lvlh":
         return np.eye(3)
     angle = tumble.mean_motion * time

@@ -1,9 +1,9 @@
 """The polyhedra that the artificial reference theta may lie in, as rows on theta alone (body axes).
 
 Every one holds the corridor's faces. ``printed`` adds y <= y_max of paper 002 (42)-(45); ``ball`` the largest such cut
-inside the rigorous ball; ``corners`` the largest whose corners need no more than u_max at every node of the window;
+inside the rigorous ball; ``corners`` the largest whose corners need at most u_max at every node of the window;
 ``polytope`` the rows |u_e(k; theta)| <= u_max themselves, without those that others imply; ``zero`` theta = 0. A window
-is the nodes of a flight and of the last plan after it, so that what is allowed at one node is allowed at the next.
+is the nodes of a flight and of its last plan, so that a theta allowed at one node is allowed at the next.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from safestart.control.tracking_mpc.tuning import DockingCorridor, ThetaLimit
 from safestart.model.scenario import Floats
 
 _FARTHEST = 1e5
-"""Cut that takes the place of none, m: a target at rest needs no input to stay anywhere."""
+"""Stands for no cut, m: at a target at rest the chaser needs no input to stay anywhere."""
 
 
 @dataclass(frozen=True)
@@ -107,13 +107,13 @@ def _polytope(shape: DockingCorridor, maps: Floats, u_max: float) -> ThetaSet:
     rows = maps.reshape(-1, 3)
     normals = np.vstack([faces.normals, rows, -rows, [[0.0, 1.0, 0.0]]])
     high = np.concatenate([faces.offsets, np.full(2 * len(rows), u_max), [_FARTHEST]])
-    # Seen from a point inside, the rows that count are the corners of the hull of normal / distance.
+    # Seen from a point inside, the necessary rows are the corners of the hull of normal / distance.
     reach = float(np.max(rows @ [0.0, 1.0, 0.0], initial=-np.inf))
     other = float(np.max(-rows @ [0.0, 1.0, 0.0], initial=-np.inf))
     height = u_max / max(reach, other, u_max / _FARTHEST)
     inside = np.array([0.0, 0.5 * min(height, 1.0), 0.0])
     room = high - normals @ inside
     kept = np.sort(ConvexHull(normals / room[:, None]).vertices)
-    # The corridor's own faces are told apart by their order, so they stay.
+    # The corridor's own faces are identified by their order, so they stay.
     kept = np.union1d(np.arange(len(faces.offsets)), kept)
     return ThetaSet(normals[kept], np.full(len(kept), -np.inf), high[kept])

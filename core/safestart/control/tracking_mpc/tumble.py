@@ -1,4 +1,4 @@
-"""The tumbling target as paper 002 has it, and what its torque-free motion bounds."""
+"""The tumbling target of paper 002, and the bounds of its torque-free motion."""
 
 from __future__ import annotations
 
@@ -14,14 +14,15 @@ from safestart.model.orbit import KeplerOrbit
 from safestart.model.scenario import Floats
 
 MAX_TURN = 1.0
-"""Largest turn per step, rad: between two nodes further apart, staying in the corridor at the nodes says little."""
+"""Largest turn per step, rad; with larger turns, staying in the corridor at the nodes says little about the times
+between."""
 
 
 @dataclass(frozen=True)
 class Tumble:
     """A torque-free body over a circular orbit; ``body_rate`` rad/s, body axes, against ``reference``.
 
-    ``inertial``: LVLH's own turn is kept. ``lvlh``: the body moves as if LVLH did not turn, the paper's (2)-(3).
+    ``inertial``: includes LVLH's own turn. ``lvlh``: the body moves as if LVLH did not turn, the paper's (2)-(3).
     Raises ``InvalidInput`` as :class:`TorqueFree` and :class:`KeplerOrbit` do.
     """
 
@@ -44,10 +45,22 @@ class Tumble:
         return np.ascontiguousarray(self.attitude.rotation(period * np.arange(float(count))))
 
     def slow_enough(self, period: float) -> None:
-        """Raise ``InvalidInput`` where the body turns by more than a radian in one step."""
+        """Raise ``InvalidInput`` if the body turns by more than a radian in one step."""
         turn = self.attitude.rate_bounds()[0] * period
         if turn > MAX_TURN:
             raise invalid("period", f"a turn per step of at most {MAX_TURN:g} rad", f"{turn:.3g} rad")
+
+    def changed(self, shares: Floats, spin: float = 1.0) -> Tumble:
+        """The target with principal moments off by ``shares`` (3,), halved until a rigid body has them; rate x spin."""
+        moments, axes = np.linalg.eigh(np.array(self.inertia))
+        off = moments * (1.0 + shares)
+        while off.min() <= 0.0 or 2.0 * off.max() > off.sum():
+            shares = 0.5 * shares
+            off = moments * (1.0 + shares)
+        rows = axes @ np.diag(off) @ axes.T
+        inertia = tuple(tuple(row) for row in (0.5 * (rows + rows.T)).tolist())
+        x, y, z = (spin * w for w in self.body_rate)
+        return Tumble(inertia, self.attitude_wxyz, (x, y, z), self.mean_motion, self.reference)  # type: ignore[arg-type]
 
     def principal(self) -> tuple[Floats, Floats]:
         """Principal moments (3,), rising, and the squares (3,) of the body rate along their axes at t = 0."""
@@ -64,7 +77,7 @@ class Tumble:
         i1, i2, i3 = (float(e) for e in moments)
         if i3 - i1 <= 1e-12 * i3:
             return float(np.sqrt(squares.sum())), 0.0
-        # The middle square is the free one: w1^2 = s1 + b1 (q - s2), w3^2 = s3 + b3 (q - s2).
+        # The middle square is the free variable: w1^2 = s1 + b1 (q - s2), w3^2 = s3 + b3 (q - s2).
         s1, s2, s3 = (float(e) for e in squares)
         b1 = -i2 * (i3 - i2) / (i1 * (i3 - i1))
         b3 = -i2 * (i2 - i1) / (i3 * (i3 - i1))

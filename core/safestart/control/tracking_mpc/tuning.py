@@ -1,4 +1,4 @@
-"""What a tracking MPC is made of: its corridor, limits, horizons and weights."""
+"""The settings of a tracking MPC: corridor, limits, horizons and weights."""
 
 from __future__ import annotations
 
@@ -85,5 +85,5 @@ class Tuning:
 
     @property
     def inputs(self) -> int:
-        """N_p: inputs of a plan before it stays on its equilibrium, N_c + N + 2."""
+        """N_p: number of inputs of a plan before it stays on its equilibrium, N_c + N + 2."""
         return self.n_c + self.n_lqr + 2

@@ -1,4 +1,4 @@
-"""A bound on the fourth derivative of a face's distance, from what is known at samples of a flight.
+"""A bound on the fourth derivative of a face's distance, from samples of a flight.
 
 In LVLH r'' = A(t) r + 2 w J v + u with A of the tide g and the turn w = nu' of LVLH, |J| = 1. Differentiated twice,
 with sizes A, A1, A2 of A and its derivatives and w, w1, w2 of w,
@@ -20,9 +20,9 @@ from safestart.model.orbit import KeplerOrbit
 def bend_of(
     orbit: KeplerOrbit, turning: Bounds, half: float, furthest: float, fastest: float, push: float
 ) -> float:
-    """Bound, m/s^4, on the fourth derivative of every distance, inf where none is found.
+    """Bound, m/s^4, on the fourth derivative of every distance; inf if none is found.
 
-    ``furthest`` (m) and ``fastest`` (m/s) hold at samples; no time is more than ``half`` s from one. ``push`` m/s^2
+    ``furthest`` (m) and ``fastest`` (m/s) hold at samples; every time is within ``half`` s of one. ``push`` m/s^2
     bounds the thrust, ``turning`` the derivatives of the normals.
     """
     w, w1, w2, w3 = orbit.turn_bounds()

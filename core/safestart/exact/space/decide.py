@@ -19,7 +19,7 @@ def decide_in_space(
     """Answer for one start ``state`` (6,): LVLH position (m) and velocity (m/s); see :func:`safestart.exact.decide`.
 
     The answer's ``thrust`` is (N, channels): m/s^2 in LVLH axes for a ball, else points of the unit set (shares of the
-    half-widths of a box in its own axes, throttles of thrusters). Raises ``InvalidInput`` for a state that is none.
+    half-widths of a box in its own axes, throttles of thrusters). Raises ``InvalidInput`` for an invalid state.
     """
     state = np.asarray(state, dtype=np.float64)
     if state.shape != (6,) or not np.isfinite(state).all() or float(np.abs(state).max()) > 1e6:

@@ -45,10 +45,10 @@ class Face:
 
 @dataclass(frozen=True, slots=True)
 class SpaceQuestion:
-    """``steps`` intervals of ``dt`` s; raises ``InvalidInput`` for what is no question.
+    """``steps`` intervals of ``dt`` s; raises ``InvalidInput`` for an invalid question.
 
-    Faces: 1 to 32 with names of their own, normals that are not 0, those of each frame with a point in common. A table
-    of attitudes goes on to the horizon.
+    Faces: 1 to 32 with different names and nonzero normals; the faces of each frame have a point in common. A table of
+    attitudes reaches the horizon.
     """
 
     orbit: KeplerOrbit
@@ -89,7 +89,7 @@ class SpaceQuestion:
 
     @property
     def latest(self) -> float:
-        """The last double that is not after the exact T."""
+        """The last double not after the exact T."""
         time = self.horizon
         while Fraction(time) > Fraction(self.dt) * self.steps:
             time = math.nextafter(time, 0.0)
@@ -97,7 +97,7 @@ class SpaceQuestion:
 
     @property
     def thrust_set(self) -> UnitSet:
-        """The unit set that thrusts are an image of."""
+        """The unit set of which the thrusts are an image."""
         return _UNIT_SETS[self.thrust.kind]
 
     @property
@@ -107,7 +107,7 @@ class SpaceQuestion:
 
     @property
     def channels(self) -> int:
-        """Numbers that make one thrust."""
+        """The number of components of one point."""
         return self.thrust.channels
 
     @property
@@ -117,7 +117,7 @@ class SpaceQuestion:
 
 
 def five_faces(shape: CorridorShape, axis: Vector = (0.0, 1.0, 0.0)) -> tuple[Face, ...]:
-    """The paper's corridor along ``axis`` (body frame), turned there from +y by the shortest way."""
+    """The paper's corridor along ``axis`` (body frame), turned from +y by the shortest rotation."""
     length = math.hypot(*axis)
     if not 0.0 < length < math.inf:
         raise invalid("axis", "three finite numbers, not all 0", axis)
@@ -176,7 +176,7 @@ def _meet(faces: Sequence[Face]) -> bool:
 
 
 def starts_in_lvlh(attitude: SmoothAttitude, positions: Floats, velocities: Floats) -> Floats:
-    """Starts (S, 6) in LVLH of body-frame positions (S, 3), m, and velocities (S, 3) against the turning body, m/s."""
+    """LVLH starts (S, 6) of body-frame positions (S, 3), m, and velocities (S, 3) relative to the turning body, m/s."""
     at = np.zeros(1)
     turn, omega = attitude.rotation(at)[0], attitude.angular_velocity(at)[0]
     out: Floats = np.concatenate([positions @ turn, (velocities + np.cross(omega, positions)) @ turn], axis=1)

@@ -1,7 +1,7 @@
-"""One flight in space watched at all times: as :mod:`safestart.exact.watch`, for any attitude, orbit and thrusts.
+"""One flight in space watched at all times, like :mod:`safestart.exact.watch`, for any attitude, orbit and thrusts.
 
-Between two samples a distance is enclosed by the cubic through value and slope, less h^4 / 384 times a bound on its
-fourth derivative, by Leibniz from bounds on the derivatives of the faces' normals and of the position.
+Between two samples a distance is at least the cubic through value and slope minus h^4 / 384 times a bound on its fourth
+derivative; Leibniz's rule gives it from bounds on the derivatives of the faces' normals and of the position.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class SpaceWatch:
     """
 
     rounding = 1e-12
-    """The attitude's formulas lose a digit more than a plane turn does."""
+    """The attitude's formulas lose one digit more than a planar turn."""
 
     def __init__(self, question: SpaceQuestion) -> None:
         self.question = question
@@ -56,7 +56,7 @@ class SpaceWatch:
             self._pushes = np.ascontiguousarray(pushes)
 
     def _sample(self) -> None:
-        """Points within the intervals, segments between them, and what is known of both without a flight."""
+        """Points within the intervals, segments between them, and their values that need no flight."""
         question = self.question
         self._turn_bounds = question.attitude.turn_bounds()
         turning = max(bound ** (1.0 / k) for k, bound in enumerate(self._turn_bounds, 1))

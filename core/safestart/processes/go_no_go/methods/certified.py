@@ -1,6 +1,6 @@
 """Method certified: GO by a manoeuvre whose room and thrust are proved (docs/theory/certified.md), else undecided.
 
-Every start is asked in plain floats, a start alone like one among others: the same bits.
+Every start is computed in plain floats, so a single start gets the same bits as among others.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ NAME = "certified"
 
 
 def decide(inputs: GoNoGoInputs, conditions: Conditions, context: Context) -> Verdicts:
-    """GO where the certificate says so, NO_GO outside the corridor, else UNDECIDED: other histories may stay."""
+    """GO by the certificate, NO_GO outside the corridor, else UNDECIDED: other histories may stay."""
     refuse_more(inputs)
     found = certificates(inputs)
     context.step(1, 1)
@@ -41,7 +41,7 @@ def decide(inputs: GoNoGoInputs, conditions: Conditions, context: Context) -> Ve
 
 
 def go_at_once(inputs: GoNoGoInputs, _: Conditions) -> Verdicts | None:
-    """The answer for one start if that is GO, in microseconds; None where another method has to be asked."""
+    """The answer for one start if it is GO, in microseconds; None if another method must decide."""
     if not answers(inputs):
         return None
     one = certificates(inputs)[0]
@@ -49,7 +49,7 @@ def go_at_once(inputs: GoNoGoInputs, _: Conditions) -> Verdicts | None:
 
 
 def answers(inputs: GoNoGoInputs) -> bool:
-    """Whether the question is one that the certificate knows, and no proof document is asked for, which it has not."""
+    """Whether the certificate covers the question and no proof document is requested, as it has none."""
     return not inputs.proofs and more_asked(inputs) is None
 
 

@@ -1,4 +1,5 @@
-"""Method paper: the conditions of paper 000 decide. They are not sound: GO is no proof, NO_GO means not certified."""
+"""Method paper: the conditions of paper 000 decide. They are not sound: GO is not a proof, NO_GO means not
+certified."""
 
 from __future__ import annotations
 
@@ -11,7 +12,7 @@ from safestart.runtime.progress import Context
 
 
 def decide(inputs: GoNoGoInputs, conditions: Conditions, context: Context) -> Verdicts:
-    """A start is GO where its smallest margin is positive."""
+    """A start is GO when its smallest margin is positive."""
     refuse_more(inputs)
     context.step(1, 1)
     return Verdicts(

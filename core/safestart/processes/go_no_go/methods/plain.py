@@ -1,4 +1,4 @@
-"""What the closed forms know of a question: to stay, nominal and undisturbed, without more."""
+"""The questions that the closed forms cover: `stay`, nominal and undisturbed."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ KNOWN = frozenset(
     {
         *ScenarioInput.model_fields,
         *("states", "rest", "method", "proofs"),
-        # Details of questions that are refused themselves, and the time: a closed form has none, or says for ever.
+        # Details of refused questions, and the time, which a closed form does not have or takes as for ever.
         *(
             "horizon_s",
             "within_s",
@@ -23,11 +23,11 @@ KNOWN = frozenset(
         ),
     }
 )
-"""Inputs that may be given; every other one asks for more unless it is the default."""
+"""Supported inputs; any other input must have its default value."""
 
 
 def more_asked(inputs: GoNoGoInputs) -> str | None:
-    """The first input that asks for more than a closed form knows; None where there is none."""
+    """The first input that a closed form does not cover; None if it covers all."""
     if inputs.model_fields_set <= KNOWN:
         return None
     for name, field in GoNoGoInputs.model_fields.items():
@@ -37,7 +37,7 @@ def more_asked(inputs: GoNoGoInputs) -> str | None:
 
 
 def refuse_more(inputs: GoNoGoInputs) -> None:
-    """Raise ``InvalidInput`` where more is asked than a closed form knows."""
+    """Raise ``InvalidInput`` if a closed form does not cover the question."""
     name = more_asked(inputs)
     if name is not None:
         raise invalid(
