@@ -30,5 +30,8 @@ from safestart_service.app import create_app  # noqa: E402
 from safestart_worker import commands  # noqa: E402
 
 assert callable(commands.register)
-assert create_app(Settings(database_url=f"sqlite:///{Path.cwd()}/smoke.sqlite3")).openapi()["info"]["version"] == ss.__version__
+assert (
+    create_app(Settings(database_url=f"sqlite:///{Path.cwd()}/smoke.sqlite3")).openapi()["info"]["version"]
+    == ss.__version__
+)
 print("smoke passed on", sys.version.split()[0])
