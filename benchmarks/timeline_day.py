@@ -1,7 +1,7 @@
 """A day of a commit timeline: a chaser that hovers some 40 m ahead of a slowly turning target, both files every 10 s.
 
-``python -m benchmarks.timeline_day [--hours 24] [--workers 2]``. No peer answers this question. The wall time is to stay
-within 60 s on two cores; the time of one core tells what the machine's other work took.
+``python -m benchmarks.timeline_day [--hours 24] [--workers 2]``. No peer answers this question. The wall time is to
+stay within 60 s on two cores; the time of one core tells what the machine's other work took.
 """
 
 from __future__ import annotations
