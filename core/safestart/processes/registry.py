@@ -26,6 +26,7 @@ _SPECS = {
     "trade-study": "safestart.processes.trade_study.spec",
     "commit-timeline": "safestart.processes.commit_timeline.spec",
     "hop-time": "safestart.processes.hop_time.spec",
+    "hopping": "safestart.processes.hopping.spec",
     "passive-abort": "safestart.processes.passive_abort.spec",
 }
 
