@@ -205,26 +205,35 @@ def test_so_many_follow_and_no_more(address):
         client.delete(f"/jobs/{job}")
 
 
-def test_the_line_of_those_who_compute_has_an_end(tmp_path):
-    """It is full while nothing is computed any more; the closed form needs no line."""
+def test_every_line_has_an_end(tmp_path):
+    """Each class of work has its own line; a full one refuses, and the others go on."""
     with service(tmp_path) as client:
         found = client.app.state.services
-        found.computing = Callers("answers are being computed", 2)
+        found.light.callers = Callers("answers are being computed", 2)
+        found.helpers.callers = Callers("heavy answers are asked for", 2)
+        found.submitting.callers = Callers("submissions are under way", 2)
         ask = {**POINT, "x_m": 5, "y_m": 40}
+        certified = {**POINT, "method": "certified", "states": [{"x_m": 5, "y_m": 40}]}
+        light, heavy, submission = found.light.callers, found.helpers.callers, found.submitting.callers
         calls = (
-            partial(client.get, "/go-no-go", params={**ask, "method": "exact"}),
-            partial(client.get, "/go-no-go/proof", params=ask),
-            partial(client.post, "/go-no-go", json={**POINT, "states": [{"x_m": 5, "y_m": 40}]}),
-            partial(client.post, "/certificates", json=POINT),
-            partial(client.post, "/processes/certificate/execution", json={"inputs": POINT}),
+            (heavy, 200, partial(client.get, "/go-no-go", params={**ask, "method": "exact"})),
+            (heavy, 200, partial(client.get, "/go-no-go/proof", params=ask)),
+            (light, 200, partial(client.post, "/go-no-go", json=certified)),
+            (light, 200, partial(client.post, "/certificates", json=POINT)),
+            (light, 200, partial(client.post, "/processes/certificate/execution", json={"inputs": POINT})),
+            (submission, 201, partial(client.post, "/processes/benchmark/execution", json=HEAVY)),
         )
-        for call in calls:
-            assert call().status_code == 200
-            assert found.computing.now == 0
+        for line, status, call in calls:
+            assert call().status_code == status
+            assert line.now == 0
             with ExitStack() as held:
                 for _ in range(2):
-                    held.enter_context(found.computing.place(Request({"type": "http"})))
+                    held.enter_context(line.place(Request({"type": "http"})))
                 refused = call()
+                for other, due, ask_other in calls:
+                    if other is not line:
+                        answered = ask_other()
+                        assert answered.status_code == due, answered.text
             assert int(refused.headers["retry-after"]) > 0
             assert "at most 2 at once" in assert_problem(refused, 429)["detail"]
         assert client.get("/go-no-go", params=ask).status_code == 200
