@@ -4,6 +4,7 @@ import json
 
 import pytest
 
+from safestart.cli.reproduce.hopping import hopping_document
 from safestart.errors import InvalidInput
 from safestart.processes.execute import execute
 from safestart.processes.registry import process
@@ -113,3 +114,14 @@ def test_passive_abort_shows_a_flight_that_enters() -> None:
 def test_bad_plans_are_named(more, said: str) -> None:
     with pytest.raises(InvalidInput, match=said):
         execute("passive-abort", _plan(**more))
+
+
+def test_reproduce_hopping_stands_beside_the_paper() -> None:
+    document = hopping_document(runs=10)
+    said = {row["what"]: (row["ours"], row["paper"]) for row in document["rows"]}
+    assert said["V-bar hop, orbits"] == ("0.5000", "0.5")
+    assert said["R-bar hop as rho falls to 0, orbits"][0] == "0.2030"
+    off, on = (
+        said[f"0.6 orbits, barrier {name}: closest after each hop, m"][0] for name in ("off", "nominal")
+    )
+    assert min(float(c) for c in off.split(", ")) < 50.0 <= min(float(c) for c in on.split(", "))
