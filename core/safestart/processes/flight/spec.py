@@ -8,6 +8,7 @@ from pydantic import Field
 
 from safestart.model.scenario import Rest
 from safestart.processes.base import ProcessSpec, Table, WireModel
+from safestart.processes.costs import FIRST_S, program_s
 from safestart.processes.go_no_go.question_fields import QuestionKind
 from safestart.processes.go_no_go.spec import StateInput
 from safestart.processes.views import Column, Findings
@@ -46,6 +47,12 @@ class FlightOutputs(WireModel):
     delta_v_m_s: float
 
 
+def _cost(inputs: FlightInputs) -> float:
+    """Two programs at most: where synchronize is no GO, the best attempt to stay is flown."""
+    synchronize = program_s(inputs.within_s) if inputs.question == "synchronize" else 0.0
+    return FIRST_S + synchronize + program_s(inputs.horizon_s)
+
+
 SPEC = ProcessSpec(
     id="flight",
     title="Best flight from a start",
@@ -57,6 +64,7 @@ SPEC = ProcessSpec(
     outputs=FlightOutputs,
     run="safestart.processes.flight.run:run",
     light=True,
+    cost=_cost,
     tables=(Table("flight", ("time_s", "body_m", "lvlh_m", "lvlh_m_s", "thrust_m_s2", "distance_m")),),
     views=(
         Findings(
