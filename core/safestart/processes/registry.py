@@ -27,6 +27,7 @@ _SPECS = {
     "tracking-mpc": "safestart.processes.tracking_mpc.spec",
     "commit-timeline": "safestart.processes.commit_timeline.spec",
     "hop-time": "safestart.processes.hop_time.spec",
+    "hopping": "safestart.processes.hopping.spec",
     "passive-abort": "safestart.processes.passive_abort.spec",
 }
 
