@@ -26,6 +26,7 @@ _SPECS = {
     "trade-study": "safestart.processes.trade_study.spec",
     "hop-time": "safestart.processes.hop_time.spec",
     "passive-abort": "safestart.processes.passive_abort.spec",
+    "backward-variants": "safestart.processes.backward_variants.spec",
 }
 
 PROCESS_IDS = tuple(_SPECS)
