@@ -229,7 +229,7 @@ def _cell(omega: float, thrust: float, size: int) -> dict[str, Any]:
     both, left = int((ours & theirs).sum()), np.flatnonzero(theirs & ~ours).tolist()
     for horizon in HORIZONS:
         question = question_of(scenario, 2, horizon)
-        # Who cannot stay so long cannot stay longer.
+        # A start that cannot stay this long cannot stay longer.
         left = [
             i
             for i in left

@@ -36,7 +36,7 @@ MEASURED = 100
 
 @dataclass
 class Case:
-    """One start with what was found and what it took, in metres and seconds."""
+    """One start with its results in metres and its times in seconds."""
 
     question: Question
     state: Floats
@@ -71,7 +71,7 @@ def run(count: int, seed: int, *, verify: bool = True) -> list[Case]:
                 DenseLP(question.scenario),
                 DenseLP(question.scenario, outer=True),
             )
-            # Both sides keep what depends on the scenario alone; neither is charged for making it.
+            # Both sides cache values that depend only on the scenario, and neither counts the time for them.
             decide(question, state)
         inner, outer = programs[question.scenario]
         found: dict[str, Any] = {}

@@ -42,7 +42,7 @@ def _certified(omega: float, thrust: float, x: float) -> bool:
 # Those that the certificate decides, and those for which a cone program must be solved.
 QUESTIONS = tuple(_path(*start) for start in STARTS if _certified(*start))
 OPEN = tuple(_path(*start) for start in STARTS if not _certified(*start))
-# Never the same operating point twice within what the service remembers.
+# Never the same operating point twice within the service's cache.
 FRESH = tuple(
     f"/go-no-go?omega_t_deg_s={1 + k * 1e-4:.4f}&a_max_m_s2=0.1&x_m=5&y_m=40" for k in range(20_000)
 )
@@ -81,7 +81,7 @@ def measure(seconds: float = 2.0, repeats: int = 5) -> dict[str, Any]:
 
 
 def _key(url: str) -> str:
-    """Make a key that may read, in a database of its own."""
+    """Make a key with role read, in a separate database."""
     from safestart.runtime.access import Caller, Role
     from safestart.store.access.keys import KeyRepository
     from safestart.store.database import Database

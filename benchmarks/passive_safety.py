@@ -35,7 +35,7 @@ _CHUNK = 2000
 
 
 def measure() -> dict[str, dict[str, float]]:
-    """Times in seconds: medians of warm runs; ``tables_s`` is what a process pays once before."""
+    """Times in seconds: medians of warm runs; ``tables_s`` is the one-time cost of a process."""
     tables = once(warm)
     return {
         "ratios": {},

@@ -49,7 +49,7 @@ def platform(url: str, *, worker: bool = True) -> Iterator[tuple[httpx.Client, l
     command = [sys.executable, "-m", "safestart", "up" if worker else "serve", "--port", str(port)]
     process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     try:
-        # The service closes what is idle for 5 s: on a slow machine a request could meet that.
+        # The service closes connections that are idle for 5 s; on a slow machine this could hit a request.
         brief = httpx.Limits(keepalive_expiry=1.0)
         with httpx.Client(base_url=f"http://127.0.0.1:{port}", timeout=60.0, limits=brief) as client:
             deadline = time.monotonic() + READY_S
@@ -125,7 +125,7 @@ def tiny(url: str, jobs: int = 400) -> dict[str, Any]:
 
 
 def _cpu(family: list[psutil.Process]) -> dict[str, float]:
-    """Processor seconds of each process, by what it is."""
+    """Processor seconds of the processes, by kind."""
     found = {}
     for process in family:
         command = process.cmdline()
@@ -209,7 +209,7 @@ def memory(url: str, jobs: int) -> dict[str, Any]:
                     done.set()
                 for item in fed:
                     if item.done():
-                        item.result()  # raises what ended it: else the rest would be waited for in vain
+                        item.result()  # raises the task's error; otherwise the rest would wait in vain
                 time.sleep(0.5)
         last = _used(family)
     grown = {pid: last[pid] / first[pid] - 1.0 for pid in first if pid in last}
@@ -232,7 +232,7 @@ def _used(family: list[psutil.Process]) -> dict[int, int]:
 
 
 def main() -> None:
-    """Run them and print what was measured."""
+    """Run them and print the measurements."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--database-url", default="")
     parser.add_argument("--only", default="")

@@ -162,7 +162,7 @@ def chaos(count: int, kills: int) -> dict[str, Any]:
 
 
 class _farm:
-    """A worker of the acceptance tests, on a folder of its own."""
+    """A worker of the acceptance tests, in a separate folder."""
 
     def __init__(self, processes: int) -> None:
         self.processes = processes

@@ -33,7 +33,7 @@ GOALS = {"(0, r_h)": Goal(), "(0, 2 m)": Goal(hold=(0.0, 2.0))}
 
 @dataclass
 class Case:
-    """One start with its answers (whether it stays for 200 s, too) and what they took, in seconds."""
+    """One start with its answers (including whether it stays for 200 s) and their times in seconds."""
 
     question: Question
     state: Floats

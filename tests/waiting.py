@@ -1,4 +1,4 @@
-"""Waiting for what other processes do: for a condition, never for a time that a slow machine would need more of."""
+"""Wait for other processes: for a condition, never for a fixed time, which a slow machine would exceed."""
 
 from __future__ import annotations
 

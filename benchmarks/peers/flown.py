@@ -1,4 +1,4 @@
-"""A flight by another integrator: what the exact answers' margins are measured against."""
+"""A flight by another integrator, the reference for the exact answers' margins."""
 
 from __future__ import annotations
 

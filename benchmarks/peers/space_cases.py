@@ -25,7 +25,7 @@ ATTITUDES, THRUSTS = ("torque_free", "spin", "inertial_spin", "table"), ("ball",
 
 
 def drawn(seed: int, steps: int = 20) -> tuple[SpaceQuestion, np.ndarray]:
-    """A question and a start (6,) near the border of what is possible."""
+    """A question and a start (6,) near the limit of feasibility."""
     rng = np.random.default_rng([15, seed])
     orbit = KeplerOrbit(1.1e-3)
     if rng.random() < 0.6:

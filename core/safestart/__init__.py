@@ -1,7 +1,6 @@
 """safestart: may this chaser start its approach to that tumbling target?
 
-The names below are all there is to import; docs/python.md describes them with units and shapes. Nothing is loaded
-before it is used.
+Only the names below are public; docs/python.md describes them with units and shapes. Each is loaded at its first use.
 """
 
 from importlib import import_module
@@ -61,7 +60,7 @@ _PLACES = {
 _CALLED = {"Corridor": "CorridorShape"}
 
 
-if not TYPE_CHECKING:  # a type checker sees the names above and no others
+if not TYPE_CHECKING:  # a type checker sees only the names above
 
     def __getattr__(name: str) -> Any:
         """A public name, loaded at its first use."""

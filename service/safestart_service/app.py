@@ -47,12 +47,14 @@ log = logging.getLogger("safestart.service")
 AWAY_S = 2.0
 
 
-def create_app(settings: Settings | None = None, database: Database | None = None) -> FastAPI:
+def create_app(
+    settings: Settings | None = None, database: Database | None = None, *, warm: bool = False
+) -> FastAPI:
     """Build the application.
 
     Without ``database`` it opens the one of the settings. It migrates the database at start. While the database is
     unavailable, ``/readyz`` reports it and instant answers work; the migration follows when it is back. Raises
-    ``InvalidInput`` for an invalid URL.
+    ``InvalidInput`` for an invalid URL. ``warm`` starts a helper process before the first heavy answer.
     """
     found = Services(settings or process_settings(), database)
 
@@ -61,11 +63,13 @@ def create_app(settings: Settings | None = None, database: Database | None = Non
         waiting = None
         if not await _migrated(found):
             waiting = asyncio.create_task(_keep_migrating(found))
+        warming = asyncio.create_task(found.helpers.warm()) if warm else None
         async with found.keyring.kept_fresh():
             yield
-        if waiting is not None:
-            waiting.cancel()
-        found.database.close()
+        for task in (waiting, warming):
+            if task is not None:
+                task.cancel()
+        found.close()
 
     app = FastAPI(
         title=TITLE,
@@ -88,6 +92,7 @@ def create_app(settings: Settings | None = None, database: Database | None = Non
         max_body_bytes=found.settings.max_body_bytes,
         access=found.access,
         timeout_s=found.settings.request_timeout_s,
+        max_bodies_bytes=found.settings.max_bodies_bytes,
         refused=found.metrics.refused,
     )
     # Routes are tried in order and an included router costs more than a route, so the instant verdict comes first.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import ipaddress
+import os
 import socket
 from contextlib import suppress
 from functools import partial
@@ -58,6 +59,8 @@ def _serve(overrides: dict[str, object]) -> None:
             typer.echo(f"safestart: waits for the database: {error.detail}", err=True)
             sleep(AWAY_S)
     make_room(chosen.max_connections)
+    # Helper processes compute one answer each; a pool of threads in every one of them would only take memory.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     listener = listen(family, address, chosen.host)
     try:
         # Imported only now, so that a wrong argument is answered at once.
@@ -71,7 +74,7 @@ def _serve(overrides: dict[str, object]) -> None:
         configure(chosen.log_format)
         with suppress(Away):  # the application waits for it and reports that
             database.migrate()
-        app = create_app(chosen, database)
+        app = create_app(chosen, database, warm=True)
         refused = app.state.services.metrics.refused
         config = uvicorn.Config(
             app,

@@ -99,6 +99,22 @@ class RateLimited(SafestartError):
     title = "Too many requests"
 
 
+class AnswerTimeout(SafestartError):
+    """An answer at once that takes longer than the service lets clients wait."""
+
+    status = 504
+    slug = "answer-timeout"
+    title = "The answer takes too long"
+
+
+class Busy(SafestartError):
+    """The requests in flight fill the memory that the service has for them."""
+
+    status = 503
+    slug = "busy"
+    title = "Too many requests in flight"
+
+
 class TooManyConnections(SafestartError):
     """No place is left for the connection."""
 

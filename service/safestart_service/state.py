@@ -6,23 +6,25 @@ from typing import TYPE_CHECKING
 
 from fastapi import FastAPI, Request
 
-from safestart.runtime.progress import Context
 from safestart.runtime.settings import Settings
-from safestart_service.access.callers import Callers
 from safestart_service.access.gate import Access
 from safestart_service.access.keyring import Keyring
+from safestart_service.computing.heavy import Helpers
+from safestart_service.computing.light import Threads
+from safestart_service.computing.store import Store
 from safestart_service.http.following import Following
 from safestart_service.metrics import Metrics
 
 if TYPE_CHECKING:
     from safestart.store.database import Database
 
-MOST_COMPUTED = 400
-"""Limit on answers that are being computed or wait for it."""
+MOST_LIGHT = MOST_SUBMITTED = 400
+"""Limits on light answers and on submissions that are under way or wait for it."""
+LIGHT_THREADS, STORE_THREADS = 2, 8
 
 
 class Services:
-    """Settings, repositories, metrics and the context of instant answers of one application.
+    """Settings, repositories, metrics and the pools that compute answers, of one application.
 
     The store is imported at its first use; the instant answers and the API description do not need it.
     """
@@ -30,23 +32,30 @@ class Services:
     def __init__(self, settings: Settings, database: Database | None = None) -> None:
         from safestart.store.access.audit import AuditLog
         from safestart.store.access.keys import KeyRepository
-        from safestart.store.cache import Cache
         from safestart.store.database import Database
-        from safestart.store.jobs.repository import JobRepository
         from safestart.store.jobs.results import ResultRepository
 
         self.settings = settings
         self.database = database or Database(settings.url())
-        self.jobs = JobRepository(self.database)
+        self.store = Store.over(settings, self.database)
+        self.jobs = self.store.jobs
         self.results = ResultRepository(self.database)
         self.keys = KeyRepository(self.database)
         self.audit = AuditLog(self.database)
         self.keyring = Keyring(self.keys)
         self.access = Access(settings, self.keyring)
-        self.context = Context(shelf=Cache(self.database))
-        self.computing = Callers("answers are being computed", MOST_COMPUTED)
+        self.light = Threads("answers are being computed", LIGHT_THREADS, MOST_LIGHT)
+        self.submitting = Threads("submissions are under way", STORE_THREADS, MOST_SUBMITTED)
+        self.helpers = Helpers(settings)
         self.following = Following(settings.max_followers, self.access)
         self.metrics = Metrics(self.jobs.vitals)
+
+    def close(self) -> None:
+        """Close all that was opened."""
+        self.light.close()
+        self.submitting.close()
+        self.helpers.close()
+        self.database.close()
 
 
 def services(request: Request) -> Services:

@@ -92,7 +92,7 @@ def stored() -> dict[str, Files]:
 
 
 def arithmetic() -> dict[str, str]:
-    """What the last bits depend on besides our code: versions of what computes."""
+    """Versions of the computing packages, on which the last bits depend besides our code."""
     packages = (
         "numpy",
         "scipy",

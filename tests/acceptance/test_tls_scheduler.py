@@ -1,4 +1,4 @@
-"""A Dask scheduler that takes only TLS: who is let in, and what the others are told.
+"""A Dask scheduler that takes only TLS: which workers it accepts, and the messages to the others.
 
 Jobs on one are in ``test_existing_cluster``.
 """

@@ -112,7 +112,7 @@ def test_a_job_is_picked_up_and_ends_with_its_result(farm: Farm) -> None:
 
 
 def test_no_port_answers_who_has_not_the_certificate(farm: Farm) -> None:
-    """Dask runs what it is sent, and any account of the machine reaches a port on loopback."""
+    """Dask runs any code it receives, and every account of the machine can reach a loopback port."""
     assert farm.worker is not None
     family = (psutil.Process(farm.worker.pid), *farm.processes())
     ports = {c.laddr.port for p in family for c in p.net_connections() if c.status == psutil.CONN_LISTEN}

@@ -1,4 +1,4 @@
-"""A real worker in a process of its own, on a database file of its own."""
+"""A real worker in a separate process, with its own database file."""
 
 from __future__ import annotations
 

@@ -46,7 +46,7 @@ def browser() -> Iterator[Browser]:
 
 
 class Visit:
-    """A page that remembers what went wrong on it; ``allowed`` are words of console errors that a test expects."""
+    """A page that records its errors; ``allowed`` are words of console errors that a test expects."""
 
     def __init__(self, context: BrowserContext, url: str) -> None:
         self.url, self.wrong, self.allowed = url, list[str](), list[str]()

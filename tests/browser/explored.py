@@ -1,6 +1,6 @@
-"""Explore as a test sees it: what stands in its fields, what it says about them, and what is true of them.
+"""Explore in the view of a test: the contents of its fields, the page's statements about them, and the truth.
 
-The truth is asked of the service by way of the fields alone, without a word from the page's scripts.
+The truth comes from the service, from the fields alone, without the page's scripts.
 """
 
 from __future__ import annotations
@@ -139,7 +139,7 @@ class Truth:
         return self._post("/processes/flight/execution", {"inputs": inputs})
 
     def region(self, fields: dict[str, str]) -> list[list[float]] | None:
-        """The proved polygon that the map shows, closed; None where there is none."""
+        """The proved polygon on the map, closed; None without one."""
         if fields["rest"] != "lvlh" or not self._readable(fields, start=False):
             return None
         more = {name: float(fields[name]) for name in ("horizon_s", "y_max_m")}

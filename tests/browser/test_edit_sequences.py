@@ -67,7 +67,7 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
 
 
 def some_edit(page: Page, draw: random.Random) -> Seen:
-    """One thing a user may do; returns what the page shows in the same moment."""
+    """One action of a user; returns what the page shows at that moment."""
     kind = draw.random()
     if kind < 0.10:
         box = (
@@ -106,7 +106,7 @@ def some_edit(page: Page, draw: random.Random) -> Seen:
 def run_sequence(
     page: Page, served: Served, truth: Truth, draw: random.Random, tally: Counter[str]
 ) -> list[str]:
-    """A sequence of edits; returns what was ever shown and was not so, or what was not shown at the end and is so."""
+    """A sequence of edits; returns every false statement ever shown, and every true one missing at the end."""
     looks: list[Seen] = [
         edit(page, **(FIRST | {name: "0" for name in TEXTS if "half" in name or "dist" in name}))
     ]

@@ -1,4 +1,4 @@
-"""Result pages: what was found stands first, the job's status is no verdict, and no answer outlives its inputs."""
+"""Result pages: findings come first, the job's status is not a verdict, and no answer outlives its inputs."""
 
 from __future__ import annotations
 

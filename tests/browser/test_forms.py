@@ -1,4 +1,4 @@
-"""Forms made from schemas: what each process's form holds at first is what the process takes."""
+"""Forms made from schemas: the initial contents of each process's form are valid inputs."""
 
 from __future__ import annotations
 

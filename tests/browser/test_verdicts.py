@@ -1,4 +1,4 @@
-"""No verdict on Explore is ever old or foreign: what is shown answers what stands in the fields, or is withdrawn."""
+"""No verdict on Explore is ever old or foreign: each answers the question of the fields, or is removed."""
 
 from __future__ import annotations
 

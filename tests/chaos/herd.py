@@ -1,4 +1,4 @@
-"""Claimers in processes of their own, and what has to hold whatever is done to them."""
+"""Claimers in separate processes, and the properties that must hold whatever happens to them."""
 
 from __future__ import annotations
 

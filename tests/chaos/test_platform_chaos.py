@@ -80,7 +80,7 @@ class Platform:
             time.sleep(0.1)
 
     def kill(self, kind: str) -> None:
-        """SIGKILL one process of this kind; a worker that nobody supervises is started again."""
+        """SIGKILL one process of this kind; restart a worker without a supervisor."""
         candidates = self._processes(kind)
         if not candidates:
             return

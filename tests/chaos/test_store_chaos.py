@@ -49,7 +49,7 @@ def test_workers_are_killed(herd: Herd) -> None:
 
 
 def test_zombies_come_back_and_are_refused(herd: Herd) -> None:
-    """A busy worker stops for longer than its lease and goes on: what it still writes is refused."""
+    """A busy worker stops for longer than its lease and continues: the store refuses its writes."""
     herd.job_s = 0.6
     herd.submit(JOBS)
     herd.start(3)
@@ -75,7 +75,7 @@ def test_zombies_come_back_and_are_refused(herd: Herd) -> None:
 
 
 def happens(condition: Callable[[], object], within_s: float = 15.0) -> bool:
-    """True when it comes to hold; not to hold is no failure yet."""
+    """True once it holds; until then it is not a failure."""
     try:
         until(condition, "it", within_s)
     except AssertionError:
@@ -98,7 +98,7 @@ def stop_one(herd: Herd) -> tuple[int, str]:
 
 
 def test_the_database_server_is_killed(tmp_path: Path) -> None:
-    """kill -9 of every process of a PostgreSQL server, three times; what was answered is there afterwards."""
+    """kill -9 of every process of a PostgreSQL server, three times; everything answered is still there."""
     # Its own folder: pytest's is closed to other users.
     with tempfile.TemporaryDirectory(prefix="safestart-chaos-") as folder:
         home = Path(folder) / "server"
@@ -141,7 +141,7 @@ def test_the_disk_is_full(tmp_path: Path) -> None:
             assert sum(herd.jobs.counts().values()) == accepted
             ballast.unlink()
             for job in herd.jobs.list(limit=1000).jobs:
-                if "text" in herd.jobs.get(job.id).inputs:  # what happened to fit, by then claimed or not
+                if "text" in herd.jobs.get(job.id).inputs:  # the jobs that happened to fit, claimed or not
                     herd.ids = [known for known in herd.ids if known != job.id]
                     herd.insist(lambda job=job: herd.jobs.dismiss(job.id))
             until(lambda: all(herd.jobs.get(job).status.ended for job in herd.ids), "the end of every job")

@@ -129,7 +129,7 @@ def _equal(one: Any, two: Any) -> bool:
 
 
 def run_replays(number: int, seed: int) -> Run:
-    """Kept is only what has the inputs, the outputs and the files of the same computation."""
+    """Only bundles with the inputs, outputs and files of the same computation are kept."""
     rng, document = Random(f"replay {seed}"), _execution().document
     made = mutants(document, known_fields(_parts()), rng, number)
     with patch("safestart.records.replay.execute", _again):

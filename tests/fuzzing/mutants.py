@@ -48,7 +48,7 @@ def at(document: Any, path: Path) -> Any:
 
 
 def known_fields(*documents: Any) -> dict[str, list[Any]]:
-    """Fields by name with the values that they have in these documents: what an added field is made of."""
+    """Fields by name with their values in these documents, the material for added fields."""
     out: dict[str, list[Any]] = {}
     for document in documents:
         for path in paths(document):

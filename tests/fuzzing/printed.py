@@ -1,4 +1,4 @@
-"""A printed statement read back, from nothing but its lines: what a reader may believe."""
+"""Read a printed statement back from its lines alone, as a reader would."""
 
 from __future__ import annotations
 
@@ -155,7 +155,7 @@ def printed(verdict: str, margin: float, lines: tuple[str, ...]) -> Printed:
 
 
 def _tightened(found: dict[str, str], number: dict[str, float], out: dict[str, Any]) -> None:
-    """The rounded corridor is the real one less what the tube takes."""
+    """The rounded corridor is the real one tightened by the tube."""
     radius = out["radius_m"]
     wanted = {
         "tight": number["plane"] + radius,

@@ -1,4 +1,4 @@
-"""A seeded part of the long run (``python -m tests.fuzzing``), and that it finds what it is there to find."""
+"""A seeded part of the long run (``python -m tests.fuzzing``), and a check that it finds planted errors."""
 
 from __future__ import annotations
 

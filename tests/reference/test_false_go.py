@@ -62,7 +62,7 @@ def test_the_certificate_does_not(name: str) -> None:
 
 @pytest.mark.parametrize("name", CASES)
 def test_no_thrust_history_stays(name: str) -> None:
-    """By default NO_GO, with a proof that checks; the bound is the one that is told."""
+    """By default NO_GO, with a proof that the checker accepts; the bound is the stated one."""
     said = asked(name)
     assert (said["method"], said["verdict"], said["decided_by"]) == ("auto", ["NO_GO"], ["exact"])
     proved = asked(name, proofs=True)

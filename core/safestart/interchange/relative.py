@@ -35,6 +35,17 @@ class Relative:
     target: Floats
     known: Bools
 
+    def where(self, chosen: Bools) -> Relative:
+        """The same at the epochs where ``chosen`` (K,) is True."""
+        return Relative(
+            self.epochs[chosen],
+            self.states[chosen],
+            self.axes[chosen],
+            self.rates[chosen],
+            self.target[chosen],
+            self.known[chosen],
+        )
+
     def mean_motions(self) -> Floats:
         """(K,) rad/s, of the target's osculating orbit."""
         r, v = np.linalg.norm(self.target[:, :3], axis=1), np.linalg.norm(self.target[:, 3:], axis=1)

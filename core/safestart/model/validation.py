@@ -11,10 +11,12 @@ from safestart.errors import InvalidInput, SafestartError
 
 _LONGEST = 120
 _LISTED = 5
+_SHORT = 40
 
 _REQUIRED = {
     "missing": "a value",
     "extra_forbidden": "no field of this name",
+    "unexpected_keyword_argument": "no field of this name",
     "greater_than": "a number > {gt}",
     "greater_than_equal": "a number >= {ge}",
     "less_than": "a number < {lt}",
@@ -36,6 +38,7 @@ _REQUIRED = {
     "list_type": "an array",
     "dict_type": "an object",
     "model_type": "an object",
+    "dataclass_type": "an object",
     "model_attributes_type": "an object",
     "value_error": "{error}",
 }
@@ -57,26 +60,29 @@ def received(report: Any) -> str:
     """What came, shortened."""
     if report["type"] == "missing":
         return "nothing"
-    shown = repr(report.get("input"))
+    value = report.get("input")
+    if isinstance(value, list | dict) and len(value) > _SHORT:  # its text would be as long as the whole body
+        return f"{'an array' if isinstance(value, list) else 'an object'} of {len(value)}"
+    shown = repr(value)
     return shown if len(shown) <= _LONGEST else shown[: _LONGEST - 3] + "..."
 
 
 Error = TypeVar("Error", bound=SafestartError)
 
 
-def refusal(reports: Sequence[Any], prefix: str = "") -> InvalidInput:
-    """One exception for a list of reports: the first in full, the other fields by name."""
-    return error_of(InvalidInput, reports, prefix)
+def refusal(reports: Sequence[Any], prefix: str = "", others: int = 0) -> InvalidInput:
+    """One exception for a list of reports: the first in full, the other fields by name; ``others`` are not listed."""
+    return error_of(InvalidInput, reports, prefix, others)
 
 
-def error_of(kind: type[Error], reports: Sequence[Any], prefix: str = "") -> Error:
+def error_of(kind: type[Error], reports: Sequence[Any], prefix: str = "", others: int = 0) -> Error:
     """The same report as another error class of ours."""
     named = reports[: 1 + _LISTED]
     fields = [prefix + (".".join(str(part) for part in report["loc"]) or "body") for report in named]
     wanted, came = required(reports[0]), received(reports[0])
     detail = f"{fields[0]}: required {wanted}, received {came}"
     if len(fields) > 1:
-        detail += f" (and {len(reports) - 1} more: {', '.join(fields[1:])})"
+        detail += f" (and {len(reports) - 1 + others} more: {', '.join(fields[1:])})"
     return kind(detail, field=fields[0], required=wanted, received=came)
 
 

@@ -40,12 +40,13 @@ class ProcessSpec:
 
     ``run`` names the function as ``module:function``, imported only where the process executes. A sharded process has
     ``sharding`` instead. ``light`` processes may run synchronously inside the service; all others are async-execute
-    only. ``replay_tolerance`` bounds the deviation of a replay on another machine or with other versions, relative to
-    max(1, |value|); on the same machine and versions a replay is equal bit for bit. ``instant`` names a function
-    (inputs) -> document for the service's answer at submission. ``states`` names the input list, if any, that a service
-    may limit further (``max_states``). ``tables`` declares tables over plain lists among the outputs; lists of objects
-    are tables without a declaration. ``views`` say how a page shows the outputs, the most important first.
-    ``extensions`` are further members of its description, named ``safestart:...``.
+    only; ``cost`` estimates the seconds of one core that an answer takes for given inputs. ``replay_tolerance`` bounds
+    the deviation of a replay on another machine or with other versions, relative to max(1, |value|); on the same
+    machine and versions a replay is equal bit for bit. ``instant`` names a function (inputs) -> document for the
+    service's answer at submission. ``states`` names the input list, if any, that a service may limit further
+    (``max_states``). ``tables`` declares tables over plain lists among the outputs; lists of objects are tables without
+    a declaration. ``views`` say how a page shows the outputs, the most important first. ``extensions`` are further
+    members of its description, named ``safestart:...``.
     """
 
     id: str
@@ -56,6 +57,7 @@ class ProcessSpec:
     run: str = ""
     sharding: Sharding | None = None
     light: bool = False
+    cost: Callable[[Any], float] = lambda _: 0.0
     instant: str | None = None
     version: str = "1.0.0"
     replay_tolerance: float = 1e-9

@@ -41,13 +41,13 @@ class Flat(Generic[M]):
     the model becomes a parameter without a change here.
     """
 
-    def __init__(self, model: type[M], opened: Mapping[str, type[WireModel]]) -> None:
+    def __init__(self, model: type[M], opened: Mapping[str, Any]) -> None:
         self._validate = TypeAdapter(model).validator.validate_python
         self._opened = dict(opened)
         self._listed = {name for name in opened if get_origin(model.model_fields[name].annotation) is list}
         self.parameters: dict[str, Parameter] = {}
         for name, field in model.model_fields.items():
-            for key, item in opened[name].model_fields.items() if name in opened else [(name, field)]:
+            for key, item in opened[name].__pydantic_fields__.items() if name in opened else [(name, field)]:
                 if key in self.parameters:
                     raise ValueError(f"two fields would be called {key}")
                 self.parameters[key] = Parameter(
@@ -62,7 +62,7 @@ class Flat(Generic[M]):
             name
             for name, inner in opened.items()
             if not model.model_fields[name].is_required()
-            and any(item.is_required() for item in inner.model_fields.values())
+            and any(item.is_required() for item in inner.__pydantic_fields__.values())
         ]
         # Opened fields are not parameters themselves.
         self._special: dict[str, Parameter | None] = dict.fromkeys(opened)

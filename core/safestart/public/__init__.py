@@ -1,1 +1,1 @@
-"""What `import safestart` offers: calls with their results, the same here and at a remote service."""
+"""The calls of `import safestart` and their results, the same here and at a remote service."""

@@ -40,7 +40,7 @@ class Certificates(Shown):
         return np.asarray(self.verdict == "GO")
 
     def facts(self) -> Mapping[str, object]:
-        """How many starts have which verdict."""
+        """Number of starts by verdict."""
         counts = {word: int(np.count_nonzero(self.verdict == word)) for word in COLOURS}
         return {"starts": int(self.verdict.size), **counts}
 
@@ -73,7 +73,7 @@ def certify(scenario: Scenario, points: ArrayLike, rest: Rest | str = Rest.LVLH)
     """
     given, rest = points_of(points), Rest(rest)
     found = certify_starts(scenario, given, rest)
-    # A start on a face, within what floats may lose, is not called outside.
+    # A start on a face, within rounding, does not count as outside.
     outside = (found.binding < len(found.names) - 1) & (found.margin < -2.0 * ROUNDING)
     outside &= _outside(scenario, given)
     verdict = np.where(found.go, "GO", np.where(outside, "NO_GO", "UNDECIDED"))

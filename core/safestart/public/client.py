@@ -34,11 +34,11 @@ _AT_ONCE = 10_000
 
 
 class Client:
-    """A service at ``url``; calls take what the functions of the same name take and return the same results.
+    """A service at ``url``; calls take the arguments of the functions of the same name and return the same results.
 
-    ``key`` is an API key, where the service wants one. The tumble rate travels in degrees: for a few rates its last bit
-    changes. Proofs are checked here: the service need not be trusted. Refusals of the service raise the exception of
-    their kind, ``Unavailable`` where it does not answer. Close it, or use it in a ``with`` block.
+    ``key`` is an API key, if the service requires one. The tumble rate travels in degrees, which changes the last bit
+    of a few rates. Proofs are checked here, so you need not trust the service. Errors of the service raise the matching
+    exception, ``Unavailable`` when it does not answer. Close it, or use it in a ``with`` block.
     """
 
     def __init__(
@@ -151,13 +151,13 @@ class Client:
     ) -> Result:
         """Queue a process, follow it, fetch its result and its files.
 
-        Raises ``JobFailed`` with the reason where it fails, ``Unavailable`` where it has not ended after ``limit_s``
-        seconds; the job then goes on, and :meth:`result` fetches what becomes of it.
+        Raises ``JobFailed`` with the reason if it fails, ``Unavailable`` if it has not ended after ``limit_s`` seconds;
+        the job then continues, and :meth:`result` fetches its result.
         """
         return self.result(self.submit(process_id, inputs), progress=progress, limit_s=limit_s)
 
     def submit(self, process_id: str, inputs: Mapping[str, Any] | None = None) -> str:
-        """Queue a process; the id of its job."""
+        """Queue a process; returns the id of its job."""
         path = f"/processes/{quote(process_id, safe='')}/execution"
         headers = {"Prefer": "respond-async", "Idempotency-Key": str(uuid.uuid4())}
         job = self._wire.post(path, {"inputs": dict(inputs or {})}, headers, again=True)

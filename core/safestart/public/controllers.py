@@ -1,4 +1,4 @@
-"""`controller`: our controllers for anybody's simulator, one command at a time."""
+"""`controller`: our controllers for any simulator, one command at a time."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ NODES = 6
 
 
 class Steering(Protocol):
-    """Anybody's controller: LVLH thrust (3,), m/s², or a command of ours, for interval ``k`` and state (6,)."""
+    """A user's controller: returns LVLH thrust (3,), m/s², or our command, for interval ``k`` and state (6,)."""
 
     def command(self, k: int, state: Floats, /) -> Command | ArrayLike:
         """Thrust to hold over the interval."""
@@ -30,13 +30,13 @@ class Steering(Protocol):
 
 
 class Steered:
-    """Anybody's controller in our loop; thrust longer than the chaser has is cut to what it has."""
+    """A user's controller in our loop; thrust beyond the chaser's limit is cut to the limit."""
 
     def __init__(self, inner: Steering, a_max: float) -> None:
         self._inner, self._a_max = inner, a_max
 
     def begin(self, state: Floats) -> None:
-        """Told to a controller that wants to know."""
+        """Pass the start to a controller with a ``begin`` method."""
         begin = getattr(self._inner, "begin", None)
         if begin is not None:
             begin(state)
@@ -54,7 +54,7 @@ class Steered:
 class Pilot:
     """A controller of ours: begin a flight, then ask for a command in every interval of ``dt_s`` seconds.
 
-    It knows the state it is given and nothing else: any simulator may fly its commands. The target's body frame
+    It knows only the given state, so any simulator can fly its commands. The target's body frame
     coincides with LVLH at interval 0.
     """
 
@@ -71,9 +71,9 @@ class Pilot:
     def command(self, k: int, state: ArrayLike) -> Command:
         """The command for interval ``k`` (from 0) and the LVLH ``state`` (6,), m and m/s.
 
-        ``thrust`` (3,) of it, m/s², LVLH, is to be held until the next interval; ``feasible`` is False where the
-        controller found no admissible command and gives its best; ``label`` says what it was doing. Raises
-        ``InvalidInput`` for an interval outside [0, steps), a state of another shape, and before :meth:`begin`.
+        Hold its ``thrust`` (3,), m/s², LVLH, until the next interval; ``feasible`` is False when the controller found
+        no admissible command and gives its best; ``label`` names its mode. Raises ``InvalidInput`` for an interval
+        outside [0, steps), a state of another shape, and before :meth:`begin`.
         """
         if not self._begun:
             raise invalid("command", "begin(state) before the first command", "none")
@@ -88,7 +88,7 @@ def controller(
     """A controller for flights of ``duration_s`` seconds with a command every ``dt_s`` seconds.
 
     ``filter``: three regimes and the safety filter of paper 000, in the plane or in space (``spatial``). ``sequence``:
-    model predictive control over the whole thrust sequence, in the plane; where the exact answer is GO it keeps the
+    model predictive control over the whole thrust sequence, in the plane; if the exact answer is GO it keeps the
     corridor at all times. Raises ``InvalidInput`` for another name or a duration out of range.
     """
     steps = steps_of(duration_s, dt_s)
@@ -105,7 +105,7 @@ def controller(
         from safestart.control.gains import TUNED
         from safestart.control.three_regimes import ThreeRegimes
 
-        # It looks 12 s ahead, at whatever interval.
+        # It looks 12 s ahead at any interval.
         nodes = max(1, math.ceil(2.0 * NODES / dt_s))
         plan = flight_plan(scenario, TUNED, dt_s, steps, nodes=nodes, planar=not spatial)
         return Pilot(name, ThreeRegimes(plan), dt_s, steps)

@@ -34,12 +34,12 @@ _PARTS = 4
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Decision(Shown):
-    """The verdict on one start at rest, and what proves it.
+    """The verdict on one start at rest, and its proof.
 
     ``start_m`` (d,), body frame, metres. ``verdict``: ``GO``, ``NO_GO`` or ``UNDECIDED``. ``margin_m``: for GO some
-    thrust history keeps at least this distance from every face, for NO_GO every one is at some time at least so far
-    outside (negative); NaN otherwise. ``reason`` says it in a sentence. ``proof`` is the document for `verify`; None
-    where the verdict is UNDECIDED.
+    thrust history keeps at least this distance from every face, for NO_GO every one is at some time at least this far
+    outside (negative); NaN otherwise. ``reason`` is one sentence. ``proof`` is the document for `verify`; None when the
+    verdict is UNDECIDED.
     """
 
     scenario: Scenario
@@ -62,7 +62,7 @@ class Decision(Shown):
         return np.array(held, dtype=np.float64).reshape(-1, len(self.start_m))
 
     def verify(self) -> Verified:
-        """Check the proof in ball arithmetic; raises as `safestart.verify`, ``InvalidInput`` where there is none."""
+        """Check the proof in ball arithmetic; raises as `safestart.verify`, and ``InvalidInput`` without a proof."""
         from safestart.public.proofs import verify
 
         if self.proof is None:
@@ -117,8 +117,8 @@ def decide(
     """Can any thrust history keep the chaser in the rotating corridor? (docs/theory/exact.md)
 
     ``start`` (2,) or (3,): body-frame position in metres, at rest in LVLH or in the body frame (``rest``). ``stay``: in
-    the corridor at all times of ``horizon_s`` seconds; ``synchronize``: besides, at rest in the body frame in the ball
-    around the hold point at some time within ``within_s`` seconds. Thrust is held over intervals of 2 s. Raises
+    the corridor at all times of ``horizon_s`` seconds; ``synchronize``: in addition, at rest in the body frame in the
+    ball around the hold point at some time within ``within_s`` seconds. Thrust is held over intervals of 2 s. Raises
     ``InvalidInput`` for other inputs; a failure of the solver is UNDECIDED.
     """
     point, rest = point_of(start), Rest(rest)

@@ -28,10 +28,10 @@ if TYPE_CHECKING:
 class Flight(Shown):
     """A flight as curves over K times.
 
-    ``time_s`` (K,); ``body_m`` and ``lvlh_m`` (K, d), positions in metres; ``thrust_m_s2`` (K, d), LVLH, what is held
-    from each time on; ``distance_m`` (K, F), to each of ``faces``, negative outside. ``closest_m`` is the least
-    distance (of a controller's flight at all times, else along the curves), at ``closest_face`` and ``closest_s``.
-    ``delta_v_m_s``. ``verdict`` is that of the exact question where it was asked, else None.
+    ``time_s`` (K,); ``body_m`` and ``lvlh_m`` (K, d), positions in metres; ``thrust_m_s2`` (K, d), LVLH, held from each
+    time on; ``distance_m`` (K, F), to each of ``faces``, negative outside. ``closest_m`` is the least distance (of a
+    controller's flight at all times, else along the curves), at ``closest_face`` and ``closest_s``. ``delta_v_m_s``.
+    ``verdict`` is that of the exact question if it was asked, else None.
     """
 
     scenario: Scenario
@@ -64,7 +64,7 @@ class Flight(Shown):
 
     @property
     def safe(self) -> bool:
-        """Never outside the corridor where it was looked at."""
+        """True if no check found it outside the corridor."""
         return self.closest_m >= 0.0
 
     def facts(self) -> Mapping[str, object]:

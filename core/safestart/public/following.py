@@ -1,4 +1,4 @@
-"""A job followed to its end, with a progress bar."""
+"""Follow a job to its end, with a progress bar."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ _LEAST_S = 0.2
 
 
 def followed(wire: Wire, place: str, *, progress: bool, limit_s: float | None) -> str:
-    """The id of the process whose job is at ``place``, as soon as it has succeeded.
+    """Wait for the job at ``place`` to succeed; returns its process id.
 
-    Raises ``JobFailed`` where it failed or was dismissed, ``Unavailable`` after ``limit_s`` seconds.
+    Raises ``JobFailed`` if it failed or was dismissed, ``Unavailable`` after ``limit_s`` seconds.
     """
     start = time.monotonic()
     status = wire.get(place)

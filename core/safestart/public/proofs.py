@@ -1,4 +1,4 @@
-"""`verify`: a proof document checked in ball arithmetic, by code that shares nothing with what made it."""
+"""`verify`: check a proof document in ball arithmetic, by code that shares nothing with the prover."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ _MOST_BYTES = 16 * 1024 * 1024
 def verify(proof: Mapping[str, Any] | str | os.PathLike[str]) -> Verified:
     """Check a proof, a document or the path of its file.
 
-    What is returned says all that is proved (``verdict``, ``margin_m`` in metres, ``statement`` in lines). Raises
-    ``ProofRejected`` with the reason where an inequality fails or the document is malformed, ``InvalidInput`` where the
-    file is unreadable.
+    The result states all that is proved (``verdict``, ``margin_m`` in metres, ``statement`` in lines). Raises
+    ``ProofRejected`` with the reason if an inequality fails or the document is malformed, ``InvalidInput`` if the file
+    is unreadable.
     """
     from safestart.proofs.checker import check
 

@@ -99,8 +99,8 @@ class Region(Shown):
 def region(scenario: Scenario, *, horizon_s: float = 60.0, y_max_m: float = 150.0) -> Region:
     """The starts at rest in LVLH from which some thrust history stays for ``horizon_s`` seconds (docs/theory/atlas.md).
 
-    The corridor is cut at ``y_max_m`` metres. Tenths of a second the first time. Raises ``InvalidInput`` for a horizon
-    that is no multiple of 2 s up to 600 s, or a cut not beyond the hold plane.
+    The corridor is cut at ``y_max_m`` metres. The first call takes tenths of a second. Raises ``InvalidInput`` for a
+    horizon that is not a multiple of 2 s up to 600 s, or a cut not beyond the hold plane.
     """
     from safestart.processes.safe_region.run import region_of
     from safestart.runtime.progress import Context

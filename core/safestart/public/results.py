@@ -21,11 +21,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Result:
-    """What a process gave: its document and its files.
+    """The result of a process: its document and its files.
 
-    ``process_id`` says which. ``document`` holds ``inputs``, ``outputs`` and ``provenance``; ``artifacts`` are pictures
-    (PNG), arrays (NPZ) and tables (Parquet) with ``name``, ``media_type``, ``data`` and ``sha256``. A notebook shows
-    the first picture.
+    ``process_id`` names the process. ``document`` holds ``inputs``, ``outputs`` and ``provenance``; ``artifacts`` are
+    pictures (PNG), arrays (NPZ) and tables (Parquet) with ``name``, ``media_type``, ``data`` and ``sha256``. A notebook
+    shows the first picture.
     """
 
     process_id: str
@@ -45,14 +45,14 @@ class Result:
 
     def tables(self) -> dict[str, Rows]:
         """The tables of the outputs by name, the first the most important; each a list of rows."""
-        # A newer service may run processes that are unknown here: their lists of objects are tables all the same.
+        # A newer service may run processes that are unknown here; their lists of objects are tables too.
         known = process(self.process_id).tables if self.process_id in PROCESS_IDS else ()
         return tables_of(self.outputs, known)
 
     def to_dataframe(self, table: str = "") -> pd.DataFrame:
-        """A table as a pandas data frame, the first where none is named.
+        """A table as a pandas data frame, by default the first.
 
-        Raises ``InvalidInput`` for a table that is not there, ``Unavailable`` where pandas is not installed.
+        Raises ``InvalidInput`` for an unknown table, ``Unavailable`` if pandas is not installed.
         """
         tables = self.tables()
         name = table or next(iter(tables), "")
@@ -64,7 +64,7 @@ class Result:
         return frame_of({column: [row.get(column) for row in rows] for column in columns_of(rows)})
 
     def save(self, folder: str | os.PathLike[str]) -> list[Path]:
-        """Write the document (``result.json``) and the files into a folder; the paths written."""
+        """Write the document (``result.json``) and the files into a folder; returns the paths."""
         import json
 
         place = Path(folder)

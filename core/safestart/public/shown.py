@@ -1,4 +1,4 @@
-"""What all results share: a picture in a notebook, a table of facts, a data frame."""
+"""Shared by all results: a picture in a notebook, a table of facts, a data frame."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ COLOURS = {"GO": "#0072B2", "NO_GO": "#D55E00", "UNDECIDED": "#999999"}
 class Shown(ABC):
     """A result that plots itself.
 
-    A notebook shows :meth:`facts` beside the picture. Without matplotlib it shows the facts alone.
+    A notebook shows :meth:`facts` beside the picture, or only the facts without matplotlib.
     """
 
     __slots__ = ()
 
     @abstractmethod
     def facts(self) -> Mapping[str, object]:
-        """What the result says, by name, in a few entries."""
+        """A few facts of the result, by name."""
 
     @abstractmethod
     def draw(self, axes: Axes) -> None:
@@ -40,9 +40,9 @@ class Shown(ABC):
         """Columns of the data frame, all of one length."""
 
     def plot(self, axes: Axes | None = None) -> Axes:
-        """Draw into ``axes``, or into a new figure (``.figure`` of what is returned; no pyplot).
+        """Draw into ``axes``, or into a new figure (``.figure`` of the returned axes; no pyplot).
 
-        Raises ``Unavailable`` where matplotlib is not installed.
+        Raises ``Unavailable`` if matplotlib is not installed.
         """
         if axes is None:
             axes = _new_axes()
@@ -50,7 +50,7 @@ class Shown(ABC):
         return axes
 
     def to_dataframe(self) -> pd.DataFrame:
-        """The result as a pandas data frame; raises ``Unavailable`` where pandas is not installed."""
+        """The result as a pandas data frame; raises ``Unavailable`` if pandas is not installed."""
         return frame_of(self.columns())
 
     def _repr_png_(self) -> bytes | None:
@@ -80,7 +80,7 @@ def html_of(title: str, facts: Mapping[str, object], png: bytes | None) -> str:
 
 
 def frame_of(columns: Mapping[str, Any]) -> pd.DataFrame:
-    """A data frame; raises ``Unavailable`` where pandas is not installed."""
+    """A data frame; raises ``Unavailable`` if pandas is not installed."""
     try:
         import pandas as pd
     except ImportError:

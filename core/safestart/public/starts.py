@@ -1,4 +1,4 @@
-"""Starts as people write them, and a scenario as the wire states it."""
+"""Starts in the forms that users write, and a scenario in its wire form."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def point_of(start: ArrayLike) -> Floats:
 
 
 def seconds(name: str, value: float) -> float:
-    """A horizon as the wire takes it; raises ``InvalidInput`` unless it is a multiple of 2 s up to 600 s."""
+    """A horizon in its wire form; raises ``InvalidInput`` unless it is a multiple of 2 s up to 600 s."""
     required = "a multiple of 2 s in [2, 600]"
     if isinstance(value, bool) or not isinstance(value, int | float | np.number):
         raise invalid(name, required, value)
@@ -68,7 +68,7 @@ def state_of(point: Floats) -> dict[str, float]:
 
 
 def degrees_of(rate: float) -> float:
-    """Degrees whose radians are ``rate`` to the bit where there are such; else the nearest, a rounding away."""
+    """Degrees whose radians equal ``rate`` exactly if such exist; otherwise the nearest, off by one rounding."""
     nearest = math.degrees(rate)
     tried = [round(nearest, 12), nearest]
     for end in (0.0, math.inf):

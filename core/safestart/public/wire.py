@@ -36,18 +36,18 @@ class Wire:
         self._http = http or httpx.Client(timeout=timeout_s)
 
     def close(self) -> None:
-        """Close the connections that are our own."""
+        """Close our own connections."""
         if self._own:
             self._http.close()
 
     def get(self, path: str, headers: Mapping[str, str] | None = None) -> dict[str, Any]:
-        """GET a JSON document; tried again where the service does not answer."""
+        """GET a JSON document; tries again when the service does not answer."""
         return _document(self.answered("GET", path, None, headers, again=True))
 
     def post(
         self, path: str, body: Any, headers: Mapping[str, str] | None = None, *, again: bool = False
     ) -> dict[str, Any]:
-        """POST JSON and read JSON; tried ``again`` only where repeating is harmless."""
+        """POST JSON and read JSON; ``again`` allows a second try, for harmless repetitions only."""
         return _document(self.answered("POST", path, body, headers, again=again))
 
     def answered(
@@ -75,7 +75,7 @@ class Wire:
 
 
 def artifact_of(wire: Wire, job: str, entry: Mapping[str, Any]) -> Artifact:
-    """A file of a job's result; raises ``Altered`` where its bytes are not those that the document names."""
+    """A file of a job's result; raises ``Altered`` if its bytes differ from those that the document names."""
     name = str(entry["name"])
     answer = wire.answered("GET", f"{job}/artifacts/{quote(name, safe='')}", None, None, again=True)
     found = Artifact(name, str(entry["media_type"]), answer.content)
@@ -95,7 +95,7 @@ def _document(answer: httpx.Response) -> dict[str, Any]:
 
 
 def _refusal(answer: httpx.Response) -> SafestartError:
-    """The exception of a problem document; by the status alone where there is none."""
+    """The exception for a problem document; without a document, for the status."""
     try:
         problem = answer.json()
     except ValueError:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Container
 from typing import Any
 
 
@@ -24,9 +25,31 @@ def loads(text: str | bytes) -> Any:
     return json.loads(text, object_pairs_hook=_unique, parse_constant=_finite, parse_float=_finite)
 
 
-def require_unique_names(text: str | bytes) -> None:
-    """Raise ``NameTwice`` when an otherwise valid document repeats a name; builds no objects."""
-    json.loads(text, object_pairs_hook=_check, parse_float=len, parse_int=len)
+class TooManyNames(ValueError):
+    """A document with more unknown names than a reader wants to report; ``name`` is the first of them."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__(f"unknown names, the first is {json.dumps(name[:100])}")
+        self.name = name
+
+
+def require_unique_names(
+    text: str | bytes, known: Container[str] | None = None, most_unknown: int = 1000
+) -> None:
+    """Raise ``NameTwice`` for an otherwise valid document, and ``TooManyNames`` for too many that are not ``known``.
+
+    Nothing is built of the document; a reader that reports every unknown name would need memory for each.
+    """
+    unknown: list[str] = []
+
+    def check(pairs: list[tuple[str, Any]]) -> None:
+        _check(pairs)
+        if known is not None:
+            unknown.extend(name for name, _ in pairs if name not in known)
+            if len(unknown) > most_unknown:
+                raise TooManyNames(unknown[0])
+
+    json.loads(text, object_pairs_hook=check, parse_float=len, parse_int=len)
 
 
 def _finite(text: str) -> float:

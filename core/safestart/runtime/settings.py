@@ -78,6 +78,18 @@ class Settings(BaseSettings):
         60.0, ge=1, le=3600, description="Longest time a request's body may take to arrive, s."
     )
 
+    answer_timeout_s: float = Field(
+        30.0, ge=1, le=3600, description="Longest time that a client waits for an answer at once, s."
+    )
+    answer_processes: int = Field(
+        default_factory=lambda: min(max(2, os.cpu_count() or 1), 4),
+        ge=1,
+        le=64,
+        description="Helper processes of the service that compute heavy answers.",
+    )
+    max_bodies_bytes: int = Field(
+        96_000_000, ge=1000, description="Most bytes of all request bodies in flight together."
+    )
     max_connections: int = Field(
         800,
         ge=2,

@@ -39,6 +39,10 @@ class Notice:
             (b"link", f'<{self.link}>; rel="deprecation"; type="text/html"'.encode()),
         ]
 
+    def fields(self) -> dict[str, str]:
+        """The same by name."""
+        return {name.decode(): value.decode() for name, value in self.headers()}
+
     def concerns(self, scope: Scope) -> bool:
         """True when this request uses the deprecated call or parameter."""
         if self.parameter is None:

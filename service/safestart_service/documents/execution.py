@@ -15,7 +15,7 @@ from safestart.processes.registry import process
 from safestart.runtime.progress import Context
 from safestart_service.documents.describe import output_ids
 from safestart_service.documents.formats.ogc import ogc_values
-from safestart_service.http.body import parse_body, require_once
+from safestart_service.http.body import MOST_PARTS, parse_body, require_once
 
 _QUALIFIED = {"value", "mediaType", "encoding", "schema"}
 
@@ -55,7 +55,7 @@ def execute_model(process_id: str) -> type[ExecuteRequest]:
     )
 
 
-def parse_request(process_id: str, body: bytes) -> ExecuteRequest:
+def parse_request(process_id: str, body: bytes, most_parts: int = MOST_PARTS) -> ExecuteRequest:
     """Validate a body; raises as :func:`parse_body`.
 
     An input may be a qualified value, ``{"value": ...}``, which the standard uses for objects; this is tried only
@@ -63,12 +63,12 @@ def parse_request(process_id: str, body: bytes) -> ExecuteRequest:
     """
     model = execute_model(process_id)
     try:
-        return parse_body(model, body)
+        return parse_body(model, body, most_parts)
     except InvalidInput:
         plain = _unqualified(body)
         if plain is None:
             raise
-        return parse_body(model, plain)
+        return parse_body(model, plain, most_parts)
 
 
 def _unqualified(body: bytes) -> bytes | None:

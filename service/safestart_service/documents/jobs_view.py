@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 from safestart.errors import NotFound
 from safestart.processes.registry import PROCESS_IDS, process
 from safestart.store.records import Crew, Job, JobEntry, JobStatus, Wait
+from safestart_service.computing.store import Store
 from safestart_service.errors import NoSuchJob
 from safestart_service.http.answers import link
-from safestart_service.state import Services
+
+if TYPE_CHECKING:
+    from safestart_service.state import Services
 
 RESULTS_REL = "http://www.opengis.net/def/rel/ogc/1.0/results"
 NO_WORKER = "no worker is connected; `safestart worker` starts one"
@@ -38,7 +41,7 @@ def status_infos(services: Services, jobs: Sequence[JobEntry], base: str) -> lis
     return [_status_info(job, base, waits.get(job.id), crew) for job in jobs]
 
 
-def status_info(services: Services, job: Job, base: str) -> dict[str, Any]:
+def status_info(services: Services | Store, job: Job, base: str) -> dict[str, Any]:
     """statusInfo of one job; a waiting job has estimates of its start and end."""
     wait = services.jobs.wait(job.id) if job.status is JobStatus.ACCEPTED else None
     return _status_info(job, base, wait, services.jobs.crew())
@@ -70,7 +73,7 @@ def _status_info(job: JobEntry, base: str, wait: Wait | None, crew: Crew) -> dic
     }
 
 
-def job_detail(services: Services, job: Job, base: str) -> dict[str, Any]:
+def job_detail(services: Services | Store, job: Job, base: str) -> dict[str, Any]:
     """statusInfo with the inputs and the scalars of the instant answer; arrays stay out, as clients poll this."""
     instant = job.instant
     if instant is not None:

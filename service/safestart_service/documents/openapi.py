@@ -55,7 +55,8 @@ _WHY = {
     422: "An input is invalid; the problem names it.",
     429: "Too many requests or streams with this key, or too many jobs wait; Retry-After says when.",
     500: "An unexpected error.",
-    503: "The database does not answer, or too many connections are open.",
+    503: "The database does not answer, or the service is full; Retry-After says when.",
+    504: "The answer would take too long, or was not there in time; make a job of it.",
 }
 
 

@@ -19,8 +19,9 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from safestart.errors import SafestartError
 from safestart.runtime.logs import about
 from safestart_service.access.gate import Access
+from safestart_service.computing.budget import Budget, Share
 from safestart_service.documents import problems
-from safestart_service.errors import BodyTooLarge, MalformedRequest, QueryTooLong, RequestTimeout
+from safestart_service.errors import BodyTooLarge, Busy, MalformedRequest, QueryTooLong, RequestTimeout
 
 MAX_QUERY_BYTES = 8192
 CSP = (
@@ -57,11 +58,13 @@ class Limits:
         access: Access | None = None,
         timeout_s: float = 60.0,
         refused: Callable[[int], None] = lambda _: None,
+        max_bodies_bytes: int = 96_000_000,
     ) -> None:
         self.app = app
         self.max_body_bytes = max_body_bytes
         self.access = access
         self.timeout_s = timeout_s
+        self.bodies = Budget(max(max_bodies_bytes, max_body_bytes))
         self.refused = refused  # told the status of what no route answers
         self._prefix = secrets.token_hex(4).encode() + b"-"
         self._numbers = itertools.count(1)
@@ -95,8 +98,10 @@ class Limits:
             problem = problems.of_error(refusal, scope["path"], request_id.decode())
             await _answer(send_with_headers, problem, problems.headers_of(refusal))
             return
+        share = None
         if b"transfer-encoding" in headers or b"content-length" in headers:
-            receive = self._watched(receive)
+            share = Share(self.bodies)
+            receive = self._watched(receive, share)
         try:
             await self.app(scope, receive, send_with_headers)
         except ClientDisconnect:
@@ -107,6 +112,9 @@ class Limits:
                 raise
             self.refused(500)
             await _answer(send_with_headers, problems.unexpected(scope["path"], request_id.decode()))
+        finally:
+            if share is not None:
+                share.end()
 
     def _refusal(self, scope: Scope, headers: dict[bytes, bytes]) -> SafestartError | None:
         length = headers.get(b"content-length")
@@ -136,7 +144,7 @@ class Limits:
             received=received,
         )
 
-    def _watched(self, receive: Receive) -> Receive:
+    def _watched(self, receive: Receive, share: Share) -> Receive:
         """Count the bytes received, as a chunked body announces no length; stop at the cap or the deadline."""
         total = 0
         complete = False
@@ -156,9 +164,17 @@ class Limits:
                 complete = not message.get("more_body", False)
                 if total > self.max_body_bytes:
                     raise self._too_large(f"{total} bytes or more")
+                if not share.grow(len(message.get("body", b""))):
+                    raise self._busy()
             return message
 
         return watching
+
+    def _busy(self) -> Busy:
+        required = f"at most {self.bodies.most} bytes of bodies in flight"
+        return Busy(
+            f"the requests in flight fill the memory for bodies; required {required}", required=required
+        )
 
     def _too_slow(self, total: int) -> RequestTimeout:
         required = f"the whole body within {self.timeout_s:g} s"

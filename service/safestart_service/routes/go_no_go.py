@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Annotated, Any
 
 from fastapi import APIRouter, Query, Request
@@ -16,24 +15,18 @@ from safestart.processes.go_no_go.spec import SPEC, GoNoGoInputs, GoNoGoOutputs
 from safestart.processes.start_in_space.spec import SPEC as SPACE
 from safestart.processes.start_in_space.spec import SpaceInputs, SpaceOutputs
 from safestart.runtime.progress import Context
+from safestart_service.computing.dispatch import one_document, posted
 from safestart_service.documents.deprecation import RENAMED_METHOD
-from safestart_service.documents.execution import check_states, run_now
 from safestart_service.documents.openapi import REF, answer, content, json_body, refusals
 from safestart_service.http.answers import Json
-from safestart_service.http.body import parse_body, read_body
-from safestart_service.http.computing import computed
+from safestart_service.http.body import read_body
 from safestart_service.http.lean import query_route
-from safestart_service.state import services
 
 if TYPE_CHECKING:
     from pydantic import BaseModel as GoNoGoQuery
 else:
     GoNoGoQuery = ONE_START.query("GoNoGoQuery", "One operating point and one start, flat.")
 _SILENT = Context()
-
-
-def _document(inputs: GoNoGoInputs, context: Context) -> dict[str, Any]:
-    return run.answer(inputs, context).document_of_one()
 
 
 def _instant(inputs: GoNoGoInputs, query: bytes) -> dict[str, Any] | None:
@@ -43,7 +36,7 @@ def _instant(inputs: GoNoGoInputs, query: bytes) -> dict[str, Any] | None:
 
 
 async def _answer(request: Request, inputs: GoNoGoInputs) -> Response:
-    document = await computed(request, lambda context: _document(inputs, context))
+    document = await one_document(request, inputs)
     return Json(_linked(document, inputs, request.scope["query_string"]))
 
 
@@ -57,7 +50,7 @@ def _linked(document: dict[str, Any], inputs: GoNoGoInputs, query: bytes) -> dic
 async def _proof(request: Request, inputs: GoNoGoInputs) -> Response:
     method = inputs.method if method_of(inputs.method).proves else PROVING
     asked = inputs.model_copy(update={"method": method, "proofs": True})
-    document = await computed(request, lambda context: _document(asked, context))
+    document = await one_document(request, asked)
     if document["proof"] is None:
         raise NotFound(
             f"there is no proof: {document['reason']}",
@@ -68,14 +61,8 @@ async def _proof(request: Request, inputs: GoNoGoInputs) -> Response:
 
 
 def in_space(body: bytes) -> bool:
-    """Whether a body asks about ``starts``, the question in space."""
-    if b'"starts"' not in body:
-        return False
-    try:
-        found = json.loads(body)
-    except (ValueError, RecursionError):
-        return False
-    return isinstance(found, dict) and "starts" in found
+    """Whether a body asks about ``starts``, the question in space; the body is not parsed for that."""
+    return b'"starts"' in body and b'"states"' not in body
 
 
 one = APIRouter(tags=["instant answers"], route_class=query_route(ONE_START.parse, _answer, _instant))
@@ -86,7 +73,10 @@ many = APIRouter(tags=["instant answers"])
 @one.get(
     "/go-no-go",
     summary="Go/no-go for one start",
-    responses={200: answer(GoNoGoAnswer, "The verdict and every margin it rests on."), **refusals(422)},
+    responses={
+        200: answer(GoNoGoAnswer, "The verdict and every margin it rests on."),
+        **refusals(422, 429, 503, 504),
+    },
 )
 async def go_no_go_one(_query: Annotated[GoNoGoQuery, Query()]) -> Response:
     """May a chaser at rest at this point start its approach?
@@ -103,7 +93,7 @@ async def go_no_go_one(_query: Annotated[GoNoGoQuery, Query()]) -> Response:
     summary="Only the proof of a go/no-go",
     responses={
         200: content("application/json", {"type": "object"}, "The document that `safestart verify` checks."),
-        **refusals(404, 422),
+        **refusals(404, 422, 429, 503, 504),
     },
 )
 async def go_no_go_proof(_query: Annotated[GoNoGoQuery, Query()]) -> Response:
@@ -127,7 +117,7 @@ async def go_no_go_proof(_query: Annotated[GoNoGoQuery, Query()]) -> Response:
             {"anyOf": [{"$ref": REF + GoNoGoOutputs.__name__}, {"$ref": REF + SpaceOutputs.__name__}]},
             "Arrays over the states, or over the starts.",
         ),
-        **refusals(400, 413, 415, 422),
+        **refusals(400, 413, 415, 422, 429, 503, 504),
     },
 )
 async def go_no_go_many(request: Request) -> Response:
@@ -136,19 +126,11 @@ async def go_no_go_many(request: Request) -> Response:
     With ``starts`` in place of ``states`` it is the question of process ``start-in-space``: states with velocities, any
     attitude, orbit, corridor and set of thrusts.
     """
-    body = await read_body(request)
-    found = services(request)
+    if in_space(await read_body(request)):
+        return await posted(request, SPACE.id, bare=True)
+    return await posted(request, SPEC.id, bare=True, announced=_renamed)
 
-    def respond(context: Context) -> Response:
-        if in_space(body):
-            asked = parse_body(SpaceInputs, body)
-            check_states(SPACE, asked, found.settings.max_states)
-            return Json(run_now(SPACE, asked, context))
-        inputs = parse_body(GoNoGoInputs, body)
-        check_states(SPEC, inputs, found.settings.max_states)
-        answered = Json(run_now(SPEC, inputs, context))
-        if inputs.method in RENAMED:
-            answered.raw_headers.extend(RENAMED_METHOD.headers())
-        return answered
 
-    return await computed(request, respond)
+def _renamed(inputs: GoNoGoInputs) -> dict[str, str]:
+    """Header fields for a deprecated name of a method."""
+    return RENAMED_METHOD.fields() if inputs.method in RENAMED else {}

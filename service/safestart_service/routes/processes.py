@@ -2,38 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
-from uuid import uuid4
+from typing import Annotated
 
 from fastapi import APIRouter, Header, Path, Query, Request
 from fastapi.responses import Response
 from pydantic import BaseModel, ConfigDict, Field
 
-from safestart.processes.base import ProcessSpec
 from safestart.processes.registry import PROCESS_IDS, process
-from safestart.runtime.access import Caller, Role
-from safestart.runtime.progress import Context
-from safestart_service.access.gate import caller
+from safestart_service.computing.dispatch import posted
 from safestart_service.documents.describe import description, known_process, summary
 from safestart_service.documents.execution import (
-    ExecuteRequest,
-    check_outputs,
-    check_states,
     execute_model,
-    parse_request,
     prefers_async,
-    run_now,
-    selected,
 )
-from safestart_service.documents.jobs_view import job_detail
 from safestart_service.documents.openapi import TAG, answer, content, json_body, refusals
 from safestart_service.documents.schemas import ProcessDescription, ProcessList, Submitted
-from safestart_service.errors import Forbidden
-from safestart_service.http.answers import Json, base_url, link, tagged, this_url
-from safestart_service.http.body import read_body
-from safestart_service.http.computing import computed
+from safestart_service.http.answers import base_url, link, tagged, this_url
 from safestart_service.http.once import OnceRoute
-from safestart_service.state import Services, services
 
 router = APIRouter(tags=["processes"], route_class=OnceRoute)
 ProcessId = Annotated[str, Path(description="Id of a process.")]
@@ -96,7 +81,7 @@ async def describe(request: Request, processID: ProcessId) -> Response:
             Preference_Applied="respond-async, if requested.",
             Idempotency_Replayed="true, if the job existed already.",
         ),
-        **refusals(400, 404, 413, 415, 422, 429, 503),
+        **refusals(400, 404, 413, 415, 422, 429, 503, 504),
     },
 )
 async def execute(
@@ -109,60 +94,12 @@ async def execute(
 ) -> Response:
     """Light processes answer at once (200); with ``Prefer: respond-async`` they are queued, as heavy ones are."""
     spec = known_process(processID)
-    body = await read_body(request)
     # The header's lines form one list; ``prefer`` is only the last line.
     wants_async = prefer is not None and prefers_async(request.headers.getlist("prefer"))
-    sync = spec.light and not wants_async
-    found, base, by = services(request), base_url(request), caller(request)
-
-    def respond(context: Context) -> Response:
-        asked: Any = parse_request(spec.id, body)
-        check_outputs(spec, asked, sync=sync)
-        check_states(spec, asked.inputs, found.settings.max_states)
-        if sync:
-            return Json(selected(run_now(spec, asked.inputs, context), asked))
-        found.access.require_submit(request)
-        return _submit(found, spec, asked, idempotency_key, base, wants_async, by)
-
-    return await computed(request, respond)
-
-
-def _submit(
-    found: Services,
-    spec: ProcessSpec,
-    asked: ExecuteRequest,
-    key: str | None,
-    base: str,
-    wants_async: bool,
-    by: Caller,
-) -> Response:
-    if asked.priority > 0 and by.key_id is not None and not by.role.allows(Role.ADMIN):
-        raise Forbidden(
-            f"priority: required at most 0 with a key of role {by.role.value}, received {asked.priority}",
-            field="priority",
-            required="at most 0, or a key of role admin",
-            received=asked.priority,
-        )
-    instant = spec.instant_answer(asked.inputs)
-    new = str(uuid4())
-    job = found.jobs.submit(
+    return await posted(
+        request,
         spec.id,
-        asked.inputs.model_dump(mode="json"),
-        instant=instant,
-        timeout_s=found.settings.job_timeout_s,
-        idempotency_key=key,
-        priority=asked.priority,
-        max_queued=found.settings.max_queued,
-        submitter=by.key_id or "",
-        by=by,
-        job_id=new,
+        queued=wants_async or not spec.light,
+        wants_async=wants_async,
+        idempotency_key=idempotency_key,
     )
-    document = job_detail(found, job, base)
-    if job.instant is not None:
-        document["certificate"] = job.instant
-    headers = {"Location": f"{base}/jobs/{job.id}"}
-    if wants_async:
-        headers["Preference-Applied"] = "respond-async"
-    if job.id != new:
-        headers["Idempotency-Replayed"] = "true"
-    return Json(document, 201, headers)

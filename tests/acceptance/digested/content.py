@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 
 LEFT_OUT = frozenset({"run_s", "compile_s", "speedup_vs_hj", "provenance", "request_id"})
-"""Keys that tell how long it took, and where, when and with what it was computed; wherever they stand."""
+"""Keys for durations and for place, time and versions of the computation, at any depth."""
 DEPTH = 4
-"""How many keys a place is told by; what lies deeper has one digest together with its neighbours."""
+"""Number of keys that identify a place; deeper values share one digest with their neighbours."""
 
 Digests = dict[str, str]
 
@@ -49,7 +49,7 @@ def document(value: Any) -> Digests:
 
 
 def comparable(value: Any) -> Any:
-    """The document without what is not computed."""
+    """The document without uncomputed values."""
     if isinstance(value, dict):
         return {key: comparable(inner) for key, inner in value.items() if key not in LEFT_OUT}
     return [comparable(inner) for inner in value] if isinstance(value, list) else value
@@ -68,7 +68,7 @@ def _walk(value: Any, place: str, depth: int, places: dict[str, list[str]]) -> N
 
 
 def file(name: str, data: bytes) -> Digests:
-    """Digests of a file by what its name ends with."""
+    """Digests of a file, by the ending of its name."""
     ending = name.rpartition(".")[2]
     readers = {"png": _picture, "npz": arrays, "parquet": parquet, "csv": table, "json": _json}
     return readers[ending](data) if ending in readers else {"bytes": digest([data])}
@@ -93,7 +93,7 @@ def _array(array: np.ndarray[Any, Any]) -> str:
 
 
 def table(data: bytes) -> Digests:
-    """One digest per column of a CSV file, over its values as they are written."""
+    """One digest per column of a CSV file, over its written values."""
     rows = list(csv.reader(io.StringIO(data.decode(), newline="")))
     return _columns(rows[0], {name: [row[place] for row in rows[1:]] for place, name in enumerate(rows[0])})
 

@@ -1,4 +1,4 @@
-"""All questions by name; ``process/example`` is what the process itself declares."""
+"""All questions by name; ``process/example`` is the example that the process declares."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def served_names() -> list[str]:
 
 
 def asked(name: str) -> tuple[str, tuple[Inputs, ...]]:
-    """Process and inputs, one after the other, of a question; ``example`` is what the process itself declares."""
+    """Process and inputs of a question, in sequence; ``example`` is the example that the process declares."""
     from safestart.processes.registry import process
 
     process_id, _, what = name.partition("/")

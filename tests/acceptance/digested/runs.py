@@ -60,7 +60,7 @@ def proofs_in(value: Any) -> list[Any]:
 
 
 def commands(lines: tuple[tuple[str, ...], ...], given: Answer | None = None) -> tuple[list[Any], Answer]:
-    """What command lines print in a folder of ``given`` files, and what files they leave there."""
+    """The output of command lines in a folder of ``given`` files, and the files that they leave there."""
     (point,) = entry_points(group="console_scripts", name="safestart")
     main = point.load()
     with TemporaryDirectory() as folder, contextlib.chdir(folder):
@@ -119,7 +119,7 @@ def told(name: str, kept: str, asked_for: Callable[[], Answer]) -> dict[str, Any
         if kept:
             keep(Path(kept, name), answer)
         return {"files": digests(answer)}
-    except Exception as error:  # whatever breaks one answer is told of that one
+    except Exception as error:  # an error in one answer is reported for that answer
         return {"error": f"{type(error).__name__}: {error}"}
 
 
@@ -129,7 +129,7 @@ def main(kept: str, names: list[str]) -> None:
     What one question leaves in memory (an atlas is kept there, and answers later questions) is not there for the next.
     """
     stdout = os.fdopen(os.dup(1), "w")
-    os.dup2(2, 1)  # whatever else is printed is no line of ours
+    os.dup2(2, 1)  # other printed lines are not ours
     for library in LIBRARIES:
         import_module(library)
     registry = import_module("safestart.processes.registry")

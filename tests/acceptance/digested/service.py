@@ -75,7 +75,7 @@ def _ended(up: Running, path: str) -> str:
 
 
 def tables(up: Running, results: str) -> list[str]:
-    """Names of the tables of a result: the service tells them to whoever asks for another one."""
+    """Names of the tables of a result; the service lists them when asked for an unknown one."""
     refusal = up.client.get(results, params={"format": "csv", "table": NO_SUCH_TABLE})
     if refusal.status_code == 406:
         return []

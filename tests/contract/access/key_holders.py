@@ -1,4 +1,4 @@
-"""Who holds which key in the tests of access."""
+"""The holders of keys in the tests of access."""
 
 from __future__ import annotations
 

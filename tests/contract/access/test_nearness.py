@@ -1,4 +1,4 @@
-"""Who counts as being on this machine while there are no keys."""
+"""Which callers count as being on this machine while no keys exist."""
 
 from __future__ import annotations
 

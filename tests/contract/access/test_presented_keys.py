@@ -1,4 +1,4 @@
-"""API keys over HTTP: ways to present one, and what becomes of those that are not in force."""
+"""API keys over HTTP: ways to present one, and the refusal of those that are not in force."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ def test_submitter_dismissal_and_audit(guarded):
 
 
 def test_refused_deeds_are_not_in_the_log(guarded):
-    """The log says what was done: a repeated submission and a repeated dismissal did nothing."""
+    """The log has only real actions: a repeated submission and a repeated dismissal did nothing."""
     client, made, found = guarded
     headers = {**bearer(made["submit"]), "Idempotency-Key": "k"}
     first = client.post("/processes/benchmark/execution", json=HEAVY, headers=headers).json()["jobID"]

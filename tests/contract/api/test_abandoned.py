@@ -1,4 +1,4 @@
-"""What nobody waits for any more is not computed: neither what is under way nor what is in line."""
+"""Answers that no client waits for are not computed: neither running ones nor those in line."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import json
 import socket
 import threading
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
@@ -17,7 +18,7 @@ from fastapi import Request
 from starlette.requests import ClientDisconnect
 
 from safestart.runtime.progress import Context
-from safestart_service.http.computing import computed
+from safestart_service.computing.light import Threads
 from tests.acceptance.running import serving
 from tests.contract.api.service_client import service
 from tests.waiting import PATIENCE_S, until
@@ -29,11 +30,13 @@ def test_work_whose_client_leaves_is_told_so(tmp_path: Path) -> None:
     began: list[str] = []
     gone = threading.Event()
 
-    def endless(context: Context) -> None:
+    def endless(left: Callable[[], bool]) -> None:
         began.append("endless")
         while True:
-            context.step(0, 1)
+            Context(cancelled=left).step(0, 1)
             time.sleep(0.001)
+
+    computed = Threads("answers are being computed", 1, 2)
 
     async def receive() -> dict[str, Any]:
         while not gone.is_set():

@@ -59,7 +59,7 @@ def check_column(spec: ProcessSpec, table: str, path: str) -> None:
     for depth, part in enumerate(parts):
         outer, rows = rows, step(step(rows, part), "*")
         if depth and not path.startswith(f"{part}."):
-            rows = outer  # what the outer row says stands beside the inner one
+            rows = outer  # the outer row's values stand beside the inner one
         elif depth:
             path = path.removeprefix(f"{part}.")
     follow(rows, path)

@@ -1,4 +1,4 @@
-"""A copy of the packages, in which a part is added as a person adds it, and what was touched is counted."""
+"""A copy of the packages: adds a part as a person would, and counts the touched files and lines."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class House:
         path.write_text("".join(lines))
 
     def touched(self) -> tuple[list[str], list[str]]:
-        """Files and folders that are new, and lines that are not what they were, each with a sign."""
+        """New files and folders, and changed lines, each with a sign."""
         new: list[str] = []
         changed: list[str] = []
         for package in PACKAGES:
@@ -51,7 +51,7 @@ class House:
         return new, changed
 
     def ask(self) -> dict[str, Any]:
-        """What ``asked.py`` finds in the copy, in a process of its own."""
+        """The results of ``asked.py`` in the copy, in a separate process."""
         paths = [*(str(self.root / package.partition("/")[0]) for package in PACKAGES), str(ROOT)]
         done = subprocess.run(
             [sys.executable, "-m", "tests.contract.extending.asked", str(self.root)],

@@ -162,7 +162,7 @@ def test_a_field_twice_is_refused() -> None:
 
 
 def test_a_page_that_says_something_else_is_told(tmp_path: Path) -> None:
-    """The page is what a reader opens, and a manifest can be written around any."""
+    """Readers open the page, and a manifest can be written for any page."""
     data, seal = pack(Bundle(JOB, RESULT, [EVENT], (PICTURE,)))
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
         files = {name: archive.read(name) for name in archive.namelist()}

@@ -1,4 +1,4 @@
-"""Replays: the same bit for bit here, within a named tolerance elsewhere, and what is not as it was is said."""
+"""Replays: equal bit for bit here, within a stated tolerance elsewhere, and differences are reported."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A real server, and bytes to and from it as they are."""
+"""A real server, and raw bytes to and from it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""The Docker files say what they must, as far as that can be told without an engine (docker/check.sh goes further)."""
+"""The Docker files have the required contents, as far as tests can tell without an engine (docker/check.sh does
+more)."""
 
 from __future__ import annotations
 
@@ -90,7 +91,7 @@ def test_nothing_runs_without_bounds_or_unwatched(compose: dict[str, Any]) -> No
 
 
 def test_who_is_on_which_network(compose: dict[str, Any]) -> None:
-    """Whoever reaches the scheduler runs code as its workers: nobody from outside, nor the service that they reach."""
+    """Anyone who reaches the scheduler can run code on its workers, so outsiders and the service must not reach it."""
     on = {name: set(service["networks"]) for name, service in compose["services"].items()}
     assert on == {
         "database": {"records"},

@@ -33,12 +33,12 @@ WAITING = (
 
 
 def well(address) -> bool:
-    """Health is answered, by a connection of its own."""
+    """Health is answered on a separate connection."""
     return said(address, b"GET /healthz HTTP/1.0\r\n\r\n").startswith(b"HTTP/1.1 200 ")
 
 
 def taken(address, held: ExitStack) -> tuple[int, bytes]:
-    """How many connections are let in until one is turned away, and what that one is told."""
+    """Number of accepted connections before one is refused, and the answer to that one."""
     for number in range(PLACES + 1):
         connection = held.enter_context(socket.create_connection(address, timeout=PATIENCE_S))
         connection.sendall(WAITING + b"Expect: 100-continue\r\n\r\n")
@@ -51,7 +51,7 @@ def taken(address, held: ExitStack) -> tuple[int, bytes]:
 
 
 def test_a_full_house(address):
-    """Every place is used, who comes next is told so, and a place that is left is taken again."""
+    """All places are used, the next client gets a refusal, and a freed place is used again."""
 
     def full() -> bytes | None:
         with ExitStack() as held:
@@ -113,7 +113,7 @@ def test_what_is_neither_head_nor_body_ends(address, name):
     """Trailers and chunk extensions without end, on a request that waits for its body."""
     pieces = (WAITING.replace(b"Content-Length: 9", b"Transfer-Encoding: chunked"), b"\r\n", name.encode())
     found = said(address, *pieces, *[b"a" * 65_536] * (MAX_HEAD_BYTES // 65_536 * 32))
-    if found:  # what we had still to send when it closed may cost us the answer
+    if found:  # data still unsent at the close may cost us the answer
         problem_in(found, 431)
 
 
@@ -143,7 +143,7 @@ def test_requests_in_a_row(address):
 
 
 def test_requests_in_a_row_are_answered_in_order(address):
-    """Also where the answers differ in kind and in what they take, and where a body stands among them."""
+    """Also for answers of different kinds and durations, and with a body among the requests."""
     body = json.dumps({**POINT, "padding": "x" * 20_000}).encode()
     long = WAITING.replace(b"Length: 9", b"Length: %d" % len(body)) + b"\r\n" + body
     asked, due = [], []
@@ -161,7 +161,7 @@ def test_requests_in_a_row_are_answered_in_order(address):
 
 
 def test_nobody_makes_us_read_ahead_without_end():
-    """Behind a request that takes its time, what was not read waits in its sender's memory."""
+    """Behind a slow request, unread data waits in its sender's memory."""
     protocol = Protocol.__new__(Protocol)
     protocol._held, protocol._seated, fed = b"", True, []
     protocol.pipeline = deque([None] * MOST_AHEAD)
@@ -205,26 +205,35 @@ def test_so_many_follow_and_no_more(address):
         client.delete(f"/jobs/{job}")
 
 
-def test_the_line_of_those_who_compute_has_an_end(tmp_path):
-    """It is full while nothing is computed any more; the closed form needs no line."""
+def test_every_line_has_an_end(tmp_path):
+    """Each class of work has its own line; a full one refuses, and the others go on."""
     with service(tmp_path) as client:
         found = client.app.state.services
-        found.computing = Callers("answers are being computed", 2)
+        found.light.callers = Callers("answers are being computed", 2)
+        found.helpers.callers = Callers("heavy answers are asked for", 2)
+        found.submitting.callers = Callers("submissions are under way", 2)
         ask = {**POINT, "x_m": 5, "y_m": 40}
+        certified = {**POINT, "method": "certified", "states": [{"x_m": 5, "y_m": 40}]}
+        light, heavy, submission = found.light.callers, found.helpers.callers, found.submitting.callers
         calls = (
-            partial(client.get, "/go-no-go", params={**ask, "method": "exact"}),
-            partial(client.get, "/go-no-go/proof", params=ask),
-            partial(client.post, "/go-no-go", json={**POINT, "states": [{"x_m": 5, "y_m": 40}]}),
-            partial(client.post, "/certificates", json=POINT),
-            partial(client.post, "/processes/certificate/execution", json={"inputs": POINT}),
+            (heavy, 200, partial(client.get, "/go-no-go", params={**ask, "method": "exact"})),
+            (heavy, 200, partial(client.get, "/go-no-go/proof", params=ask)),
+            (light, 200, partial(client.post, "/go-no-go", json=certified)),
+            (light, 200, partial(client.post, "/certificates", json=POINT)),
+            (light, 200, partial(client.post, "/processes/certificate/execution", json={"inputs": POINT})),
+            (submission, 201, partial(client.post, "/processes/benchmark/execution", json=HEAVY)),
         )
-        for call in calls:
-            assert call().status_code == 200
-            assert found.computing.now == 0
+        for line, status, call in calls:
+            assert call().status_code == status
+            assert line.now == 0
             with ExitStack() as held:
                 for _ in range(2):
-                    held.enter_context(found.computing.place(Request({"type": "http"})))
+                    held.enter_context(line.place(Request({"type": "http"})))
                 refused = call()
+                for other, due, ask_other in calls:
+                    if other is not line:
+                        answered = ask_other()
+                        assert answered.status_code == due, answered.text
             assert int(refused.headers["retry-after"]) > 0
             assert "at most 2 at once" in assert_problem(refused, 429)["detail"]
         assert client.get("/go-no-go", params=ask).status_code == 200

@@ -105,7 +105,7 @@ def test_wrong_database():
 
 
 def test_the_service_loads_no_engine(tmp_path):
-    """Neither the import nor the answers load what the engines need; the import does not even load the store."""
+    """Neither the import nor the answers load the engines' packages; the import does not even load the store."""
     code = f"""
 import sys
 import safestart_service.app as app

@@ -1,4 +1,4 @@
-"""Bytes on the wire that are no proper request: a real server answers by a problem document, in time, and goes on."""
+"""Bytes that are not a proper request: a real server answers with a problem document in time, and keeps running."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def test_nothing_asked_nothing_answered(address):
 
 
 def test_a_head_without_end(address):
-    """It is cut off, although it comes fast; what we had still to send when it closed may cost us the answer."""
+    """It is cut off, although it comes fast; data still unsent at the close may cost us the answer."""
     found = said(address, b"GET /healthz HTTP/1.1\r\nX-A: ", *[b"a" * 65_536] * 64)
     if found:
         assert problem_in(found, 431)["field"] == "headers"

@@ -105,7 +105,7 @@ def _disturbances(question: Question, gain: Floats, flights: int) -> Floats:
     axis = rng.normal(size=(third, d))
     axis /= np.linalg.norm(axis, axis=1, keepdims=True)
     w[:, :, :third] = (switch[:, :, None] * axis).reshape(steps, SUB, third, d)
-    # Worst direction: what drives the last node's error farthest along a random functional of the state.
+    # Worst direction: drives the last node's error farthest along a random functional of the state.
     keep, rate = KEEP[d], question.scenario.target.mean_motion
     motion = transition_matrix(rate, question.dt)[np.ix_(keep, keep)]
     closed = motion + input_matrix(rate, question.dt)[keep, :d] @ gain

@@ -1,4 +1,4 @@
-"""Files that are not what they say: each is refused by a message that names what was required and what came."""
+"""Files with false contents: each is refused with a message that names what was required and what came."""
 
 from dataclasses import replace
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Physical flights drawn at random within what a question allows: nothing of the sets is used."""
+"""Random physical flights within a question's limits, without use of the sets."""
 
 import math
 

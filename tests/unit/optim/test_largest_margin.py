@@ -91,7 +91,7 @@ def test_thrust_and_weights_close_the_gap(d: int, blocks: int) -> None:
     weights = answer.weights[9:].reshape(blocks, d + 1)
     assert (np.linalg.norm(weights[:, 1:], axis=1) <= weights[:, 0]).all()
     assert (answer.weights[:9] >= 0.0).all()
-    # What the interior point leaves on a row that does not matter is no part of a proof.
+    # The interior point's small weight on an irrelevant row does not belong in a proof.
     assert answer.weights[8] == 0.0
     assert answer.weights[:9].sum() + weights[:, 0].sum() == pytest.approx(1.0, abs=1e-12)
 

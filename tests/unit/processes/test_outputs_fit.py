@@ -1,4 +1,4 @@
-"""A result is kept only if it is what its process describes, to the letter of JSON."""
+"""A result is stored only if it matches its process description exactly, as JSON."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Documents that state more than their evidence: each is rejected, and what is printed is what was checked."""
+"""Documents that claim more than their evidence: each is rejected, and only checked statements are printed."""
 
 from __future__ import annotations
 
@@ -140,7 +140,7 @@ def test_every_end_is_refuted() -> None:
 @pytest.mark.parametrize("name", sorted(MADE))
 @pytest.mark.parametrize("margin", [5.0, -5.0, 0.0, -0.0])
 def test_the_claim_has_the_sign_of_the_verdict(name: str, margin: float) -> None:
-    """Proved is that the margin is above 0, or below: a NO_GO with +5 m is none."""
+    """The proof is that the margin is above or below 0: a NO_GO with +5 m is invalid."""
     if (margin > 0.0) is ("NO_GO" not in name) and margin != 0.0:
         return
     refused(forged(name, margin_m=margin), "margin_m: required [<>] 0")
@@ -157,7 +157,7 @@ def _objects(value: Any, path: str = "") -> Iterator[tuple[str, Document]]:
 
 @pytest.mark.parametrize("name", sorted(MADE))
 def test_every_object_is_closed(name: str) -> None:
-    """No object of any document takes a field more, and none stays what it was with one less."""
+    """No object of any document accepts an additional field or a missing one."""
     whole = check(MADE[name]).statement
     paths = [path for path, _ in _objects(MADE[name])]
     assert len(paths) >= 4
@@ -176,7 +176,7 @@ def test_every_object_is_closed(name: str) -> None:
                 found = check(out if field == "digest" else sealed(out))
             except ProofRejected:
                 continue
-            # Who asks for less has another question, and reads it.
+            # A weaker demand is another question, and the statement shows it.
             assert field in ("keep_out_m", "speed_limit")
             assert found.statement != whole
 

@@ -95,7 +95,7 @@ def _wrong_way(document: Document) -> None:
 
 
 def _all_thrust(document: Document) -> None:
-    """The plan takes what the feedback may need."""
+    """The plan uses thrust that the feedback may need."""
     document["thrust_m_s2"][3] = [0.0, document["question"]["max_acceleration_m_s2"]]
 
 
@@ -113,7 +113,7 @@ def _weaker(document: Document) -> None:
 
 
 def _tighter(document: Document) -> None:
-    """What the tube takes was counted against the whole corridor, not against what is left of it."""
+    """The tube was subtracted from the whole corridor, not from the rest of it."""
     document["question"]["corridor"]["hold_radius_m"] += 1.0
     document["question"]["corridor"]["c_x"] *= 0.1
 

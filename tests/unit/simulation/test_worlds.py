@@ -179,7 +179,7 @@ def test_disturbed_flights_are_planned_anew_and_say_when_they_could_not() -> Non
     assert all(label[0] == "planned" for label in labels)
     assert {"planned", "kept"} == {name for label in labels for name in label[1:]}
     assert all(start_verdict(flown.paths[0].commands) is not None for flown in flights)
-    # A start that nobody can keep: the least violation is flown, and every step says so.
+    # A hopeless start: the controller flies the least violation, and every step reports it.
     hopeless = start_states(scenario, np.array([[60.0, 42.0]]), Rest.LVLH)[0]
     flown = approach(scenario, hopeless)
     assert start_verdict(flown.paths[0].commands) is Verdict.NO_GO

@@ -19,7 +19,7 @@ TASK: list[Any] = [object()]
 
 
 class Scripted:
-    """Says what a test tells it to."""
+    """Reports whatever a test sets."""
 
     def __init__(self) -> None:
         self.now, self.used, self.here, self.all_there = 0.0, 0.0, RUNNING, True

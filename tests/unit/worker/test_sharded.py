@@ -1,4 +1,4 @@
-"""Shards of a job and the code that computed them, on a cluster that is not there: what is kept, what is done again."""
+"""Shards of a job and the code that computed them, on a fake cluster: which are kept and which are repeated."""
 
 from __future__ import annotations
 

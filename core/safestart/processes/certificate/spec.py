@@ -10,6 +10,8 @@ from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.views import Column, Facts
 from safestart.processes.wire import Certificate, GridInput, ScenarioInput
 
+_CELL_S = 1.5e-7
+
 
 class CertificateInputs(ScenarioInput):
     """One operating point, a grid, the frame in which starts are at rest, and which closed form is asked."""
@@ -49,6 +51,7 @@ SPEC = ProcessSpec(
     outputs=CertificateOutputs,
     run="safestart.processes.certificate.run:run",
     light=True,
+    cost=lambda inputs: _CELL_S * inputs.grid.nx * inputs.grid.ny,
     tables=(Table("cells", ("mask", "margin_m"), axes=("y_m", "x_m")),),
     views=(
         Facts(

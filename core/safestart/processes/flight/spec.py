@@ -8,6 +8,7 @@ from pydantic import Field
 
 from safestart.model.scenario import Rest
 from safestart.processes.base import ProcessSpec, Table, WireModel
+from safestart.processes.costs import FIRST_S, program_s
 from safestart.processes.go_no_go.question_fields import QuestionKind
 from safestart.processes.go_no_go.spec import StateInput
 from safestart.processes.views import Column, Findings
@@ -36,6 +37,7 @@ class FlightOutputs(WireModel):
     time_s: list[float]
     body_m: list[list[float]] = Field(description="Position in the target's body frame.")
     lvlh_m: list[list[float]] = Field(description="Position in LVLH.")
+    lvlh_m_s: list[list[float]] = Field(description="Velocity in LVLH, m/s.")
     thrust_m_s2: list[list[float]] = Field(description="Acceleration in LVLH, held over each interval.")
     faces: list[str]
     distance_m: list[list[float]] = Field(description="Distance to each face over time; negative: outside.")
@@ -43,6 +45,12 @@ class FlightOutputs(WireModel):
     closest_m: float = Field(description="Smallest distance along the curves.")
     closest_s: float = Field(description="When it is reached.")
     delta_v_m_s: float
+
+
+def _cost(inputs: FlightInputs) -> float:
+    """Two programs at most: where synchronize is no GO, the best attempt to stay is flown."""
+    synchronize = program_s(inputs.within_s) if inputs.question == "synchronize" else 0.0
+    return FIRST_S + synchronize + program_s(inputs.horizon_s)
 
 
 SPEC = ProcessSpec(
@@ -56,7 +64,8 @@ SPEC = ProcessSpec(
     outputs=FlightOutputs,
     run="safestart.processes.flight.run:run",
     light=True,
-    tables=(Table("flight", ("time_s", "body_m", "lvlh_m", "thrust_m_s2", "distance_m")),),
+    cost=_cost,
+    tables=(Table("flight", ("time_s", "body_m", "lvlh_m", "lvlh_m_s", "thrust_m_s2", "distance_m")),),
     views=(
         Findings(
             "Verdict",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pydantic import Field
 
 from safestart.processes.base import ProcessSpec, Table, WireModel
+from safestart.processes.costs import region_s
 from safestart.processes.views import Column, Facts
 from safestart.processes.wire import Horizon, ScenarioInput
 
@@ -42,6 +43,7 @@ SPEC = ProcessSpec(
     outputs=SafeRegionOutputs,
     run="safestart.processes.safe_region.run:run",
     light=True,
+    cost=lambda inputs: region_s(inputs.horizon_s),
     tables=(Table("inner_polygon_m", ("inner_polygon_m",)), Table("outer_polygon_m", ("outer_polygon_m",))),
     views=(
         Facts(

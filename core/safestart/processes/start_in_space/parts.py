@@ -49,7 +49,7 @@ class SpinAttitude(WireModel):
 
 
 class TorqueFreeAttitude(WireModel):
-    """A rigid body that no torque acts on (Euler-Poinsot)."""
+    """A rigid body without torque (Euler-Poinsot)."""
 
     kind: Literal["torque_free"]
     inertia_kg_m2: list[Vector] = Field(min_length=3, max_length=3, description="Inertia tensor, body axes.")
@@ -63,7 +63,7 @@ class TorqueFreeAttitude(WireModel):
 
 
 class TableAttitude(WireModel):
-    """Quaternions at times, joined by slerp: that course is what the answer is about."""
+    """Quaternions at times, joined by slerp; the answer is about this interpolated course."""
 
     kind: Literal["table"]
     times_s: list[Number] = Field(
@@ -130,7 +130,7 @@ class FaceInput(WireModel):
 
 
 class Faces(WireModel):
-    """Any polyhedra, fixed in the body, in LVLH, or some in each."""
+    """Any polyhedra, fixed in the body, in LVLH, or in both."""
 
     faces: list[FaceInput] = Field(min_length=1, max_length=MOST_FACES, description="Half-spaces.")
 
@@ -142,7 +142,7 @@ Acceleration = Annotated[float, Field(ge=0, le=MAX_ACCELERATION)]
 
 
 class BallThrust(WireModel):
-    """Any direction alike."""
+    """The same limit in every direction."""
 
     kind: Literal["ball"]
     a_max_m_s2: float = Field(ge=MIN_ACCELERATION, le=MAX_ACCELERATION, description="Largest size, m/s^2.")

@@ -1,4 +1,4 @@
-"""The question that a request poses, and its starts, in SI units; refusals under the names on the wire."""
+"""The question of a request and its starts, in SI units; errors use the wire names."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ _THRUST = {"directions": "directions", "a_max": "a_max_m_s2"}
 
 
 def question_of(inputs: SpaceInputs) -> SpaceQuestion:
-    """The question; raises ``InvalidInput`` for objects beside the short form, and for what the parts refuse."""
+    """The question; raises ``InvalidInput`` for objects beside the short form, and for invalid parts."""
     for name, short in (
         ("attitude", "omega_t_deg_s"),
         ("orbit", "mean_motion_rad_s"),
@@ -90,7 +90,7 @@ def states_of(inputs: SpaceInputs, question: SpaceQuestion) -> Floats:
 
 @contextmanager
 def _named(part: str, names: Mapping[str, str]) -> Iterator[None]:
-    """Refusals of a part under its names on the wire."""
+    """Report a part's errors under its wire names."""
     try:
         yield
     except InvalidInput as error:

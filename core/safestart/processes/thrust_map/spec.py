@@ -7,12 +7,16 @@ from pydantic import Field, model_validator
 from safestart.closed_form.by_name import ClosedForm
 from safestart.model.scenario import MAX_MEAN_MOTION, Rest
 from safestart.processes.base import ProcessSpec, Table, WireModel
+from safestart.processes.costs import FIRST_S
 from safestart.processes.coverage.spec import Rates, Thrusts
 from safestart.processes.views import Column, Rows
 from safestart.processes.wire import Certificate, CorridorInput
 
 PROVED_FOR_S = 60.0
 """How long a start is proved to stay with the thrust that certificate=paper calls required, s."""
+
+
+_RATE_S, _SHARE_S = 4e-3, 2e-4
 
 
 class ThrustMapInputs(WireModel):
@@ -69,6 +73,11 @@ SPEC = ProcessSpec(
     outputs=ThrustMapOutputs,
     run="safestart.processes.thrust_map.run:run",
     light=True,
+    cost=lambda inputs: (
+        FIRST_S
+        + _RATE_S * len(inputs.omega_t_deg_s)
+        + _SHARE_S * len(inputs.a_max_m_s2) * len(inputs.omega_t_deg_s)
+    ),
     tables=(
         Table("safe_percent", ("safe_percent", "paper_safe_percent"), axes=("omega_t_deg_s", "a_max_m_s2")),
         Table(

@@ -13,6 +13,7 @@ from safestart.model.scenario import Floats, Rest
 from safestart.processes.go_no_go.answer import Verdicts
 from safestart.processes.go_no_go.atlases import atlas_for
 from safestart.processes.go_no_go.conditions import Conditions
+from safestart.processes.go_no_go.cost import MANY
 from safestart.processes.go_no_go.methods import certified
 from safestart.processes.go_no_go.methods.exact import one_by_one
 from safestart.processes.go_no_go.methods.proofs import MOST_PROGRAMS, Solved, prove
@@ -21,8 +22,6 @@ from safestart.runtime.progress import Context
 
 QUICK_TOLERANCE = 0.1
 """Accuracy of margins (m) without proof documents: the verdicts are the same with fewer programs."""
-_MANY = 100
-"""With at least this many starts, building an atlas (some tens of cone programs) pays."""
 
 
 def decide(inputs: GoNoGoInputs, _: Conditions, context: Context) -> Verdicts:
@@ -90,7 +89,7 @@ def _by_atlas(
     Few starts use an existing atlas or are solved; many starts have one built. Thrust and multipliers are collected
     only for few starts or for ``documents``.
     """
-    many = len(starts) >= _MANY
+    many = len(starts) >= MANY
     atlas = atlas_for(question, float(starts[:, 1].max()), context, make=many)
     if atlas is None:
         return one_by_one(question, starts, context, tolerance)

@@ -18,13 +18,13 @@ from safestart.model.scenario import Floats, Rest
 from safestart.processes.go_no_go import question as asked
 from safestart.processes.go_no_go.answer import Verdicts
 from safestart.processes.go_no_go.conditions import points_of
+from safestart.processes.go_no_go.cost import MOST_PROGRAMS as MOST_PROGRAMS
 from safestart.processes.go_no_go.methods import disturbed
 from safestart.processes.go_no_go.methods.families import decide_families
 from safestart.processes.go_no_go.spec import GoNoGoInputs
 from safestart.processes.wire import finite
 from safestart.runtime.progress import Context
 
-MOST_PROGRAMS = 1000
 MOST_PROOFS = MOST_SEARCHES = 100
 
 Solved = tuple[list[Answer], list[str]]

@@ -1,0 +1,159 @@
+"""Verdicts at instants, and the changes between them closed in on."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from safestart.constraints.thrust_limit import ThrustLimit
+from safestart.errors import InvalidInput
+from safestart.exact.answer import GUARD, Answer, Verdict
+from safestart.exact.space.decide import decide_in_space
+from safestart.exact.space.prove import proof_in_space
+from safestart.exact.space.question import Face, SpaceQuestion
+from safestart.interchange.epochs import SECOND, Nanoseconds
+from safestart.interchange.relative import Relative
+from safestart.model.scenario import Floats
+from safestart.timeline.encounter import Encounter
+
+DT_S = 2.0
+FURTHEST_M = 1e5
+"""A chaser further away, or faster than this in m/s, is asked about by no proof."""
+
+
+@dataclass(frozen=True, slots=True)
+class Instant:
+    """The verdict at one TAI ``epoch``, ns; ``margin`` bounds the largest margin, m: from below for GO, else above.
+
+    ``why`` is empty where the verdict is proved.
+    """
+
+    epoch: int
+    verdict: str
+    margin: float
+    why: str = ""
+
+
+@dataclass(frozen=True)
+class Corridor:
+    """Faces of one corridor under a name."""
+
+    name: str
+    faces: tuple[Face, ...]
+
+    def lengths(self) -> Floats:
+        """Lengths (F,) of the normals."""
+        return np.array([math.hypot(*face.normal) for face in self.faces])
+
+
+@dataclass(frozen=True)
+class Judge:
+    """Asks, at any instants, whether a chaser that leaves its course then can stay for the horizon."""
+
+    encounter: Encounter
+    corridor: Corridor
+    thrust: ThrustLimit
+
+    @property
+    def steps(self) -> int:
+        """Control intervals of a question."""
+        return round(self.encounter.horizon / DT_S)
+
+    def instants(self, epochs: Nanoseconds) -> list[Instant]:
+        """Verdicts at TAI ``epochs`` (K,)."""
+        seen = self.encounter.seen(epochs)
+        covered = self.encounter.covered(epochs)
+        far = ~(np.abs(seen.states).max(axis=1) <= FURTHEST_M)
+        plain = seen.known & covered & ~far
+        room = np.full(len(epochs), np.nan)
+        if plain.any():
+            room[plain] = self._room(seen.where(plain))
+        out = []
+        for k, epoch in enumerate(epochs.tolist()):
+            if not plain[k]:
+                why = _unknown(bool(seen.known[k]), bool(covered[k]))
+                out.append(Instant(epoch, Verdict.UNDECIDED.value, math.nan, why))
+            elif room[k] < -GUARD:
+                # Outside now: no thrust changes that. The proof is one weight on the face.
+                out.append(Instant(epoch, Verdict.NO_GO.value, float(room[k])))
+            else:
+                out.append(self._asked(seen, k))
+        return out
+
+    def _room(self, seen: Relative) -> Floats:
+        """Least distance (K,) to the faces now, m."""
+        own = np.array([face.normal for face in self.corridor.faces])
+        in_body = np.array([face.frame == "body" for face in self.corridor.faces])
+        position = seen.states[:, :3]
+        body = np.einsum("kij,kj->ki", self.encounter.turns(seen), position)
+        along = np.where(in_body, body @ own.T, position @ own.T)
+        offsets = np.array([face.offset for face in self.corridor.faces])
+        out: Floats = ((offsets - along) / self.corridor.lengths()).min(axis=1)
+        return out
+
+    def _asked(self, seen: Relative, k: int) -> Instant:
+        epoch = int(seen.epochs[k])
+        try:
+            answer = decide_in_space(self._question(seen, k), seen.states[k], verdict_only=True)
+        except InvalidInput as error:
+            return Instant(epoch, Verdict.UNDECIDED.value, math.nan, error.detail)
+        return Instant(epoch, answer.verdict.value, _bound(answer), answer.reason)
+
+    def _question(self, seen: Relative, k: int) -> SpaceQuestion:
+        orbit = self.encounter.orbit(seen, k)
+        attitude = self.encounter.attitude_from(seen, k, orbit)
+        return SpaceQuestion(orbit, attitude, self.corridor.faces, self.thrust, DT_S, self.steps)
+
+    def proof(self, epoch: int) -> dict[str, Any] | None:
+        """The proof document of the verdict at an epoch; None where there is nothing to prove."""
+        seen = self.encounter.seen(np.array([epoch]))
+        if not (seen.known[0] and self.encounter.covered(seen.epochs)[0]):
+            return None
+        if not float(np.abs(seen.states).max()) <= FURTHEST_M:
+            return None
+        try:
+            question = self._question(seen, 0)
+            answer = decide_in_space(question, seen.states[0], verdict_only=True)
+        except InvalidInput:
+            return None
+        return (
+            None if answer.verdict is Verdict.UNDECIDED else proof_in_space(question, seen.states[0], answer)
+        )
+
+    def closed_in(self, left: Instant, right: Instant, bracket: float) -> list[Instant]:
+        """Instants between two of different verdicts, until neighbours that differ are ``bracket`` s apart."""
+        if left.verdict == right.verdict or right.epoch - left.epoch <= bracket * SECOND:
+            return []
+        (middle,) = self.instants(np.array([(left.epoch + right.epoch) // 2]))
+        return [*self.closed_in(left, middle, bracket), middle, *self.closed_in(middle, right, bracket)]
+
+
+def _unknown(known: bool, covered: bool) -> str:
+    if not known:
+        return "the files hold no states here"
+    return (
+        "the attitude does not go on to the end of the horizon"
+        if not covered
+        else "the chaser is too far away"
+    )
+
+
+def _bound(answer: Answer) -> float:
+    if answer.verdict is Verdict.UNDECIDED:
+        return answer.margin_m
+    return answer.lower if answer.verdict is Verdict.GO else answer.upper
+
+
+def joined(instants: Sequence[Instant]) -> list[list[Instant]]:
+    """Instants in runs of one verdict and one reason."""
+    runs: list[list[Instant]] = []
+    for one in instants:
+        if runs and (runs[-1][-1].verdict, runs[-1][-1].why) == (one.verdict, one.why):
+            runs[-1].append(one)
+        else:
+            runs.append([one])
+    return runs

@@ -1,0 +1,86 @@
+"""Where an answer is computed: a light one in a thread, a heavy one in a helper process, a submission beside both."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from collections.abc import AsyncIterator
+from typing import Any, BinaryIO
+
+from fastapi import Request
+from fastapi.responses import Response, StreamingResponse
+from starlette.types import Receive, Scope, Send
+
+from safestart.processes.go_no_go.spec import SPEC, GoNoGoInputs
+from safestart.runtime.progress import Context
+from safestart_service.access.gate import caller
+from safestart_service.computing.light import Left
+from safestart_service.computing.limits import LARGE_S, SMALL_BYTES
+from safestart_service.computing.work import Asked, Made, at_once, in_full, one_start
+from safestart_service.http.answers import base_url
+from safestart_service.http.body import read_body
+from safestart_service.state import services
+
+_PIECE = 262_144
+
+
+async def posted(request: Request, process_id: str, **how: Any) -> Response:
+    """Answer a POST; ``how`` are further fields of :class:`Asked`."""
+    body = await read_body(request)
+    asked = Asked(process_id, body, base_url(request), caller(request), **how)
+    found = services(request)
+    if asked.queued:
+        found.access.require_submit(request)
+    if len(body) > SMALL_BYTES:
+        return await _heavy(request, LARGE_S, asked)
+
+    def work(left: Left) -> Made | float:
+        return at_once(found.store, Context(cancelled=left, shelf=found.store.shelf), asked)
+
+    made = await (found.submitting if asked.queued else found.light)(request, work)
+    if isinstance(made, float):
+        return await _heavy(request, made, asked)
+    return _response(made)
+
+
+async def _heavy(request: Request, cost_s: float, asked: Asked) -> Response:
+    helpers = services(request).helpers
+    place = helpers.place()
+    try:
+        made: Made = await helpers(request, cost_s, in_full, asked, place)
+        if made.file is None:
+            return _response(made)
+        # Open, it outlives its name: it is gone when it has been sent, or when nobody wants it any more.
+        file = await asyncio.to_thread(made.file.open, "rb")
+        headers = made.headers | {"Content-Length": str(os.fstat(file.fileno()).st_size)}
+        return _Sent(file, made.status, headers)
+    finally:
+        if place is not None:
+            place.unlink(missing_ok=True)
+
+
+class _Sent(StreamingResponse):
+    """A JSON document from an open file, which is closed at its end."""
+
+    def __init__(self, file: BinaryIO, status: int, headers: dict[str, str]) -> None:
+        super().__init__(_pieces(file), status, headers, media_type="application/json")
+        self._file = file
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Send it."""
+        with self._file:
+            await super().__call__(scope, receive, send)
+
+
+async def _pieces(file: BinaryIO) -> AsyncIterator[bytes]:
+    while piece := await asyncio.to_thread(file.read, _PIECE):
+        yield piece
+
+
+async def one_document(request: Request, inputs: GoNoGoInputs) -> dict[str, Any]:
+    """The document of one start whose method takes its time."""
+    return await services(request).helpers(request, SPEC.cost(inputs), one_start, inputs)
+
+
+def _response(made: Made) -> Response:
+    return Response(made.body, made.status, made.headers, media_type="application/json")

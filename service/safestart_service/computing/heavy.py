@@ -1,0 +1,133 @@
+"""Heavy answers in helper processes: a deadline for each, and an end to what nobody waits for.
+
+A helper is told to stop through a flag file, which its context reads. One that does not stop within :data:`GRACE_S`
+(a solver's call in C) is killed and replaced.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import shutil
+import tempfile
+from collections.abc import Callable
+from contextlib import suppress
+from itertools import count
+from pathlib import Path
+from typing import Any, TypeVar
+
+from anyio import BrokenWorkerProcess, CapacityLimiter, to_process
+from fastapi import Request
+from starlette.requests import ClientDisconnect
+
+from safestart.errors import Cancelled, Unavailable
+from safestart.runtime.settings import Settings
+from safestart_service.access.callers import Callers
+from safestart_service.access.gate import caller
+from safestart_service.computing import inside
+from safestart_service.computing.light import leaves
+from safestart_service.computing.limits import too_long
+from safestart_service.computing.line import Line
+
+Answer = TypeVar("Answer")
+
+MOST_HEAVY = 100
+"""Heavy answers that are computed or wait for it."""
+GRACE_S = 0.5
+
+log = logging.getLogger("safestart.service")
+
+
+class Helpers:
+    """The helper processes of one application."""
+
+    def __init__(self, settings: Settings) -> None:
+        self._settings = settings
+        self.callers = Callers("heavy answers are asked for", MOST_HEAVY)
+        self.line = Line(settings.answer_processes)
+        self._limiter = CapacityLimiter(settings.answer_processes)
+        self._folder = _folder()
+        self._numbers = count()
+
+    async def __call__(
+        self, request: Request, cost_s: float, function: Callable[..., Answer], *arguments: Any
+    ) -> Answer:
+        """``function(store, context, *arguments)`` in a helper process.
+
+        Raises ``RateLimited`` where too much is in line, ``AnswerTimeout`` for an answer that takes too long or would,
+        ``ClientDisconnect`` when the client has left, and what the function raises.
+        """
+        limit_s = self._settings.answer_timeout_s
+        if cost_s > limit_s:
+            raise too_long(limit_s, cost_s)
+        with self.callers.place(request):
+            stop = self.place()
+            name = caller(request).key_id
+            work = asyncio.ensure_future(self._work(name, cost_s, function, stop, arguments))
+            left = asyncio.ensure_future(leaves(request))
+            try:
+                await asyncio.wait({work, left}, timeout=limit_s, return_when=asyncio.FIRST_COMPLETED)
+                if not work.done():
+                    if stop is not None:
+                        stop.touch()
+                        await asyncio.wait({work}, timeout=GRACE_S)
+                    raise ClientDisconnect if left.done() else too_long(limit_s)
+                return work.result()
+            except Cancelled:
+                raise ClientDisconnect from None
+            finally:
+                left.cancel()
+                work.cancel()
+                with suppress(BaseException):  # its end, not its answer, is waited for
+                    await work
+                if stop is not None:
+                    stop.unlink(missing_ok=True)
+
+    async def _work(
+        self,
+        name: str | None,
+        cost_s: float,
+        function: Callable[..., Answer],
+        stop: Path | None,
+        arguments: tuple[Any, ...],
+    ) -> Answer:
+        async with self.line.slot(name, cost_s):
+            try:
+                return await to_process.run_sync(
+                    inside.call,
+                    function,
+                    self._settings,
+                    stop,
+                    *arguments,
+                    cancellable=True,
+                    limiter=self._limiter,
+                )
+            except BrokenWorkerProcess:
+                log.exception("a helper process ended while it computed an answer")
+                raise Unavailable(
+                    "the process that computed the answer ended; required a smaller question, or a job",
+                    required="a smaller question, or a job",
+                ) from None
+
+    def place(self) -> Path | None:
+        """A name for a file of this request's; None where nothing can be written."""
+        return None if self._folder is None else self._folder / str(next(self._numbers))
+
+    async def warm(self) -> None:
+        """Start a helper before it is needed; the first heavy answer would wait a second for it."""
+        with suppress(BrokenWorkerProcess, inside.Failed):
+            await to_process.run_sync(inside.ready, limiter=self._limiter, cancellable=True)
+
+    def close(self) -> None:
+        """Remove the flag files; the event loop ends the processes."""
+        if self._folder is not None:
+            shutil.rmtree(self._folder, ignore_errors=True)
+
+
+def _folder() -> Path | None:
+    """Where flag files are; None where nothing can be written: then helpers are killed at once."""
+    try:
+        return Path(tempfile.mkdtemp(prefix="safestart-"))
+    except OSError as error:
+        log.warning("no place for temporary files (%s): abandoned answers end their process", error)
+        return None

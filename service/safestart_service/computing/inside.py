@@ -1,0 +1,94 @@
+"""What runs inside a helper process: one call at a time, in bounded memory, with a flag file that tells it to stop."""
+
+from __future__ import annotations
+
+import ctypes
+import gc
+import os
+import traceback
+from collections.abc import Callable
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+from time import monotonic
+from typing import Any
+
+from safestart.errors import SafestartError, Unavailable
+from safestart.processes.registry import process
+from safestart.runtime.progress import Context
+from safestart.runtime.settings import Settings
+from safestart_service.computing.store import Store
+
+MOST_BYTES = 640 * 1024**2
+"""Data of a helper process. The largest legal question takes half of it."""
+NICENESS = 5
+_LOOK_S = 0.01
+
+
+class Failed(RuntimeError):
+    """An unexpected error inside a helper process; its text holds the traceback."""
+
+
+def call(function: Callable[..., Any], settings: Settings, stop: Path | None, *arguments: Any) -> Any:
+    """``function(store, context, *arguments)``; raises our errors as they are, and ``Failed`` for all others."""
+    _prepare()
+    store = _store(settings)
+    try:
+        return function(store, Context(cancelled=_stopped(stop), shelf=store.shelf), *arguments)
+    except SafestartError:
+        raise
+    except MemoryError:
+        raise Unavailable(
+            f"the answer takes more than {MOST_BYTES >> 20} MiB; required a smaller question, or a job",
+            required="a smaller question, or a job",
+        ) from None
+    except Exception:
+        raise Failed(traceback.format_exc()) from None
+    finally:
+        _return_memory()
+
+
+def ready() -> int:
+    """Load what heavy answers need, before the first one comes; returns the process id."""
+    _prepare()
+    process("flight").runner()
+    return os.getpid()
+
+
+@cache
+def _prepare() -> None:
+    with suppress(AttributeError, OSError):
+        os.nice(NICENESS)
+    with suppress(ImportError, ValueError, OSError):
+        import resource
+
+        _, hard = resource.getrlimit(resource.RLIMIT_DATA)
+        resource.setrlimit(resource.RLIMIT_DATA, (MOST_BYTES, hard))
+
+
+def _return_memory() -> None:
+    """Give freed memory back to the system, where glibc would keep it for later."""
+    gc.collect()
+    with suppress(OSError, AttributeError):
+        ctypes.CDLL(None).malloc_trim(0)
+
+
+@cache
+def _store(settings: Settings) -> Store:
+    from safestart.store.database import Database
+
+    return Store.over(settings, Database(settings.url()))
+
+
+def _stopped(stop: Path | None) -> Callable[[], bool]:
+    if stop is None:
+        return lambda: False
+    looked, found = -_LOOK_S, False
+
+    def stopped() -> bool:
+        nonlocal looked, found
+        if not found and monotonic() - looked > _LOOK_S:
+            looked, found = monotonic(), stop.exists()
+        return found
+
+    return stopped

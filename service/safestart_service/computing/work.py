@@ -1,0 +1,162 @@
+"""The work behind the answers, as functions of values that can be sent to another process."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+from uuid import uuid4
+
+import orjson
+
+from safestart.processes.base import ProcessSpec
+from safestart.processes.go_no_go import run
+from safestart.processes.go_no_go.spec import GoNoGoInputs
+from safestart.processes.registry import process
+from safestart.runtime.access import Caller, Role
+from safestart.runtime.progress import Context
+from safestart_service.computing.limits import too_long
+from safestart_service.computing.store import Store
+from safestart_service.documents.execution import (
+    ExecuteRequest,
+    check_outputs,
+    check_states,
+    parse_request,
+    run_now,
+    selected,
+)
+from safestart_service.documents.jobs_view import job_detail
+from safestart_service.errors import Forbidden
+from safestart_service.http.body import MOST_PARTS, PARTS_PER_STATE, parse_body
+
+LIGHT_S = 0.03
+"""An answer that costs more than this is heavy."""
+LONG_BYTES = 1_000_000
+"""A body longer than this goes through a file."""
+
+
+def _nothing(_: Any) -> dict[str, str]:
+    return {}
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """A POST: ``bare`` bodies are the inputs alone, the others execution requests of the standard.
+
+    ``queued``: it makes a job. ``wants_async``: the client asked for that.
+    """
+
+    process_id: str
+    body: bytes
+    base: str
+    by: Caller
+    bare: bool = False
+    queued: bool = False
+    wants_async: bool = False
+    idempotency_key: str | None = None
+    announced: Callable[[Any], dict[str, str]] = field(default=_nothing)
+    """Further header fields of an answer, from the inputs."""
+
+
+@dataclass(frozen=True, slots=True)
+class Made:
+    """Body, status and header fields of an answer."""
+
+    body: bytes
+    status: int = 200
+    headers: dict[str, str] = field(default_factory=dict)
+    file: Path | None = None
+    """Where the body is instead."""
+
+
+def one_start(store: Store, context: Context, inputs: GoNoGoInputs) -> dict[str, Any]:
+    """The document of one start."""
+    del store
+    return run.answer(inputs, context).document_of_one()
+
+
+def at_once(store: Store, context: Context, asked: Asked) -> Made | float:
+    """The answer, or what it costs, s, where that is too much for a light one."""
+    request = _parsed(store, asked)
+    spec = process(asked.process_id)
+    if asked.queued:
+        return _submitted(store, spec, request, asked)
+    cost = spec.cost(request.inputs)
+    return cost if cost > LIGHT_S else _answer(spec, request, context, asked)
+
+
+def in_full(store: Store, context: Context, asked: Asked, place: Path | None = None) -> Made:
+    """The answer, whatever it costs; raises ``AnswerTimeout`` for one that would take too long.
+
+    A long body goes into a file at ``place``: on its way through a pipe it would be in memory four times.
+    """
+    made = _in_full(store, context, asked)
+    if place is not None and len(made.body) > LONG_BYTES:
+        with suppress(OSError):  # a full disk: then it takes the long way
+            place.write_bytes(made.body)
+            return replace(made, body=b"", file=place)
+    return made
+
+
+def _in_full(store: Store, context: Context, asked: Asked) -> Made:
+    request = _parsed(store, asked)
+    spec = process(asked.process_id)
+    if asked.queued:
+        return _submitted(store, spec, request, asked)
+    cost, limit = spec.cost(request.inputs), store.settings.answer_timeout_s
+    if cost > limit:
+        raise too_long(limit, cost)
+    return _answer(spec, request, context, asked)
+
+
+def _parsed(store: Store, asked: Asked) -> ExecuteRequest:
+    spec, most = process(asked.process_id), store.settings.max_states
+    parts = MOST_PARTS + (PARTS_PER_STATE * most if spec.states else 0)
+    if asked.bare:
+        request = ExecuteRequest(inputs=parse_body(spec.inputs, asked.body, parts))
+    else:
+        request = parse_request(spec.id, asked.body, parts)
+        check_outputs(spec, request, sync=not asked.queued)
+    check_states(spec, request.inputs, most)
+    return request
+
+
+def _answer(spec: ProcessSpec, request: ExecuteRequest, context: Context, asked: Asked) -> Made:
+    document = run_now(spec, request.inputs, context)
+    body = orjson.dumps(document if asked.bare else selected(document, request))
+    return Made(body, headers=asked.announced(request.inputs))
+
+
+def _submitted(store: Store, spec: ProcessSpec, request: ExecuteRequest, asked: Asked) -> Made:
+    by = asked.by
+    if request.priority > 0 and by.key_id is not None and not by.role.allows(Role.ADMIN):
+        raise Forbidden(
+            f"priority: required at most 0 with a key of role {by.role.value}, received {request.priority}",
+            field="priority",
+            required="at most 0, or a key of role admin",
+            received=request.priority,
+        )
+    new = str(uuid4())
+    job = store.jobs.submit(
+        spec.id,
+        request.inputs.model_dump(mode="json"),
+        instant=spec.instant_answer(request.inputs),
+        timeout_s=store.settings.job_timeout_s,
+        idempotency_key=asked.idempotency_key,
+        priority=request.priority,
+        max_queued=store.settings.max_queued,
+        submitter=by.key_id or "",
+        by=by,
+        job_id=new,
+    )
+    document = job_detail(store, job, asked.base)
+    if job.instant is not None:
+        document["certificate"] = job.instant
+    headers = {"Location": f"{asked.base}/jobs/{job.id}"}
+    if asked.wants_async:
+        headers["Preference-Applied"] = "respond-async"
+    if job.id != new:
+        headers["Idempotency-Replayed"] = "true"
+    return Made(orjson.dumps(document), 201, headers)
