@@ -25,6 +25,7 @@ LONG_COMMANDS: dict[str, tuple[tuple[str, ...], ...]] = {
         ("reproduce", "passive-safety", "--model", "nonlinear", "--guard", "circle", "--json"),
     ),
     "reproduce/collision-avoidance": (("reproduce", "collision-avoidance", "--json"),),
+    "reproduce/tracking-mpc": (("reproduce", "tracking-mpc", "--json"),),
     "reproduce/all": (("reproduce", "all", "--json"),),
 }
 COMMANDS = QUICK_COMMANDS | LONG_COMMANDS

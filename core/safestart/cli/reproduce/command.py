@@ -8,8 +8,9 @@ from typing import Any
 import typer
 
 from safestart.cli.console import Json, Justify, number, out, print_json, reporting, seconds, table_of
-from safestart.cli.reproduce import chain, passive_safety, table3
+from safestart.cli.reproduce import chain, hopping, passive_safety, table3
 from safestart.cli.reproduce import collision_avoidance as avoidance
+from safestart.cli.reproduce import tracking_mpc as tracking
 from safestart.papers import safe_start as published
 from safestart.processes.execute import execute
 
@@ -70,8 +71,10 @@ def register(app: typer.Typer) -> None:
 
     table3.register(group)
     passive_safety.register(group)
+    hopping.register(group)
     chain.register(group)
     avoidance.register(group)
+    tracking.register(group)
 
     @group.command("all")
     def everything(as_json: Json = False) -> None:
@@ -88,6 +91,7 @@ def register(app: typer.Typer) -> None:
                     "passive_safety": passive_safety.passive_safety_document(),
                     "chain": chain.chain_document(list(published.TABLE2)),
                     "collision_avoidance": avoidance.collision_avoidance_document(),
+                    "tracking_mpc": tracking.tracking_mpc_document(),
                 }
             )
             return
@@ -97,6 +101,7 @@ def register(app: typer.Typer) -> None:
         passive_safety.print_passive_safety()
         chain.show(chain.chain_document(list(published.TABLE2)))
         avoidance.show(avoidance.collision_avoidance_document())
+        tracking.show(tracking.tracking_mpc_document())
 
 
 def table1_cells() -> list[dict[str, float]]:

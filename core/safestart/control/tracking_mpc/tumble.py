@@ -50,6 +50,18 @@ class Tumble:
         if turn > MAX_TURN:
             raise invalid("period", f"a turn per step of at most {MAX_TURN:g} rad", f"{turn:.3g} rad")
 
+    def changed(self, shares: Floats, spin: float = 1.0) -> Tumble:
+        """The target with principal moments off by ``shares`` (3,), halved until a rigid body has them; rate x spin."""
+        moments, axes = np.linalg.eigh(np.array(self.inertia))
+        off = moments * (1.0 + shares)
+        while off.min() <= 0.0 or 2.0 * off.max() > off.sum():
+            shares = 0.5 * shares
+            off = moments * (1.0 + shares)
+        rows = axes @ np.diag(off) @ axes.T
+        inertia = tuple(tuple(row) for row in (0.5 * (rows + rows.T)).tolist())
+        x, y, z = (spin * w for w in self.body_rate)
+        return Tumble(inertia, self.attitude_wxyz, (x, y, z), self.mean_motion, self.reference)  # type: ignore[arg-type]
+
     def principal(self) -> tuple[Floats, Floats]:
         """Principal moments (3,), rising, and the squares (3,) of the body rate along their axes at t = 0."""
         moments, axes = np.linalg.eigh(np.array(self.inertia))

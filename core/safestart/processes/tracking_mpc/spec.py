@@ -1,0 +1,197 @@
+"""tracking-mpc: one flight, its certificate, the region it can start from, and a Monte Carlo study (paper 002)."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+from pydantic import Field, field_validator, model_validator
+
+from safestart.model.orbit import EARTH_RADIUS, MU
+from safestart.processes.base import ProcessSpec, Table, WireModel
+from safestart.processes.sharding import Sharding
+from safestart.processes.tracking_mpc.outputs import TrackingMpcOutputs
+from safestart.processes.views import Column, Facts, Findings, Rows
+from safestart.processes.wire import Seed
+
+ENVISAT = [[17023.3, 397.1, -2171.4], [397.1, 124825.7, 344.2], [-2171.4, 344.2, 129112.2]]
+MAX_RUNS = 100_000
+MAX_PERIOD_S = 60.0
+Triple = list[float]
+
+
+class DockingCorridorInput(WireModel):
+    """Prism of paper 002, eq. (4), fixed in the body: y >= 0, |x| <= x0 + y / c_x, |z| <= z0 + y / c_z."""
+
+    c_x: float = Field(1.0, gt=0, le=1000, description="Slope of the +-x sides.")
+    c_z: float = Field(1.0, gt=0, le=1000, description="Slope of the +-z sides.")
+    x0_m: float = Field(0.1, ge=0, le=1000, description="Half-width of the port in x, m.")
+    z0_m: float = Field(0.1, ge=0, le=1000, description="Half-width of the port in z, m.")
+
+
+class StartInput(WireModel):
+    """Where the chaser starts."""
+
+    position_m: Triple = Field([1.5, 2.5, 1.5], min_length=3, max_length=3, description="Body frame, m.")
+    velocity_m_s: Triple = Field([0.0, 0.0, 0.0], min_length=3, max_length=3, description="LVLH, m/s.")
+
+    @model_validator(mode="after")
+    def _near(self) -> StartInput:
+        if max(map(abs, self.position_m)) > 1000 or max(map(abs, self.velocity_m_s)) > 10:
+            raise ValueError("start: within 1000 m and 10 m/s")
+        return self
+
+
+class RegionInput(WireModel):
+    """Starts y = 0.25 + 0.5 i, x = +-(0.25 + 0.5 j) inside the corridor, z = 0 (body), at rest in LVLH."""
+
+    rows: int = Field(30, ge=1, le=100, description="Rows i; 30 rows of the paper's corridor are 930 starts.")
+
+
+class StudyInput(WireModel):
+    """Flights with errors: a part of each is drawn anew in every step, a part once per run."""
+
+    runs: int = Field(1000, ge=1, le=MAX_RUNS, description="Flights.")
+    variant: Literal["hard", "soft", "tube"] = Field(
+        "tube",
+        description=(
+            "hard: without a plan the last one is followed; soft: least violation, then cost; tube: Kalman filter, "
+            "tightened rows, and soft where these have no plan."
+        ),
+    )
+    tube: Literal["three_sigma", "bounded"] = Field(
+        "three_sigma", description="Tightening by the root of squares of 3 sigma, or by their sum."
+    )
+    position_sigma_m: float = Field(0.01, ge=0, le=10, description="Navigation, per axis and step, m.")
+    velocity_sigma_m_s: float = Field(0.001, ge=0, le=1, description="Navigation, per axis and step, m/s.")
+    input_sigma: float = Field(0.01, ge=0, le=1, description="Size of each impulse, share, per step.")
+    spin_sigma: float = Field(
+        0.01, ge=0, le=0.5, description="Rate that the controller believes, share, per run."
+    )
+    inertia_sigma: float = Field(
+        0.02, ge=0, le=0.2, description="True principal moments, share of each, per run."
+    )
+    per_shard: int = Field(250, ge=1, le=10_000, description="Runs per shard.")
+
+
+class TrackingMpcInputs(WireModel):
+    """Target, orbit, controller and start; the defaults are the paper's Table I with the recommended weights."""
+
+    inertia_kg_m2: list[Triple] = Field(
+        default_factory=lambda: [list(row) for row in ENVISAT],
+        min_length=3,
+        max_length=3,
+        description="Inertia of the target, body axes, kg m^2; Envisat.",
+    )
+    attitude_wxyz: list[float] = Field(
+        [1.0, 0.0, 0.0, 0.0],
+        min_length=4,
+        max_length=4,
+        description="LVLH to body at t = 0, scalar first: r_B = C r_L, C = (s^2 - v.v) I + 2 v v^T - 2 s [v]x.",
+    )
+    body_rate_deg_s: Triple = Field(
+        [0.0, 3.53, 3.53], min_length=3, max_length=3, description="Angular velocity, body axes, deg/s."
+    )
+    attitude_reference: Literal["inertial", "lvlh"] = Field(
+        "inertial",
+        description="inertial: the rate is inertial and LVLH turns; lvlh: the paper's (2)-(3), LVLH taken as inertial.",
+    )
+    orbit_radius_m: float = Field(7_144_800.0, ge=EARTH_RADIUS, le=1e9, description="Circular orbit, m.")
+    period_s: float = Field(
+        1.0, gt=0, le=MAX_PERIOD_S, description="Length T of a step, s; an impulse ends it."
+    )
+    u_max_m_s: float = Field(0.075, gt=0, le=100, description="Largest impulse per body axis and step, m/s.")
+    corridor: DockingCorridorInput = Field(
+        default_factory=lambda: DockingCorridorInput.model_validate({}), description="Corridor in the body."
+    )
+    n_c: int = Field(3, ge=1, le=60, description="Free inputs of a plan.")
+    n_lqr: int = Field(
+        30, ge=1, le=200, description="Steps of the regulator after them, then two of dead-beat."
+    )
+    rho: float = Field(100.0, gt=0, le=1e6, description="Weight of |u - u_e|^2.")
+    tau: float = Field(100.0, ge=0, le=1e6, description="Weight of |theta|^2.")
+    theta_limit: Literal["printed", "ball", "corners", "polytope", "zero"] = Field(
+        "polytope",
+        description=(
+            "Limit on the artificial reference: (42) as printed (not safe for every spin), the rigorous ball, the "
+            "largest cut whose corners can be held, the inputs' own rows, or the target alone."
+        ),
+    )
+    start: StartInput = Field(default_factory=lambda: StartInput.model_validate({}), description="Start.")
+    steps: int = Field(60, ge=3, le=600, description="Steps of the flight, and of any impulse history.")
+    truth: Literal["hcw", "two_body_j2"] = Field("hcw", description="Motion that is flown.")
+    inertia_error: float = Field(
+        0.02, ge=0, le=0.2, description="Error that the certificate looks at, share."
+    )
+    spin_error: float = Field(0.01, ge=0, le=0.2, description="Error that the certificate looks at, share.")
+    region: RegionInput | None = Field(None, description="Ask which starts the controller can take, too.")
+    study: StudyInput | None = Field(None, description="Fly with errors, too.")
+    seed: Seed = 0
+
+    @field_validator("inertia_kg_m2")
+    @classmethod
+    def _square(cls, value: list[Triple]) -> list[Triple]:
+        if any(len(row) != 3 for row in value):
+            raise ValueError("three rows of three numbers")
+        return value
+
+    @model_validator(mode="after")
+    def _horizons(self) -> TrackingMpcInputs:
+        if self.n_c > self.n_lqr:
+            raise ValueError(f"n_c: at most n_lqr, {self.n_lqr}, received {self.n_c}")
+        return self
+
+    @property
+    def mean_motion(self) -> float:
+        """rad/s."""
+        return math.sqrt(MU / self.orbit_radius_m**3)
+
+
+_HERE = "safestart.processes.tracking_mpc"
+
+SPEC = ProcessSpec(
+    id="tracking-mpc",
+    title="MPC for tracking a tumbling target",
+    description=(
+        "Paper 002, corrected: a chaser docks with a target that tumbles freely about three axes. One flight with its "
+        "certificate, the starts that the controller can take beside those that any impulse history can, and a Monte "
+        "Carlo study over navigation, input, spin and inertia errors. Pictures; the study in shards."
+    ),
+    inputs=TrackingMpcInputs,
+    outputs=TrackingMpcOutputs,
+    sharding=Sharding(
+        split=f"{_HERE}.study:split",
+        shard=f"{_HERE}.run:shard",
+        merge=f"{_HERE}.run:merge",
+        summary=f"{_HERE}.study:summary",
+    ),
+    tables=(Table("flight", ("time_s", "range_m", "cost_to_go", "slack_m")),),
+    views=(
+        Findings(
+            "Certificate",
+            "statements",
+            word="verdict",
+            columns=(Column("statement", "statement"), Column("figure", "figure")),
+        ),
+        Facts(
+            (
+                Column("Under 5 cm after [s]", "time_to_5cm_s"),
+                Column("Under 1 cm after [s]", "time_to_1cm_s"),
+                Column("Impulse [m/s]", "impulse_m_s"),
+                Column("Cost", "cost"),
+            )
+        ),
+        Rows(
+            "Flight",
+            "flight",
+            (
+                Column("t [s]", "time_s"),
+                Column("range [m]", "range_m"),
+                Column("cost", "cost_to_go"),
+                Column("distance to the corridor's faces [m]", "slack_m"),
+            ),
+        ),
+    ),
+    keywords=("MPC", "tracking", "tumbling", "docking", "guidance"),
+    example={"n_c": 3, "theta_limit": "polytope", "region": {"rows": 10}},
+)

@@ -1,0 +1,229 @@
+"""A flight with errors, compiled: attitudes ahead predicted from what is measured, the step, the truth, the filter."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from safestart.control.tracking_mpc.assemble import assemble, equilibrium_input
+from safestart.control.tracking_mpc.step_kernel import INFEASIBLE, SOLVED, soften, solve_from
+from safestart.runtime.kernels import compiled
+
+HARD, SOFT, TUBE = 0, 1, 2
+_FIXED = 1e-9
+_FINEST = 0.1
+"""Largest turn of an integration step, rad: the fourth-order method is then off by less than 1e-7 rad in a step."""
+
+
+@compiled(error_model="numpy")
+def body_rates(w, inertia, inverse, out):  # type: ignore[no-untyped-def]
+    """Euler's equations: out = -I^-1 (w x I w)."""
+    a, b, c = 0.0, 0.0, 0.0
+    for k in range(3):
+        a += inertia[0, k] * w[k]
+        b += inertia[1, k] * w[k]
+        c += inertia[2, k] * w[k]
+    x, y, z = w[1] * c - w[2] * b, w[2] * a - w[0] * c, w[0] * b - w[1] * a
+    for i in range(3):
+        out[i] = -(inverse[i, 0] * x + inverse[i, 1] * y + inverse[i, 2] * z)
+
+
+@compiled(error_model="numpy")
+def turning(w, c, out):  # type: ignore[no-untyped-def]
+    """Out = -[w]x C."""
+    for k in range(3):
+        out[0, k] = w[2] * c[1, k] - w[1] * c[2, k]
+        out[1, k] = w[0] * c[2, k] - w[2] * c[0, k]
+        out[2, k] = w[1] * c[0, k] - w[0] * c[1, k]
+
+
+@compiled(error_model="numpy")
+def predict(first, rate, inertia, inverse, orbit, period, out):  # type: ignore[no-untyped-def]
+    """Attitudes ``out`` (K, 3, 3), LVLH to body, from the ``first`` one and an inertial body ``rate`` on (RK4)."""
+    c, w = first.copy(), rate.copy()
+    size = math.sqrt(w[0] ** 2 + w[1] ** 2 + w[2] ** 2)
+    parts = max(1, math.ceil(size * period / _FINEST))
+    h = period / parts
+    dw, dc, w1, c1 = np.empty((4, 3)), np.empty((4, 3, 3)), np.empty(3), np.empty((3, 3))
+    out[0] = first
+    for k in range(1, len(out)):
+        for _ in range(parts):
+            for stage in range(4):
+                share = 0.0 if stage == 0 else (h if stage == 3 else 0.5 * h)
+                for i in range(3):
+                    w1[i] = w[i] + (share * dw[stage - 1, i] if stage else 0.0)
+                    for j in range(3):
+                        c1[i, j] = c[i, j] + (share * dc[stage - 1, i, j] if stage else 0.0)
+                body_rates(w1, inertia, inverse, dw[stage])
+                turning(w1, c1, dc[stage])
+            for i in range(3):
+                w[i] += h / 6.0 * (dw[0, i] + 2.0 * dw[1, i] + 2.0 * dw[2, i] + dw[3, i])
+                for j in range(3):
+                    c[i, j] += h / 6.0 * (dc[0, i, j] + 2.0 * dc[1, i, j] + 2.0 * dc[2, i, j] + dc[3, i, j])
+        # C R', R the turn of LVLH about z meanwhile.
+        cosine, sine = math.cos(orbit * period * k), math.sin(orbit * period * k)
+        for i in range(3):
+            out[k, i, 0] = c[i, 0] * cosine + c[i, 1] * sine
+            out[k, i, 1] = c[i, 1] * cosine - c[i, 0] * sine
+            out[k, i, 2] = c[i, 2]
+
+
+@compiled(error_model="numpy")
+def plan_inputs(attitudes, motion, a, push, z, state, out):  # type: ignore[no-untyped-def]
+    """All inputs ``out`` (N_p, 3), LVLH axes, of the plan ``z`` from ``state`` (6,)."""
+    n = len(z)
+    theta = z[n - 3 :]
+    deviation = np.empty(push.shape[2])
+    near, after = np.empty(3), np.empty(3)
+    for i in range(3):
+        near[i] = after[i] = 0.0
+        for k in range(3):
+            near[i] += attitudes[0, k, i] * theta[k]
+            after[i] += attitudes[1, k, i] * theta[k]
+    for i in range(3):
+        drift = after[i]
+        for k in range(3):
+            drift -= a[i, k] * near[k]
+        deviation[i] = state[i] - near[i]
+        after[i] = drift
+    for i in range(3):
+        deviation[3 + i] = state[3 + i]
+        for k in range(3):
+            deviation[3 + i] -= motion[0, i, k] * after[k]
+    deviation[6:] = z[: n - 3]
+    own, back = np.empty((3, 3)), np.empty((3, 3))
+    for j in range(len(push)):
+        equilibrium_input(attitudes, j, motion, back, own)
+        for i in range(3):
+            held = 0.0
+            for k in range(3):
+                for b in range(3):
+                    held += attitudes[j, k, i] * own[k, b] * theta[b]
+            for k in range(push.shape[2]):
+                held += push[j, i, k] * deviation[k]
+            out[j, i] = held
+
+
+@compiled(error_model="numpy")
+def overstepped(attitudes, a, normals, offsets, state):  # type: ignore[no-untyped-def]
+    """How far ``state`` (6,) oversteps the corridor at this node and, whatever the input, at the next, m."""
+    worst = -np.inf
+    body, place = np.empty(3), np.empty(3)
+    for node in range(2):
+        for i in range(3):
+            place[i] = state[i]
+            if node == 1:
+                place[i] = 0.0
+                for b in range(6):
+                    place[i] += a[i, b] * state[b]
+        for i in range(3):
+            body[i] = 0.0
+            for b in range(3):
+                body[i] += attitudes[node, i, b] * place[b]
+        for f in range(len(normals)):
+            over = -offsets[f]
+            for i in range(3):
+                over += normals[f, i] * body[i]
+            worst = max(worst, over)
+    return worst
+
+
+@compiled(error_model="numpy")
+def fly_noisy(  # type: ignore[no-untyped-def]
+    start,
+    truth,
+    rates,
+    inertia,
+    inverse,
+    orbit,
+    period,
+    a,
+    gain,
+    variant,
+    navigation,
+    sizes,
+    a_rr,
+    motion,
+    reach,
+    push,
+    cost,
+    tau,
+    normals,
+    limits,
+    offsets,
+    low,
+    high,
+    give,
+):
+    """Fly len(truth) - 1 steps; returns (least slack, largest input, impulse, last range, steps without a plan).
+
+    ``truth`` (K + 1, 3, 3) and ``rates`` (K + 1, 3): the attitude as it is and the inertial rate as it is believed.
+    ``navigation`` (K + 1, 6): errors of what is measured; ``sizes`` (K,): factor on each impulse. ``gain`` (6, 6) is
+    the filter's. A step without a plan that keeps every row, those of this node and the next among them, follows the
+    last plan (HARD), or the one of least violation.
+    """
+    steps, total, n = len(truth) - 1, len(push), cost.shape[0] - 3
+    count, faces = len(high), len(normals)
+    rows, shift = np.empty((n, count)), np.empty((6, count))
+    hessian, slope = np.empty((n, n)), np.empty((n, 6))
+    z, dual = np.empty(n), np.empty(count)
+    attitudes = np.empty((total + 2, 3, 3))
+    planned = np.zeros((total, 3))
+    follow = total
+    state, estimate = start.copy(), start + navigation[0]
+    least, largest, impulse, unplanned = np.inf, 0.0, 0.0, 0
+    given, body = np.empty(3), np.empty(3)
+    for k in range(steps + 1):
+        for i in range(3):
+            body[i] = 0.0
+            for b in range(3):
+                body[i] += truth[k, i, b] * state[b]
+        for f in range(faces):
+            slack = offsets[f]
+            for i in range(3):
+                slack -= normals[f, i] * body[i]
+            least = min(least, slack)
+        if k == steps:
+            break
+        predict(truth[k], rates[k], inertia, inverse, orbit, period, attitudes)
+        assemble(
+            attitudes, a_rr, motion, reach, push, cost, tau, normals, limits, rows, shift, hessian, slope
+        )
+        status, _ = solve_from(rows, shift, hessian, slope, low, high, estimate, z, dual)
+        outside = overstepped(attitudes, a, normals, offsets, estimate) > _FIXED
+        if status != SOLVED or outside:
+            unplanned += 1
+            if variant == HARD:
+                status = INFEASIBLE
+            elif status != SOLVED:
+                status, _t = soften(rows, shift, hessian, slope, low, high, give, estimate, z, dual)
+        if status == SOLVED:
+            plan_inputs(attitudes, motion, a, push, z, estimate, planned)
+            follow = 0
+        else:
+            follow += 1
+        for i in range(3):
+            given[i] = planned[follow, i] if follow < total else 0.0
+        size = 0.0
+        for i in range(3):
+            pushed = 0.0
+            for b in range(3):
+                pushed += truth[k, i, b] * given[b]
+            largest = max(largest, abs(pushed))
+            size += pushed * pushed
+        impulse += math.sqrt(size)
+        moved, expected = np.zeros(6), np.zeros(6)
+        for i in range(6):
+            for b in range(6):
+                moved[i] += a[i, b] * state[b]
+                expected[i] += a[i, b] * estimate[b]
+        for i in range(3):
+            moved[3 + i] += sizes[k] * given[i]
+            expected[3 + i] += given[i]
+        state = moved
+        for i in range(6):
+            estimate[i] = expected[i]
+            for b in range(6):
+                estimate[i] += gain[i, b] * (state[b] + navigation[k + 1, b] - expected[b])
+    return least, largest, impulse, math.sqrt(state[0] ** 2 + state[1] ** 2 + state[2] ** 2), unplanned
