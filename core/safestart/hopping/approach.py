@@ -37,6 +37,11 @@ class Hop:
         """The share of the distance that the hop leaves."""
         return self.end / self.start
 
+    @property
+    def orbits(self) -> float:
+        """Its length in orbits."""
+        return self.phase / math.tau
+
 
 @dataclass(frozen=True, slots=True)
 class Approach:

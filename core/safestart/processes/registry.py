@@ -27,7 +27,9 @@ _SPECS = {
     "tracking-mpc": "safestart.processes.tracking_mpc.spec",
     "commit-timeline": "safestart.processes.commit_timeline.spec",
     "hop-time": "safestart.processes.hop_time.spec",
+    "hopping": "safestart.processes.hopping.spec",
     "passive-abort": "safestart.processes.passive_abort.spec",
+    "backward-variants": "safestart.processes.backward_variants.spec",
 }
 
 PROCESS_IDS = tuple(_SPECS)

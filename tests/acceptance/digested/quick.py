@@ -44,9 +44,34 @@ def level_set(accuracy: str, **more: Any) -> Inputs:
     return engines("analytical", "exact", "hamilton_jacobi", horizon_s=6, hamilton_jacobi=options)
 
 
+SPACE: Inputs = {
+    "starts": [
+        {"position_m": [2, 25, 1], "velocity_m_s": [0, -0.1, 0], "frame": "body"},
+        {"position_m": [5, 40, 8], "velocity_m_s": [2, 1, 0]},
+    ],
+    "attitude": {
+        "kind": "torque_free",
+        "inertia_kg_m2": [[17023, 397, -2171], [397, 124826, 344], [-2171, 344, 129112]],
+        "body_rate_deg_s": [0.6, -0.9, -2.4],
+    },
+    "proofs": True,
+}
+TETRAHEDRON = {
+    "kind": "thrusters",
+    "directions": [[1, 1, 1], [-1, -1, 1], [-1, 1, -1], [1, -1, -1]],
+    "a_max_m_s2": [0.1, 0.1, 0.1, 0.1],
+    "frame": "body",
+}
+
 NO_LEVEL_SET = ("analytical", "exact", "backward", "forward", "monte_carlo")
 
 QUICK: dict[str, Inputs | tuple[Inputs, ...]] = {
+    "start-in-space/torque-free": {**SPACE, "a_max_m_s2": 0.1},
+    "start-in-space/elliptic": {
+        **SPACE,
+        "orbit": {"semi_major_axis_m": 24396000, "eccentricity": 0.7283, "true_anomaly_deg": 20},
+        "thrust": TETRAHEDRON,
+    },
     "go-no-go/paper": starts_asked(method="paper"),
     "go-no-go/paper-body": starts_asked(method="paper", rest="body"),
     "go-no-go/paper-solid": {**POINT, "states": SOLID, "method": "paper"},

@@ -8,7 +8,7 @@ from typing import Any
 import typer
 
 from safestart.cli.console import Json, Justify, number, out, print_json, reporting, seconds, table_of
-from safestart.cli.reproduce import chain, passive_safety, table3
+from safestart.cli.reproduce import chain, hopping, passive_safety, table3
 from safestart.cli.reproduce import collision_avoidance as avoidance
 from safestart.cli.reproduce import tracking_mpc as tracking
 from safestart.papers import safe_start as published
@@ -71,6 +71,7 @@ def register(app: typer.Typer) -> None:
 
     table3.register(group)
     passive_safety.register(group)
+    hopping.register(group)
     chain.register(group)
     avoidance.register(group)
     tracking.register(group)

@@ -7,6 +7,7 @@ from typing import Any
 from safestart.errors import invalid
 from safestart.exact.answer import Answer, Verdict
 from safestart.exact.space.decide import decide_in_space
+from safestart.exact.space.model_error import model_error
 from safestart.exact.space.prove import proof_in_space
 from safestart.exact.space.question import SpaceQuestion
 from safestart.exact.space.watch import space_watch_of
@@ -28,6 +29,7 @@ def run(inputs: SpaceInputs, context: Context) -> ProcessOutput:
     for k, state in enumerate(states):
         answers.append(decide_in_space(question, state))
         context.step(k + 1, len(states), "starts")
+    errors = [model_error(question, state) for state in states]
     distances = (watch.offsets - states[:, :3] @ watch.normals.T).tolist()
     proof: list[dict[str, Any] | None] | None = None
     if inputs.proofs:
@@ -42,20 +44,29 @@ def run(inputs: SpaceInputs, context: Context) -> ProcessOutput:
             "faces": list(watch.names),
             "verdict": [answer.verdict.value for answer in answers],
             "margin_m": [finite(answer.margin_m) for answer in answers],
+            "model_error_m": errors,
             "violated_faces": [
                 [name for name, distance in zip(watch.names, row, strict=True) if distance < 0.0]
                 for row in distances
             ],
             "position_m": states[:, :3].tolist(),
             "velocity_m_s": states[:, 3:].tolist(),
-            "reason": [_sentence(question, answer) for answer in answers],
+            "reason": [
+                _sentence(question, answer, error) for answer, error in zip(answers, errors, strict=True)
+            ],
             "proof": proof,
         }
     )
 
 
-def _sentence(question: SpaceQuestion, answer: Answer) -> str:
-    """The verdict in words."""
+def _sentence(question: SpaceQuestion, answer: Answer, error: float) -> str:
+    """The verdict in words, with a warning where the linear model's own error may be larger than the margin."""
+    if abs(answer.margin_m) < error:
+        return f"{_told(question, answer)}; the linear model itself may be off by about {error:.2g} m"
+    return _told(question, answer)
+
+
+def _told(question: SpaceQuestion, answer: Answer) -> str:
     span = question.horizon
     if answer.verdict is Verdict.UNDECIDED:
         return f"undecided: {answer.reason}; margin between {answer.lower:.3g} and {answer.upper:.3g} m"

@@ -70,6 +70,10 @@ class SpaceOutputs(WireModel):
     margin_m: list[float | None] = Field(
         description="Proved bound on the margin (distance to every face), m: from below for GO, from above for NO_GO."
     )
+    model_error_m: list[float] = Field(
+        description="Estimate of what two bodies with J2 would change over the horizon, m; where it exceeds the "
+        "margin, the reason says so."
+    )
     violated_faces: list[list[str]] = Field(description="Faces that the start itself is outside of.")
     position_m: list[list[float]] = Field(description="Starts, LVLH, m.")
     velocity_m_s: list[list[float]] = Field(description="Starts, LVLH, m/s.")
@@ -94,7 +98,18 @@ SPEC = ProcessSpec(
     cost=lambda inputs: FIRST_S + 3.0 * program_s(inputs.horizon_s) * len(inputs.starts),
     states="starts",
     tables=(
-        Table("starts", ("verdict", "margin_m", "position_m", "velocity_m_s", "violated_faces", "reason")),
+        Table(
+            "starts",
+            (
+                "verdict",
+                "margin_m",
+                "model_error_m",
+                "position_m",
+                "velocity_m_s",
+                "violated_faces",
+                "reason",
+            ),
+        ),
     ),
     views=(
         Findings(
@@ -103,6 +118,7 @@ SPEC = ProcessSpec(
             word="verdict",
             columns=(
                 Column("margin [m]", "margin_m"),
+                Column("error of the model [m]", "model_error_m"),
                 Column("why", "reason"),
                 Column("faces violated at the start", "violated_faces"),
             ),

@@ -1,0 +1,127 @@
+"""The processes hop-time, passive-abort and hopping, as clients meet them."""
+
+import json
+
+import pytest
+
+from safestart.cli.reproduce.hopping import hopping_document
+from safestart.errors import InvalidInput
+from safestart.processes.execute import execute
+from safestart.processes.registry import process
+from safestart.proofs.checker import check
+
+
+def test_hop_time() -> None:
+    assert execute("hop-time", {"angle_deg": 0, "rho": 0.7}).document["outputs"]["orbits"] == 0.5
+    with pytest.raises(InvalidInput, match=r"up to 147\.19 deg"):
+        execute("hop-time", {"angle_deg": 150, "rho": 0.7})
+
+
+@pytest.fixture(scope="module")
+def studied():
+    return execute("hopping", {"runs": 120, "hops": 4, "angle_deg": 40, "keep_out_m": 60, "seed": 3})
+
+
+def test_plan_study_and_proof(studied) -> None:
+    said = studied.document["outputs"]
+    assert said["plan"]["hops"][0]["start_m"] == 2000.0
+    assert said["plan"]["hops"][-1]["end_m"] == 100.0
+    assert said["plan"]["orbits"] == pytest.approx(sum(hop["orbits"] for hop in said["plan"]["hops"]))
+    breach = said["study"]["breach"]
+    assert breach["runs"] == 120
+    assert breach["low"] <= breach["probability"] == breach["count"] / 120 <= breach["high"]
+    assert len(breach["per_hop"]) == len(said["proof"]["least_distance_m"]) == 4
+    assert said["proof"]["verdict"] == "PROVED"
+    assert said["proof"]["lambda"] > 1.0
+    assert {artifact.name for artifact in studied.artifacts} == {
+        "plan.png",
+        "flights.png",
+        "approaches.parquet",
+    }
+
+
+def test_shards_add_up(studied) -> None:
+    spec = process("hopping")
+    assert spec.sharding is not None
+    inputs = spec.parse({"runs": 120, "hops": 4, "angle_deg": 40, "keep_out_m": 60, "seed": 3})
+    parts = spec.sharding.parts(inputs)
+    assert [part["count"] for part in parts] == [60, 60] or sum(part["count"] for part in parts) == 120
+    assert spec.sharding.so_far(inputs, [])["study"] is None
+    documents = [spec.sharding.run_part(part, _quiet()).document for part in reversed(parts)]
+    assert spec.sharding.so_far(inputs, documents)["study"] == studied.document["outputs"]["study"]
+
+
+def _quiet():
+    from safestart.runtime.progress import Context
+
+    return Context()
+
+
+@pytest.mark.parametrize(
+    ("inputs", "said"),
+    [
+        ({"hold_m": 40, "keep_out_m": 50}, "hold_m"),
+        ({"start_m": 100, "hold_m": 100}, "start_m"),
+        ({"angle_deg": 160}, "angle_deg"),
+        ({"eccentricity": 0.3}, "perigee"),
+        ({"gamma": 1.2}, "gamma"),
+        ({"hops": 0}, "hops"),
+        ({"sigma": {"position_m": -1}}, "sigma.position_m"),
+    ],
+)
+def test_bad_input_is_named(inputs, said: str) -> None:
+    with pytest.raises(InvalidInput, match=said):
+        execute("hopping", {"runs": 1, **inputs})
+
+
+def _plan(**more):
+    example = process("passive-abort").example
+    return {**example, **more}
+
+
+def test_passive_abort_proves_and_its_document_is_checked() -> None:
+    done = execute("passive-abort", _plan())
+    assert done.document["outputs"]["verdict"] == "PROVED"
+    proof = next(artifact for artifact in done.artifacts if artifact.name == "proof.json")
+    assert check(json.loads(proof.data)).margin_m == done.document["outputs"]["least_distance_m"]
+    assert {(case["burn"], case["failure"]) for case in done.document["outputs"]["cases"]} == {
+        (k, "missed") for k in range(3)
+    }
+
+
+def test_passive_abort_shows_a_flight_that_enters() -> None:
+    done = execute("passive-abort", _plan(keep_out_m=120, model="nonlinear"))
+    assert done.document["outputs"]["verdict"] == "VIOLATED"
+    assert done.document["outputs"]["counter_example"]["distance_m"] < 120
+    assert done.document["outputs"]["model"] == "nonlinear"
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ({"burns": []}, "burns"),
+        (
+            {"burns": [{"time_s": 5, "impulse_m_s": [0, 1, 0]}, {"time_s": 5, "impulse_m_s": [0, 1, 0]}]},
+            "order",
+        ),
+        ({"burns": [{"time_s": 5, "impulse_m_s": [0, 0, 0]}]}, "not zero"),
+        ({"failures": {"stuck_s": 5}}, "acceleration_m_s2"),
+        ({"failures": {"late_s": 5000}}, "late_s"),
+        ({"model": "nonlinear", "errors": {"at_each_burn": False}}, "at_each_burn"),
+        ({"semi_major_axis_m": 6e6}, "semi_major_axis_m"),
+    ],
+)
+def test_bad_plans_are_named(more, said: str) -> None:
+    with pytest.raises(InvalidInput, match=said):
+        execute("passive-abort", _plan(**more))
+
+
+def test_reproduce_hopping_stands_beside_the_paper() -> None:
+    document = hopping_document(runs=10)
+    said = {row["what"]: (row["ours"], row["paper"]) for row in document["rows"]}
+    assert said["V-bar hop, orbits"] == ("0.5000", "0.5")
+    assert said["R-bar hop as rho falls to 0, orbits"][0] == "0.2030"
+    off, on = (
+        said[f"0.6 orbits, barrier {name}: closest after each hop, m"][0] for name in ("off", "nominal")
+    )
+    assert min(float(c) for c in off.split(", ")) < 50.0 <= min(float(c) for c in on.split(", "))
