@@ -9,7 +9,7 @@ import typer
 
 from safestart.cli import bench, demo, go_no_go, keys, records, run, up, verify
 from safestart.cli.aboard import export_c
-from safestart.cli.field import timeline
+from safestart.cli.field import convert, timeline
 from safestart.cli.reproduce import command as reproduce
 from safestart.cli.streams import patient_streams
 from safestart.errors import SafestartError
@@ -27,7 +27,20 @@ def build() -> typer.Typer:
         pretty_exceptions_enable=False,
         rich_markup_mode=None,
     )
-    for module in (up, go_no_go, timeline, run, reproduce, demo, bench, verify, records, keys, export_c):
+    for module in (
+        up,
+        go_no_go,
+        timeline,
+        convert,
+        run,
+        reproduce,
+        demo,
+        bench,
+        verify,
+        records,
+        keys,
+        export_c,
+    ):
         module.register(app)
     for point in sorted(entry_points(group=COMMAND_GROUP), key=lambda p: p.name):
         point.load()(app)

@@ -51,6 +51,19 @@ def attitude_from(data: bytes, name: str = "") -> AttitudeCourse:
     raise invalid("file", "attitudes: AEM, APM, CSV, Parquet or MATLAB", message.kind)
 
 
+def course_from(data: bytes, name: str = "", sense: Sense | None = None) -> Ephemeris | AttitudeCourse:
+    """States or attitudes, whichever the bytes hold; raises as the two do."""
+    if tables.is_table(data, name):
+        return (
+            tables.attitude_of(data, name)
+            if tables.holds_turns(data, name)
+            else tables.ephemeris_of(data, name)
+        )
+    if message_of(data).kind in ("AEM", "APM"):
+        return attitude_from(data, name)
+    return ephemeris_from(data, name, sense)
+
+
 def encounter_of(path: Path | str, sense: Sense) -> Encounter:
     """The two objects of a CDM; ``sense`` gives the sense of its RTN covariances. Raises ``InvalidInput``."""
     message = message_of(bytes_of(path))

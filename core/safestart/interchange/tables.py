@@ -10,7 +10,7 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Mapping, Sequence
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from safestart.interchange.attitude_course import AttitudeCourse
 from safestart.interchange.ccsds.tokens import number
 from safestart.interchange.ephemeris import MOST_STATES, Ephemeris
 from safestart.interchange.epochs import epochs_of, shortened, text_of
+from safestart.interchange.matlab import arrays_in
 from safestart.interchange.source import text_of as decoded
 from safestart.model.scenario import Floats
 
@@ -32,6 +33,11 @@ Columns = dict[str, list[Any]]
 def is_table(data: bytes, name: str) -> bool:
     """Whether these bytes are a table: by their first bytes, or the name's end for CSV."""
     return data[:4] == b"PAR1" or data[:6] == b"MATLAB" or name.lower().endswith((".csv", ".mat", ".parquet"))
+
+
+def holds_turns(data: bytes, name: str) -> bool:
+    """Whether the table's columns are those of attitudes."""
+    return TURN[0] in _columns(data, name)
 
 
 def ephemeris_of(data: bytes, name: str) -> Ephemeris:
@@ -88,21 +94,6 @@ def parquet_of(columns: Mapping[str, Sequence[Any]]) -> bytes:
     return sink.getvalue()
 
 
-def matlab_of(columns: Mapping[str, Any]) -> bytes:
-    """A MATLAB 5 file: numbers as columns, texts as cells."""
-    from scipy.io import savemat
-
-    sink = io.BytesIO()
-    found = {}
-    for name, column in columns.items():
-        array = np.asarray(column)
-        text = array.dtype.kind == "U"
-        found[name] = (array.astype(object) if text else array.astype(np.float64)).reshape(len(array), -1)
-    # It accepts file objects too, contrary to its type stubs.
-    savemat(cast(Any, sink), found, do_compression=True, long_field_names=True)
-    return sink.getvalue()
-
-
 def _columns(data: bytes, name: str) -> Columns:
     if data[:4] == b"PAR1":
         pa, pq = _arrow()
@@ -112,7 +103,7 @@ def _columns(data: bytes, name: str) -> Columns:
             raise invalid("file", "Parquet", str(error)) from None
         found: Columns = table.to_pydict()
     elif data[:6] == b"MATLAB":
-        found = _from_matlab(data)
+        found = arrays_in(data)
     elif name.lower().endswith(".csv"):
         rows = list(csv.reader(io.StringIO(decoded(data, "file"), newline="")))
         if not rows or len(set(rows[0])) != len(rows[0]):
@@ -126,28 +117,6 @@ def _columns(data: bytes, name: str) -> Columns:
     lengths = {len(column) for column in found.values()}
     if len(lengths) != 1 or not 1 <= max(lengths) <= MOST_STATES:
         raise invalid("file", f"columns of one length, 1 to {MOST_STATES} rows", sorted(lengths))
-    return found
-
-
-def _from_matlab(data: bytes) -> Columns:
-    from scipy.io import loadmat
-
-    try:
-        loaded = loadmat(cast(Any, io.BytesIO(data)), struct_as_record=True, mat_dtype=True)
-    except Exception as error:
-        # The reader raises whatever its parts do on a damaged file.
-        raise invalid(
-            "file", "a MATLAB 5 file", f"one that is not ({type(error).__name__}: {error})"
-        ) from None
-    found: Columns = {}
-    for name, array in loaded.items():
-        if name.startswith("__"):
-            continue
-        flat = np.asarray(array).ravel()
-        if flat.dtype == object:
-            found[name] = [str(np.asarray(entry).ravel()[0]) if np.size(entry) else "" for entry in flat]
-        else:
-            found[name] = [str(entry).rstrip() if flat.dtype.kind == "U" else float(entry) for entry in flat]
     return found
 
 

@@ -29,6 +29,7 @@ _SPECS = {
     "hop-time": "safestart.processes.hop_time.spec",
     "hopping": "safestart.processes.hopping.spec",
     "passive-abort": "safestart.processes.passive_abort.spec",
+    "backward-variants": "safestart.processes.backward_variants.spec",
 }
 
 PROCESS_IDS = tuple(_SPECS)

@@ -47,7 +47,7 @@ def test_partial_results_grow_with_the_shards(tmp_path: Path) -> None:
             assert body["shards"] == {"done": number + 1, "total": 2}
             assert body["outputs"]["cases"] == 8000 * (number + 1)
             spec.outputs.model_validate(body["outputs"])
-        cell = body["outputs"]["confusion"]["closed_form"]["filter"]
+        cell = body["outputs"]["confusion"]["paper"]["filter"]
         assert sum(cell[name] for name in ("tp", "fp", "fn", "tn")) == 16000
         jobs.fail(claim, {"detail": "the machine burnt down"})
         body = client.get(url).json()

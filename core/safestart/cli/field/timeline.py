@@ -17,6 +17,7 @@ from safestart.runtime.plain_json import loads
 
 _COLOURS = {"GO": "green", "NO_GO": "red", "UNDECIDED": "yellow"}
 _MOST_SHOWN = 20
+_FEW = 1000
 
 
 def register(app: typer.Typer) -> None:
@@ -82,13 +83,23 @@ def register(app: typer.Typer) -> None:
             inputs["corridors"] = [_corridor(text) for text in corridor]
         with target("--output", output) as file:
             with reporting("commit-timeline") as context:
-                result = execute_side_by_side("commit-timeline", inputs, context)
+                result = execute_side_by_side("commit-timeline", inputs, context, _workers(inputs))
             if file is not None:
                 file.write_json(result.document, indent=2)
                 _beside(file.path, result)
         if proofs is not None:
             _write_proofs(proofs, result)
         print_json(result.document) if as_json else _show(result.document["outputs"])
+
+
+def _workers(inputs: dict[str, Any]) -> int | None:
+    """1 for a span so short that other processes would not have started before it is done; None: as many as cores."""
+    from safestart.processes.commit_timeline.run import encounter_of
+    from safestart.processes.commit_timeline.spec import SPEC, CommitTimelineInputs
+
+    parsed = SPEC.parse(inputs)
+    assert isinstance(parsed, CommitTimelineInputs)
+    return 1 if len(encounter_of(parsed)[1]) < _FEW else None
 
 
 def _text(option: str, path: Path) -> str:

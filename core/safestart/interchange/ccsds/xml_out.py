@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from xml.sax.saxutils import escape
+from html import escape
 
 from safestart.errors import invalid
 from safestart.interchange.ccsds.tokens import Kind, Token
@@ -30,7 +30,7 @@ def text_of(tokens: Iterable[Token]) -> str:
 
 def _leaf(token: Token) -> str:
     units = f' units="{escape(token.units)}"' if token.units else ""
-    return f"<{token.name}{units}>{escape(token.value)}</{token.name}>"
+    return f"<{token.name}{units}>{escape(token.value, quote=False)}</{token.name}>"
 
 
 def _segments(tokens: list[Token]) -> list[list[Token]]:

@@ -16,7 +16,8 @@ from safestart.exact.decide import decide
 from safestart.exact.question import Goal, Question
 from safestart.model.scenario import Floats, Rest, Scenario
 from safestart.optim.prediction import prediction_of
-from safestart.processes.base import ProcessOutput
+from safestart.processes.base import Artifact, ProcessOutput
+from safestart.processes.flight.files import MEDIA_TYPES, courses
 from safestart.processes.flight.spec import FlightInputs
 from safestart.processes.wire import DT_S, finite
 from safestart.runtime.progress import Context
@@ -32,7 +33,13 @@ def run(inputs: FlightInputs, context: Context) -> ProcessOutput:
         inputs.scenario(), point, inputs.rest, inputs.question, inputs.horizon_s, inputs.within_s
     )
     context.step(1, 1)
-    return ProcessOutput(flown)
+    if inputs.mean_motion_rad_s == 0.0:
+        return ProcessOutput(flown)
+    files = courses(inputs.model_dump(mode="json"), flown).files()
+    return ProcessOutput(
+        flown,
+        tuple(Artifact(name, MEDIA_TYPES[name.rpartition(".")[2]], data) for name, data in files.items()),
+    )
 
 
 def best_flight(
@@ -63,6 +70,7 @@ def best_flight(
         "time_s": times.tolist(),
         "body_m": body.tolist(),
         "lvlh_m": states[:, :d].tolist(),
+        "lvlh_m_s": states[:, d:].tolist(),
         "thrust_m_s2": [*np.repeat(thrust, _PARTS, axis=0).tolist(), thrust[-1].tolist()],
         "faces": list(corridor.names),
         "distance_m": distance.tolist(),

@@ -37,6 +37,7 @@ class FlightOutputs(WireModel):
     time_s: list[float]
     body_m: list[list[float]] = Field(description="Position in the target's body frame.")
     lvlh_m: list[list[float]] = Field(description="Position in LVLH.")
+    lvlh_m_s: list[list[float]] = Field(description="Velocity in LVLH, m/s.")
     thrust_m_s2: list[list[float]] = Field(description="Acceleration in LVLH, held over each interval.")
     faces: list[str]
     distance_m: list[list[float]] = Field(description="Distance to each face over time; negative: outside.")
@@ -64,7 +65,7 @@ SPEC = ProcessSpec(
     run="safestart.processes.flight.run:run",
     light=True,
     cost=_cost,
-    tables=(Table("flight", ("time_s", "body_m", "lvlh_m", "thrust_m_s2", "distance_m")),),
+    tables=(Table("flight", ("time_s", "body_m", "lvlh_m", "lvlh_m_s", "thrust_m_s2", "distance_m")),),
     views=(
         Findings(
             "Verdict",

@@ -15,6 +15,13 @@ from safestart_service.documents.formats.base import Format, Record
 def _encode(record: Record, _: str | None) -> bytes:
     import numpy as np
 
+    sink = io.BytesIO()
+    np.savez_compressed(sink, **arrays_of(record))
+    return sink.getvalue()
+
+
+def arrays_of(record: Record) -> dict[str, Any]:
+    """The arrays of a result by name."""
     outputs = record["outputs"]
     arrays: dict[str, Any] = {}
     for name, value in outputs.items():
@@ -24,9 +31,7 @@ def _encode(record: Record, _: str | None) -> bytes:
         for column in columns_of(rows):
             if (array := _numeric([row[column] for row in rows])) is not None:
                 arrays[f"{name}.{column}"] = array
-    sink = io.BytesIO()
-    np.savez_compressed(sink, **arrays)
-    return sink.getvalue()
+    return arrays
 
 
 def _numeric(value: Any) -> Any:

@@ -13,6 +13,9 @@ _MODULES = (
     "csv_table",
     "npz",
     "parquet",
+    "matlab",
+    "ccsds",
+    "czml",
 )
 
 FORMATS: tuple[Format, ...] = tuple(

@@ -1,0 +1,34 @@
+"""A flight as CZML, for CesiumJS and other viewers. The first file loads NumPy."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from safestart_service.documents.formats.base import Format, Record
+from safestart_service.errors import NotAcceptable
+
+if TYPE_CHECKING:
+    from safestart.interchange.flights import FlightCourses
+
+
+def courses_in(record: Record) -> FlightCourses:
+    """The courses of a flight's record; raises ``NotAcceptable`` for another process, ``InvalidInput``."""
+    if record.get("process", {}).get("id") != "flight" or "lvlh_m_s" not in record["outputs"]:
+        raise NotAcceptable(
+            "this result is no flight; required application/json",
+            field="Accept",
+            required="application/json",
+        )
+    from safestart.processes.flight.files import courses
+
+    return courses(record["inputs"], record["outputs"])
+
+
+def _encode(record: Record, _: str | None) -> bytes:
+    from safestart.interchange.flights import czml_of
+
+    found = courses_in(record)
+    return czml_of(found.chaser, found.target)
+
+
+FORMAT = Format("czml", "application/vnd.safestart.czml+json", _encode)
