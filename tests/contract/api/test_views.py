@@ -56,7 +56,10 @@ def check_column(spec: ProcessSpec, table: str, path: str) -> None:
         )
         return
     parts = table.split(".") if table else []
-    rows = spec.outputs
+    rows: Any = spec.outputs
+    if len(parts) == 2 and typing.get_origin(follow(rows, parts[0])) is not list:
+        follow(step(follow(rows, table), "*"), path)  # a list within an object
+        return
     for depth, part in enumerate(parts):
         outer, rows = rows, step(step(rows, part), "*")
         if depth and not path.startswith(f"{part}."):
