@@ -30,6 +30,7 @@ _SPECS = {
     "hopping": "safestart.processes.hopping.spec",
     "passive-abort": "safestart.processes.passive_abort.spec",
     "backward-variants": "safestart.processes.backward_variants.spec",
+    "hold-region": "safestart.processes.hold_region.spec",
 }
 
 PROCESS_IDS = tuple(_SPECS)
