@@ -53,3 +53,7 @@ generate:
 # the pages in Chromium, their screenshots into docs/screenshots
 screenshots:
     SAFESTART_SCREENSHOTS=docs/screenshots python3 -m uv run --all-packages pytest tests/browser
+
+# the documentation as a site in build/site, strictly; `python -m http.server -d build/site` shows it
+docs:
+    python3 -m uv run --all-packages mkdocs build --strict

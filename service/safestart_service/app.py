@@ -63,7 +63,7 @@ def create_app(
         waiting = None
         if not await _migrated(found):
             waiting = asyncio.create_task(_keep_migrating(found))
-        warming = asyncio.create_task(found.helpers.warm()) if warm else None
+        warming = found.helpers.warm() if warm else None
         async with found.keyring.kept_fresh():
             yield
         for task in (waiting, warming):

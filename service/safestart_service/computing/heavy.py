@@ -48,6 +48,7 @@ class Helpers:
         self._limiter = CapacityLimiter(settings.answer_processes)
         self._folder = _folder()
         self._numbers = count()
+        self._warming: asyncio.Task[None] | None = None
 
     async def __call__(
         self, request: Request, cost_s: float, function: Callable[..., Answer], *arguments: Any
@@ -92,6 +93,7 @@ class Helpers:
         arguments: tuple[Any, ...],
     ) -> Answer:
         async with self.line.slot(name, cost_s):
+            await asyncio.shield(self.warm())
             try:
                 return await to_process.run_sync(
                     inside.call,
@@ -102,7 +104,11 @@ class Helpers:
                     cancellable=True,
                     limiter=self._limiter,
                 )
+            except asyncio.CancelledError:
+                self._warming = None  # the process is killed; no deadline ends the next one while it starts
+                raise
             except BrokenWorkerProcess:
+                self._warming = None
                 log.exception("a helper process ended while it computed an answer")
                 raise Unavailable(
                     "the process that computed the answer ended; required a smaller question, or a job",
@@ -113,8 +119,13 @@ class Helpers:
         """A name for a file of this request's; None where nothing can be written."""
         return None if self._folder is None else self._folder / str(next(self._numbers))
 
-    async def warm(self) -> None:
-        """Start a helper before it is needed; the first heavy answer would wait a second for it."""
+    def warm(self) -> asyncio.Task[None]:
+        """Start a helper process, unless one was started and not killed; the first heavy answer waits for it."""
+        if self._warming is None:
+            self._warming = asyncio.ensure_future(self._start())
+        return self._warming
+
+    async def _start(self) -> None:
         with suppress(BrokenWorkerProcess, inside.Failed):
             await to_process.run_sync(inside.ready, limiter=self._limiter, cancellable=True)
 

@@ -50,8 +50,8 @@ def call(function: Callable[..., Any], settings: Settings, stop: Path | None, *a
 
 def ready() -> int:
     """Load what heavy answers need, before the first one comes; returns the process id."""
-    _prepare()
     process("flight").runner()
+    _prepare()
     return os.getpid()
 
 

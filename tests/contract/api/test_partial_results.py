@@ -13,7 +13,7 @@ from tests.contract.api.service_client import assert_problem, finish, jobs_of, s
 
 INPUTS: dict[str, Any] = {
     "controllers": ["filter"],
-    "certificates": ["closed_form"],
+    "certificates": ["paper"],
     "cases_per_cell": 2000,
     "omega_t_deg_s": [1, 4],
     "a_max_m_s2": [0.1],
@@ -47,7 +47,7 @@ def test_partial_results_grow_with_the_shards(tmp_path: Path) -> None:
             assert body["shards"] == {"done": number + 1, "total": 2}
             assert body["outputs"]["cases"] == 8000 * (number + 1)
             spec.outputs.model_validate(body["outputs"])
-        cell = body["outputs"]["confusion"]["closed_form"]["filter"]
+        cell = body["outputs"]["confusion"]["paper"]["filter"]
         assert sum(cell[name] for name in ("tp", "fp", "fn", "tn")) == 16000
         jobs.fail(claim, {"detail": "the machine burnt down"})
         body = client.get(url).json()

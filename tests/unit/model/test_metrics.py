@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from scipy.stats import binomtest
 
-from safestart.model.metrics import ConfusionMatrix, iou, violation
+from safestart.model.metrics import ConfusionMatrix, iou, violation, wilson
 
 A = np.array([[True, True, False, False]])
 B = np.array([[True, False, True, False]])
@@ -14,6 +15,7 @@ def test_overlaps() -> None:
     assert iou(A, B) == pytest.approx(1 / 3)
     assert violation(A, B) == pytest.approx(1 / 2)
     assert iou(NONE, NONE) is None
+    assert violation(A, np.array([[True, True, True, False]])) == 0.0
     assert violation(NONE, B) is None
     assert iou(A, NONE) == 0.0
 
@@ -32,6 +34,32 @@ def test_counts_only_the_domain() -> None:
     domain = np.array([[True, True, True, False]])
     assert ConfusionMatrix.of(A, B, domain) == ConfusionMatrix(1, 1, 1, 0)
     assert ConfusionMatrix.of(NONE, NONE, domain).document()["precision"] is None
+
+
+def test_each_cell_is_counted_by_its_own_rule() -> None:
+    """4 hits, 3 false alarms, 2 misses, 1 quiet cell: no two counts can be mistaken for each other."""
+    predicted = np.array([True] * 4 + [True] * 3 + [False] * 2 + [False])
+    actual = np.array([True] * 4 + [False] * 3 + [True] * 2 + [False])
+    assert ConfusionMatrix.of(predicted, actual, np.ones(10, dtype=bool)) == ConfusionMatrix(4, 3, 2, 1)
+
+
+@pytest.mark.parametrize(
+    ("successes", "trials"), [(0, 1), (1, 1), (0, 40), (40, 40), (3, 7), (39, 40), (500, 1234)]
+)
+@pytest.mark.parametrize("level", [0.95, 0.99])
+def test_wilson_intervals_are_those_of_scipy(successes: int, trials: int, level: float) -> None:
+    z = {0.95: (), 0.99: (2.5758293035489004,)}[level]
+    found = wilson(successes, trials, *z)
+    expected = binomtest(successes, trials).proportion_ci(level, method="wilson")
+    assert found == pytest.approx((expected.low, expected.high), abs=1e-12)
+    assert found is not None
+    assert found[0] == 0.0 or successes > 0
+    assert found[1] == 1.0 or successes < trials
+    assert 0.0 <= found[0] < found[1] <= 1.0
+
+
+def test_wilson_of_nothing_is_nothing() -> None:
+    assert wilson(0, 0) is None
 
 
 def test_nothing_to_count_is_undefined() -> None:

@@ -60,7 +60,8 @@ class StudyInput(WireModel):
         ),
     )
     tube: Literal["three_sigma", "bounded"] = Field(
-        "three_sigma", description="Tightening by the root of squares of 3 sigma, or by their sum."
+        "bounded",
+        description="Tightening by the sum of 3 sigma of all steps (bounded errors), or by the root of squares.",
     )
     position_sigma_m: float = Field(0.01, ge=0, le=10, description="Navigation, per axis and step, m.")
     velocity_sigma_m_s: float = Field(0.001, ge=0, le=1, description="Navigation, per axis and step, m/s.")
