@@ -16,7 +16,7 @@ import numpy as np
 from safestart.closed_form.members import BRAKE, Faces, Ints, Offer, offers
 from safestart.closed_form.rates import Rates, rates_of
 from safestart.errors import invalid
-from safestart.model.scenario import Bools, Floats, Grid, Rest, Scenario
+from safestart.model.scenario import Bools, CorridorShape, Floats, Grid, Rest, Scenario
 
 ROUNDING = 1e-6
 """Metres subtracted from every clearance, which floats give to better than 1e-8 m within :data:`FARTHEST`."""
@@ -67,9 +67,14 @@ def certify(scenario: Scenario, points: Floats, rest: Rest = Rest.LVLH) -> Certi
         raise invalid("points", "last axis of length 2 or 3 (metres)", points.shape)
     if not (np.abs(points) <= FARTHEST).all():
         raise invalid("points", f"finite coordinates within {FARTHEST:g} m", "NaN or more")
+    return certify_by(rates_of(scenario, rest), scenario.corridor, points)
+
+
+def certify_by(rates: Rates, corridor: CorridorShape, points: Floats) -> Certified:
+    """:func:`certify` for given rates; ``points`` as there, checked."""
     shape, dimensions = points.shape[:-1], points.shape[-1]
     place = np.ascontiguousarray(points.reshape(-1, dimensions).T)
-    rates, faces = rates_of(scenario, rest), Faces.of(scenario.corridor, dimensions)
+    faces = Faces.of(corridor, dimensions)
     start = faces.room(place)
     # Outside the corridor no manoeuvre helps, so the margin is the start's own.
     margin, binding = start.min(axis=0), start.argmin(axis=0)

@@ -126,13 +126,18 @@ class Family:
 
 @lru_cache(maxsize=1024)
 def family_of(speed: float, nu: float) -> Family:
-    """The members for ``speed`` (lambda) and ``nu`` (n / W), both in [0, 1].
+    """The members on a circular orbit for ``speed`` (lambda) and ``nu`` (n / W), both in [0, 1]."""
+    return family_under(speed, 1.0 + 0.5 * nu * nu, 1.5 * nu * nu)
 
-    The thrust of a member is a polynomial apart from the last term, whose length is (3/2) nu^2 |q|. Both are bounded by
-    their control points on :data:`PIECES` pieces, for every p and every phase; standing still takes at most
-    (g + (3/2) nu^2) |h(1)|.
+
+@lru_cache(maxsize=1024)
+def family_under(speed: float, turning: float, gradient: float) -> Family:
+    """The members where g is ``turning`` and all that depends on the phase is at most ``gradient`` |q|.
+
+    The thrust of a member is a polynomial apart from the last term, whose length is ``gradient`` |q|. Both are bounded
+    by their control points on :data:`PIECES` pieces, for every p and every phase; standing still takes at most
+    (g + gradient) |h(1)|.
     """
-    gradient, turning = 1.5 * nu * nu, 1.0 + 0.5 * nu * nu
     shape, hull, pushed = (still + speed * moving for still, moving in zip(_AT_REST, _MOVING, strict=True))
     moving = (np.abs(pushed - turning * hull) + gradient * np.abs(hull)).max(axis=0)
     standing = (turning + gradient) * np.abs(shape[DEGREE])

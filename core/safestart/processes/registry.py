@@ -12,6 +12,7 @@ _SPECS = {
     "go-no-go": "safestart.processes.go_no_go.spec",
     "certificate": "safestart.processes.certificate.spec",
     "start-in-space": "safestart.processes.start_in_space.spec",
+    "elliptic-start": "safestart.processes.elliptic_start.spec",
     "safe-region": "safestart.processes.safe_region.spec",
     "thrust-map": "safestart.processes.thrust_map.spec",
     "flight": "safestart.processes.flight.spec",
@@ -30,6 +31,7 @@ _SPECS = {
     "hopping": "safestart.processes.hopping.spec",
     "passive-abort": "safestart.processes.passive_abort.spec",
     "backward-variants": "safestart.processes.backward_variants.spec",
+    "hold-region": "safestart.processes.hold_region.spec",
 }
 
 PROCESS_IDS = tuple(_SPECS)

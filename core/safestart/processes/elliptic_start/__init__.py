@@ -1,0 +1,1 @@
+"""The elliptic-start process: the closed-form certificate on an elliptic orbit."""
