@@ -20,6 +20,11 @@ test("lists of objects are tables, those within their rows too, beside what the 
   assert.deepEqual(columnsOf([{ a: null, b: "" }, { b: 2, c: 3 }]), ["b", "c"]);
 });
 
+test("a list of objects within an object is a table, with nothing beside it", () => {
+  const tables = tablesOf({ plan: { orbits: 2, hops: [{ rho: 0.5, impulse: [1, 2] }, { rho: 0.7, impulse: [3, 4] }] } });
+  assert.deepEqual(tables["plan.hops"], [{ rho: 0.5, "impulse.0": 1, "impulse.1": 2 }, { rho: 0.7, "impulse.0": 3, "impulse.1": 4 }]);
+});
+
 test("declared lists stand side by side, or over two axes", () => {
   const outputs = { verdict: ["GO", "NO_GO"], margin_m: [1, -2], end_s: null, rate: [1, 2], thrust: [5, 6, 7], share: [[1, 2, 3], [4, 5, 6]] };
   const tables = tablesOf(outputs, [{ name: "states", columns: ["verdict", "margin_m", "end_s"], axes: [] }, { name: "map", columns: ["share"], axes: ["rate", "thrust"] }, { name: "uneven", columns: ["rate", "thrust"], axes: [] }]);

@@ -18,7 +18,8 @@ _MOST_ENTRIES = 8
 def tables_of(outputs: dict[str, Any], declared: Iterable[Table] = ()) -> dict[str, Rows]:
     """The tables among outputs by name: declared ones, then lists of objects.
 
-    A list of objects within the rows of another list is a table too, ``outer.inner``, beside its row's scalars.
+    A list of objects within the rows of another list is a table too, ``outer.inner``, beside its row's scalars. So is
+    a list within an object, without anything beside it.
     """
     found = {}
     for table in declared:
@@ -28,6 +29,10 @@ def tables_of(outputs: dict[str, Any], declared: Iterable[Table] = ()) -> dict[s
     for name, value in outputs.items():
         if _objects(value):
             found |= _objects_tables(name, value)
+        elif isinstance(value, dict):
+            for key, items in value.items():
+                if _objects(items):
+                    found |= _objects_tables(f"{name}.{key}", items)
     return {name: _tidy(rows) for name, rows in found.items()}
 
 

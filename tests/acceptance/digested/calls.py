@@ -26,6 +26,7 @@ LONG_COMMANDS: dict[str, tuple[tuple[str, ...], ...]] = {
     ),
     "reproduce/collision-avoidance": (("reproduce", "collision-avoidance", "--json"),),
     "reproduce/tracking-mpc": (("reproduce", "tracking-mpc", "--json"),),
+    "reproduce/hopping": (("reproduce", "hopping", "--json"),),
     "reproduce/all": (("reproduce", "all", "--json"),),
 }
 COMMANDS = QUICK_COMMANDS | LONG_COMMANDS

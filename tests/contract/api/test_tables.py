@@ -95,6 +95,16 @@ def test_objects_within_rows_are_a_table_of_their_own() -> None:
     }
 
 
+def test_a_list_within_an_object_is_a_table_of_its_own() -> None:
+    hops = [{"rho": 0.5, "impulse_m_s": [1.0, 2.0]}, {"rho": 0.7, "impulse_m_s": [3.0, 4.0]}]
+    assert tables_of({"plan": {"orbits": 2.0, "hops": hops}}) == {
+        "plan.hops": [
+            {"rho": 0.5, "impulse_m_s.0": 1.0, "impulse_m_s.1": 2.0},
+            {"rho": 0.7, "impulse_m_s.0": 3.0, "impulse_m_s.1": 4.0},
+        ]
+    }
+
+
 def test_lists_of_which_nothing_is_said_are_no_table() -> None:
     assert tables_of({"x_m": [1.0, 2.0], "y_m": [1.0, 2.0], "mask": [[True, False]] * 2}) == {}
     assert tables_of({"a": [1]}, process("go-no-go").tables) == {}

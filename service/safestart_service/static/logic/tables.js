@@ -41,7 +41,8 @@ export function tablesOf(outputs, known = []) {
     const rows = declared(outputs, table);
     if (rows.length) found[table.name] = rows;
   }
-  for (const [name, value] of Object.entries(outputs)) {
+  const within = ([name, value]) => (isObject(value) ? Object.entries(value).map(([key, items]) => [`${name}.${key}`, items]) : [[name, value]]);
+  for (const [name, value] of Object.entries(outputs).flatMap(within)) {
     if (!areObjects(value)) continue;
     found[name] = value.map(flat);
     value.forEach((row, k) => {
