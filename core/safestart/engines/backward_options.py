@@ -14,6 +14,6 @@ class BackwardInput(WireModel):
         0.0,
         ge=0,
         le=1,
-        description="Disturbance on each LVLH axis, held over each interval and at most this, m/s^2: the set is robust, "
-        "one input history for all disturbances. 0: the nominal set.",
+        description="Disturbance on each LVLH axis, held over each interval and at most this, m/s^2: the set is "
+        "robust, one input history for all disturbances. 0: the nominal set.",
     )
