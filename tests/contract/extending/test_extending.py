@@ -95,4 +95,4 @@ def test_a_form_of_results(extended: tuple[list[Touched], dict[str, Any]]) -> No
     assert found["file"].endswith('.jsonl"')
     assert found["negotiated"] == ["application/jsonl", True]
     assert "application/jsonl" in found["offered"]
-    assert "parquet or jsonl" in found["parameter"]["description"]
+    assert "jsonl" in found["parameter"]["description"]
