@@ -5,6 +5,7 @@ The colours are Okabe and Ito's, distinct for every kind of colour vision.
 
 from __future__ import annotations
 
+from safestart.engines.backward_options import BackwardInput
 from safestart.engines.hj.options import HamiltonJacobiInput
 from safestart.engines.spec import EngineSpec
 from safestart.errors import invalid
@@ -38,7 +39,8 @@ _SPECS = (
         title="backward (box input)",
         colour="#0072B2",
         engine="safestart.engines.backward:Backward",
-        summary="nominal backward reachable set: box input, zero-order hold, exact zonotope test",
+        summary="backward reachable set, nominal or robust: box input, zero-order hold, exact zonotope test",
+        options=BackwardInput,
         line="--",
     ),
     EngineSpec(

@@ -5,12 +5,16 @@ from functools import partial
 
 import numpy as np
 import pytest
+from scipy.optimize import linprog
 
 from benchmarks.peers.highs_lp import BackwardLP, slack_map
+from safestart.constraints.corridor import corridor_of
 from safestart.dynamics.cwh import planar_input, planar_transition
 from safestart.engines.backward import Backward
+from safestart.engines.backward_options import BackwardInput
 from safestart.engines.base import Problem, ResultCode
 from safestart.engines.exact import reach_margin
+from safestart.engines.sampled import steps, to_body
 from safestart.errors import InvalidInput
 from safestart.model.scenario import (
     Bools,
@@ -138,3 +142,41 @@ def test_numerical_failure_is_a_result_code(monkeypatch: pytest.MonkeyPatch) -> 
 def test_too_many_steps_are_refused() -> None:
     with pytest.raises(InvalidInput, match="control intervals"):
         Backward().solve(Problem(Scenario.of(3.0, 0.1), horizon=3600.0, dt=0.5), Context())
+
+
+@pytest.mark.parametrize("name", [*OTHERS, "wide error"])
+def test_robust_set_is_that_of_the_program_with_every_face_moved(name: str) -> None:
+    """Against HiGHS: one input history that keeps all disturbed ends on the inner side of each face."""
+    problem = OTHERS.get(name, Problem(Scenario.of(3.0, 0.1)))
+    strength = (0.3 if name == "wide error" else 0.03) * problem.scenario.chaser.max_acceleration
+    field = Backward(BackwardInput(disturbance_m_s2=strength)).solve(problem, Context())
+    assert field.mask is not None
+    nominal = mask(problem)
+    assert not (field.mask & ~nominal).any()
+    margin = field.arrays["margin_unrestricted"].ravel()
+    (step,) = [each for each in steps(problem)][-1:]
+    turned = to_body(step.response.transpose(0, 2, 1).reshape(-1, 2), step.theta)
+    corridor = corridor_of(problem.scenario.corridor)
+    lost = strength * np.abs(corridor.normals @ turned.T).sum(axis=1)
+    places = problem.points().reshape(-1, 2) @ to_body(step.drift.T, step.theta)
+    rows = corridor.normals @ turned.T
+    limit = problem.scenario.chaser.max_acceleration
+    for cell in np.argsort(np.abs(margin))[:: max(1, len(margin) // 25)]:
+        # The largest slack that one history leaves to all faces together.
+        count = rows.shape[1]
+        found = linprog(
+            np.append(np.zeros(count), -1.0),
+            A_ub=np.column_stack([rows, np.ones(len(rows))]),
+            b_ub=corridor.offsets - lost - corridor.normals @ places[cell],
+            bounds=[(-limit, limit)] * count + [(None, None)],
+        )
+        slack = -found.fun
+        assert abs(slack) < 1e-6 or (slack >= 0.0) == (margin[cell] >= 0.0)
+
+
+def test_no_disturbance_is_the_nominal_set_to_the_bit() -> None:
+    problem = Problem(Scenario.of(3.0, 0.1))
+    same = Backward(BackwardInput(disturbance_m_s2=0.0)).solve(problem, Context())
+    np.testing.assert_array_equal(same.arrays["margin_unrestricted"], unrestricted(problem))
+    tiny = Backward(BackwardInput(disturbance_m_s2=1e-9)).solve(problem, Context())
+    np.testing.assert_allclose(tiny.arrays["margin_unrestricted"], unrestricted(problem), atol=1e-5)
