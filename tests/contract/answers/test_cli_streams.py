@@ -130,8 +130,8 @@ def test_what_was_there_stays_when_the_work_fails(
     there.write_text("kept")
     for path in (there, new):
         monkeypatch.setattr(
-            sys, "argv", ["s", *ASKED, "--proof", str(path)]
-        )  # the closed form proves nothing
+            sys, "argv", ["s", *ASKED, "--method", "paper", "--proof", str(path)]
+        )  # the paper's conditions prove nothing
         with pytest.raises(SystemExit) as ended:
             main()
         assert ended.value.code == 2
