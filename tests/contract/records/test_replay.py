@@ -41,7 +41,7 @@ def test_a_replay_tells_what_differs_and_keeps_to_the_tolerance_elsewhere(execut
     assert replay(document, files).kept is False
     assert replay(execution.document, files | {"x.npz": b""}).differences == (
         "artifact x.npz: not the one that the result names",
-        "artifact x.npz: not made any more",
+        "artifact x.npz: no longer produced",
     )
 
 
