@@ -19,7 +19,7 @@ SMALL = {
     "omega_t_deg_s": 2,
     "a_max_m_s2": 0.1,
     "grid": {"nx": 21, "ny": 21},
-    "engines": ["analytical", "exact", "forward"],
+    "engines": ["certified", "exact", "forward"],
 }
 AVOIDANCE = {
     "encounters": 20,
