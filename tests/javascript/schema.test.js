@@ -37,4 +37,8 @@ test("an object that nothing was typed into is left out, unless it is asked for"
   assert.equal(filled([["a", undefined]], true), undefined);
   assert.deepEqual(filled([["a", undefined]], false), {});
   assert.deepEqual(filled([["a", undefined], ["b", 0]], true), { b: 0 });
+  const spin = { required: ["a"], properties: { a: {}, b: { default: 0 } } };
+  assert.equal(filled([["a", undefined], ["b", 0]], true, spin), undefined, "nobody began it");
+  assert.deepEqual(filled([["a", undefined], ["b", 1]], true, spin), { b: 1 }, "the service says what is missing");
+  assert.deepEqual(filled([["a", 2], ["b", 0]], true, spin), { a: 2, b: 0 });
 });

@@ -50,8 +50,13 @@ export function parsed(text) {
   }
 }
 
-/** An object of entries [name, value] without undefined ones; undefined if none is left and none is required. */
-export function filled(entries, optional) {
-  const there = entries.filter(([, value]) => value !== undefined);
-  return optional && !there.length ? undefined : Object.fromEntries(there);
+/**
+ * An object of entries [name, value] without undefined ones; undefined if it is optional and nobody began it: none is left,
+ * or one that `schema` requires is missing and all others are as `schema` gives them.
+ */
+export function filled(entries, optional, { required = [], properties = {} } = {}) {
+  const there = entries.filter(([, value]) => value !== undefined), names = there.map(([name]) => name);
+  const begun = there.some(([name, value]) => JSON.stringify(value) !== JSON.stringify(properties[name]?.default));
+  const whole = required.every((name) => names.includes(name));
+  return optional && (!there.length || (!whole && !begun)) ? undefined : Object.fromEntries(there);
 }

@@ -26,7 +26,7 @@ function group(schema, whole, name, path, given) {
   const node = el("fieldset", {}, name ? el("legend", {}, name) : null, ...parts.map(([, part]) => part.node));
   return {
     node,
-    value: () => filled(parts.map(([key, part]) => [key, part.value()]), path !== "" && !given),
+    value: () => filled(parts.map(([key, part]) => [key, part.value()]), path !== "" && !given, schema),
   };
 }
 
