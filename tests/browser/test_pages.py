@@ -195,7 +195,7 @@ def test_a_sweep_and_its_worst_cases(visit: Visit, up: Running) -> None:
     job = up.client.post("/processes/sweep/execution", json={"inputs": inputs}).json()["jobID"]
     page = visit.go(f"/dashboard/jobs/{job}")
     expect(page.locator("h1 .status")).to_have_text("successful")
-    expect(page.locator(".matrix")).to_have_count(2)
+    expect(page.locator(".matrix")).to_have_count(3)
     expect(page.locator(".replay .nsewdrag").first).to_be_visible()
     visit.shot("sweep")
     page.locator("#results a", has_text="explore").first.click()
