@@ -81,7 +81,7 @@ def test_no_verdict_outlives_the_service(disturbed: Visit, served: Served, truth
 
 def test_a_late_answer_is_dropped(disturbed: Visit, truth: Truth) -> None:
     """Seen: "Stay for" 590, then 62 within 0.7 s, left the verdict of 590 s."""
-    page = start(disturbed, "x_m=0&y_m=20")
+    page = start(disturbed, "x_m=0&y_m=90")
     edit(page, horizon_s="590")
     page.wait_for_timeout(400)
     disturb(page, delay=0)
@@ -211,7 +211,7 @@ def test_the_verdict_that_counts_is_the_big_one(disturbed: Visit) -> None:
     big, small = page.locator(SHOWN), page.locator("#verdict .closed-word")
     expect(big).to_have_text("NO GO")
     expect(small).to_have_text("GO")
-    expect(page.locator("#verdict .aside h3")).to_contain_text("no proof")
+    expect(page.locator("#verdict .aside h3")).to_contain_text("not sound")
     assert big.evaluate(size) > 2 * small.evaluate(size)
 
 

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from safestart.errors import invalid
-from safestart.exact.answer import GUARD, TOLERANCE, Answer, Verdict
+from safestart.exact.answer import GUARD, Answer, Verdict
 from safestart.exact.decide import decide as decide_start
 from safestart.exact.question import Question
 from safestart.model.scenario import Floats, Rest
@@ -19,9 +19,6 @@ from safestart.processes.go_no_go.methods.exact import one_by_one
 from safestart.processes.go_no_go.methods.proofs import MOST_PROGRAMS, Solved, prove
 from safestart.processes.go_no_go.spec import GoNoGoInputs
 from safestart.runtime.progress import Context
-
-QUICK_TOLERANCE = 0.1
-"""Accuracy of margins (m) without proof documents: the verdicts are the same with fewer programs."""
 
 
 def decide(inputs: GoNoGoInputs, _: Conditions, context: Context) -> Verdicts:
@@ -50,7 +47,7 @@ def prove_all(inputs: GoNoGoInputs, context: Context) -> Verdicts:
 
     def solve(question: Question, starts: Floats, context: Context) -> Solved:
         if question.plain and question.dimensions == 2 and inputs.rest is Rest.LVLH:
-            return _by_atlas(question, starts, context, documents=inputs.proofs, tolerance=_tolerance(inputs))
+            return _by_atlas(question, starts, context, documents=inputs.proofs)
         if len(starts) > MOST_PROGRAMS:
             raise invalid(
                 "states",
@@ -58,14 +55,9 @@ def prove_all(inputs: GoNoGoInputs, context: Context) -> Verdicts:
                 "certified takes more",
                 len(starts),
             )
-        return one_by_one(question, starts, context, _tolerance(inputs))
+        return one_by_one(question, starts, context)
 
     return prove(inputs, solve, context)
-
-
-def _tolerance(inputs: GoNoGoInputs) -> float:
-    """Accuracy of margins (m): with proof documents that of method exact."""
-    return TOLERANCE if inputs.proofs else QUICK_TOLERANCE
 
 
 def _put(said: Verdicts, places: list[int], found: Verdicts) -> None:
@@ -81,9 +73,7 @@ def _put(said: Verdicts, places: list[int], found: Verdicts) -> None:
             column[k] = value
 
 
-def _by_atlas(
-    question: Question, starts: Floats, context: Context, *, documents: bool, tolerance: float
-) -> Solved:
+def _by_atlas(question: Question, starts: Floats, context: Context, *, documents: bool) -> Solved:
     """Ask the atlas first and solve starts in its undecided strip, up to the limit on programs.
 
     Few starts use an existing atlas or are solved; many starts have one built. Thrust and multipliers are collected
@@ -92,7 +82,7 @@ def _by_atlas(
     many = len(starts) >= MANY
     atlas = atlas_for(question, float(starts[:, 1].max()), context, make=many)
     if atlas is None:
-        return one_by_one(question, starts, context, tolerance)
+        return one_by_one(question, starts, context)
     lower, upper = atlas.bounds(starts[:, :2])
     answers: list[Answer] = []
     by: list[str] = []
@@ -103,7 +93,7 @@ def _by_atlas(
             answers.append(bare or atlas.answer(start[:2]))
             by.append("atlas")
         else:
-            answers.append(decide_start(question, start, tolerance=tolerance, verdict_only=many))
+            answers.append(decide_start(question, start, verdict_only=many))
             by.append("exact")
             solved += 1
         context.step(len(answers), len(starts), "starts")
