@@ -81,7 +81,7 @@ def test_no_verdict_outlives_the_service(disturbed: Visit, served: Served, truth
 
 def test_a_late_answer_is_dropped(disturbed: Visit, truth: Truth) -> None:
     """Seen: "Stay for" 590, then 62 within 0.7 s, left the verdict of 590 s."""
-    page = start(disturbed, "x_m=0&y_m=90")
+    page = start(disturbed, "x_m=0&y_m=20&velocity_half_width_m_s=0.01")
     edit(page, horizon_s="590")
     page.wait_for_timeout(400)
     disturb(page, delay=0)
