@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections import OrderedDict
 from typing import Any
 
 import pytest
 
 from safestart.errors import InvalidInput
+from safestart.processes.go_no_go import atlases
 from safestart.processes.go_no_go.method_registry import METHODS, decide_by
 from safestart.processes.go_no_go.methods import plain
 from safestart.processes.go_no_go.one_start import ONE_START, GoNoGoAnswer
@@ -18,6 +20,12 @@ POINT: dict[str, Any] = {"omega_t_deg_s": 2, "a_max_m_s2": 0.05}
 PLANE = [{"x_m": x, "y_m": y} for x, y in ((9.364, 81.044), (0, 40), (200, 20), (5.1, 33.3))]
 SPACE = [state | {"z_m": z} for state, z in zip(PLANE, (0, 7.7, -3, 60), strict=True)]
 NOT_TAKEN = sorted(GoNoGoInputs.model_fields.keys() - plain.KNOWN)
+
+
+@pytest.fixture(autouse=True)
+def no_atlas_yet(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Atlases that other tests left in memory would answer in the place of the solver."""
+    monkeypatch.setattr(atlases, "_kept", OrderedDict())
 
 
 def asked(**inputs: Any) -> dict[str, Any]:
