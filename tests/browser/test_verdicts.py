@@ -221,7 +221,10 @@ def test_the_flight_says_what_is_flown(disturbed: Visit, truth: Truth) -> None:
     number = re.search(r"outside|beyond", page.locator("#flown").inner_text())
     assert number, "it leaves the corridor"
     assert "12.94 m" in page.locator("#flown").inner_text()
-    assert "12.94 m" in page.locator("#verdict .why").inner_text(), "one flight, one number"
+    # An atlas that the map left in the store bounds it from below, the solver tells the flight's own number.
+    bound = re.search(r"at least ([\d.]+) m outside", page.locator("#verdict .why").inner_text())
+    assert bound, "the verdict is a bound on every flight"
+    assert 12.5 < float(bound[1]) <= 12.94, "which the best attempt keeps"
     edit(page, question="synchronize")
     expect(page.locator("#flown")).to_contain_text("as none is known to come to rest")
     edit(page, x_m="5", y_m="40", omega_t_deg_s="3", position_half_width_m="0.1", question="stay")

@@ -25,14 +25,15 @@ _lock = threading.Lock()
 def atlas_for(question: Question, farthest: float, context: Context, *, make: bool) -> Atlas | None:
     """The atlas that reaches ``farthest`` metres along y; None when none exists and ``make`` is False.
 
-    It is looked up in the cache of ``context``, which can also cancel a construction (``Cancelled``).
+    It is looked up in the cache of ``context``, which can also cancel a construction (``Cancelled``). Without ``make``
+    memory does not count: the same question would have another true bound in each process.
     """
     cut = next(
         (c for c in CUTS_M if c >= farthest and c > question.scenario.corridor.hold_radius), CUTS_M[-1]
     )
     key = key_of(question, cut, TOLERANCE)
     with _lock:
-        if key in _kept:
+        if make and key in _kept:
             _kept.move_to_end(key)
             return _kept[key]
     atlas = _from(context.shelf, key, question, cut)
