@@ -82,6 +82,7 @@ def test_no_verdict_outlives_the_service(disturbed: Visit, served: Served, truth
 def test_a_late_answer_is_dropped(disturbed: Visit, truth: Truth) -> None:
     """Seen: "Stay for" 590, then 62 within 0.7 s, left the verdict of 590 s."""
     page = start(disturbed, "x_m=0&y_m=20&velocity_half_width_m_s=0.01")
+    disturb(page, delay=4000, deaf=1.0)
     edit(page, horizon_s="590")
     page.wait_for_timeout(400)
     disturb(page, delay=0)
@@ -221,10 +222,7 @@ def test_the_flight_says_what_is_flown(disturbed: Visit, truth: Truth) -> None:
     number = re.search(r"outside|beyond", page.locator("#flown").inner_text())
     assert number, "it leaves the corridor"
     assert "12.94 m" in page.locator("#flown").inner_text()
-    # An atlas that the map left in the store bounds it from below, the solver tells the flight's own number.
-    bound = re.search(r"at least ([\d.]+) m outside", page.locator("#verdict .why").inner_text())
-    assert bound, "the verdict is a bound on every flight"
-    assert 12.5 < float(bound[1]) <= 12.94, "which the best attempt keeps"
+    assert "12.94 m" in page.locator("#verdict .why").inner_text(), "one flight, one number"
     edit(page, question="synchronize")
     expect(page.locator("#flown")).to_contain_text("as none is known to come to rest")
     edit(page, x_m="5", y_m="40", omega_t_deg_s="3", position_half_width_m="0.1", question="stay")

@@ -81,7 +81,7 @@ many = APIRouter(tags=["instant answers"])
 async def go_no_go_one(_query: Annotated[GoNoGoQuery, Query()]) -> Response:
     """May a chaser at rest at this point start its approach?
 
-    No GO without a proof: a certificate in closed form says GO at once, for ever, or an atlas or a cone program
+    No GO without a proof: a certificate in closed form says GO at once, for ever, or a cone program or an atlas
     decides; ``decided_by`` says which. ``method=paper`` asks the paper's conditions, which are not sound. A start
     outside the corridor is NO_GO; ``violated_faces`` says where.
     """

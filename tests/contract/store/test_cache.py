@@ -69,8 +69,13 @@ def test_what_a_job_made_is_found_by_its_key(database: Database) -> None:
 
 
 @pytest.mark.usefixtures("forgetful")
-def test_the_atlas_of_a_job_answers_single_starts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_atlas_of_a_job_answers_many_starts_and_no_single_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A single start is solved: its margin is the same number before and after somebody made an atlas."""
+    many = {"states": [{"x_m": 0.5 * k - 100.0, "y_m": 110.0} for k in range(400)], "method": "auto"}
     with service(tmp_path) as client:
+        before = client.get("/go-no-go", params=POINT | SLIVER).json()
         client.post("/processes/atlas/execution", json={"inputs": POINT | {"grid": {"nx": 3, "ny": 3}}})
         jobs = jobs_of(tmp_path)
         claim = jobs.claim("tester", 60.0)
@@ -78,12 +83,15 @@ def test_the_atlas_of_a_job_answers_single_starts(tmp_path: Path, monkeypatch: p
         done = execute("atlas", claim.inputs)
         jobs.succeed(claim, done.document, done.artifacts, {})
 
-        def solve(*_: object, **__: object) -> None:
-            raise AssertionError("solved although an atlas is there")
-
-        monkeypatch.setattr("safestart.processes.go_no_go.methods.exact.decide_start", solve)
-        one = client.get("/go-no-go", params=POINT | SLIVER | {"method": "auto"}).json()
-        assert one["verdict"] == "NO_GO"
+        monkeypatch.setattr(atlases, "pack", _refuse)
+        found = client.post("/processes/go-no-go/execution", json={"inputs": POINT | many}).json()
+        assert "atlas" in found["decided_by"]
+        one = client.get("/go-no-go", params=POINT | SLIVER).json()
+        assert (one["verdict"], one["margin_m"], one["reason"]) == (
+            "NO_GO",
+            before["margin_m"],
+            before["reason"],
+        )
         proof = client.get(one["proof_url"])
         assert proof.headers["content-disposition"] == 'attachment; filename="proof.json"'
         assert check(proof.json()).verdict == "NO_GO"

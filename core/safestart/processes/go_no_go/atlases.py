@@ -1,4 +1,4 @@
-"""Atlases for go-no-go: from memory, from the cache by content key, or built when enough starts need one."""
+"""Atlases for go-no-go: from memory, from the cache by content key, or built."""
 
 from __future__ import annotations
 
@@ -22,31 +22,29 @@ _kept: OrderedDict[str, Atlas] = OrderedDict()
 _lock = threading.Lock()
 
 
-def atlas_for(question: Question, farthest: float, context: Context, *, make: bool) -> Atlas | None:
-    """The atlas that reaches ``farthest`` metres along y; None when none exists and ``make`` is False.
+def atlas_for(question: Question, farthest: float, context: Context) -> Atlas:
+    """The atlas that reaches ``farthest`` metres along y.
 
-    It is looked up in the cache of ``context``, which can also cancel a construction (``Cancelled``). Without ``make``
-    memory does not count: the same question would have another true bound in each process.
+    It is looked up in the cache of ``context``, which can also cancel a construction (``Cancelled``).
     """
     cut = next(
         (c for c in CUTS_M if c >= farthest and c > question.scenario.corridor.hold_radius), CUTS_M[-1]
     )
     key = key_of(question, cut, TOLERANCE)
     with _lock:
-        if make and key in _kept:
+        if key in _kept:
             _kept.move_to_end(key)
             return _kept[key]
     atlas = _from(context.shelf, key, question, cut)
-    if atlas is None and make:
+    if atlas is None:
         from safestart.atlas.survey import build
 
         atlas = build(question, cut, context=context)
         context.shelf.keep(key, pack(atlas))
-    if atlas is not None:
-        with _lock:
-            _kept[key] = atlas
-            while len(_kept) > _IN_MEMORY:
-                _kept.popitem(last=False)
+    with _lock:
+        _kept[key] = atlas
+        while len(_kept) > _IN_MEMORY:
+            _kept.popitem(last=False)
     return atlas
 
 

@@ -53,8 +53,7 @@ _ALL = (
     Method("exact", "cone programs, proved either way", f"{_HERE}.exact:decide", sound=True),
     Method(
         "auto",
-        "certified where that says GO, else an atlas where there is one or where there are many planar starts at rest "
-        "in LVLH, else exact",
+        "certified where that says GO, else exact, by an atlas where many planar starts at rest in LVLH are left",
         f"{_HERE}.auto:decide",
         sound=True,
         first=f"{_HERE}.certified:go_at_once",

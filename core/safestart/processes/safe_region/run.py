@@ -30,7 +30,7 @@ def region_of(scenario: Scenario, horizon_s: float, y_max: float, context: Conte
     if y_max <= shape.hold_radius:
         raise invalid("y_max_m", f"more than corridor.r_h_m, {shape.hold_radius:g}", y_max)
     question = Question(scenario, DT_S, round(horizon_s / DT_S))
-    atlas = atlas_for(question, y_max, context, make=True)
+    atlas = atlas_for(question, y_max, context)
     assert atlas is not None  # built if none existed
     corridor = corridor_of(shape)
     half = shape.x0 + shape.c_x * (y_max - shape.hold_radius)

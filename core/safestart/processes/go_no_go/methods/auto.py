@@ -1,4 +1,4 @@
-"""Method auto: ``certified`` if it says GO, else an atlas if one exists or many starts pay for one, else ``exact``."""
+"""Method auto: ``certified`` if it says GO, else ``exact``, or an atlas where many starts pay for one."""
 
 from __future__ import annotations
 
@@ -74,26 +74,25 @@ def _put(said: Verdicts, places: list[int], found: Verdicts) -> None:
 
 
 def _by_atlas(question: Question, starts: Floats, context: Context, *, documents: bool) -> Solved:
-    """Ask the atlas first and solve starts in its undecided strip, up to the limit on programs.
+    """Ask an atlas and solve starts in its undecided strip, up to the limit on programs.
 
-    Few starts use an existing atlas or are solved; many starts have one built. Thrust and multipliers are collected
-    only for few starts or for ``documents``.
+    Few starts are solved: their margins do not depend on the atlases that the store happens to hold. Thrust and
+    multipliers are collected only for ``documents``.
     """
-    many = len(starts) >= MANY
-    atlas = atlas_for(question, float(starts[:, 1].max()), context, make=many)
-    if atlas is None:
+    if len(starts) < MANY:
         return one_by_one(question, starts, context)
+    atlas = atlas_for(question, float(starts[:, 1].max()), context)
     lower, upper = atlas.bounds(starts[:, :2])
     answers: list[Answer] = []
     by: list[str] = []
     solved = 0
     for start, low, high in zip(starts, lower.tolist(), upper.tolist(), strict=True):
         if low > 0.0 or high < 0.0 or solved >= MOST_PROGRAMS:
-            bare = _bare(low, high) if many and not documents else None
+            bare = None if documents else _bare(low, high)
             answers.append(bare or atlas.answer(start[:2]))
             by.append("atlas")
         else:
-            answers.append(decide_start(question, start, verdict_only=many))
+            answers.append(decide_start(question, start, verdict_only=True))
             by.append("exact")
             solved += 1
         context.step(len(answers), len(starts), "starts")
