@@ -41,7 +41,7 @@ def case(tuning: Tuning, rate: Any = (0.0, RATE, RATE), window: int = 320) -> tu
     tumble = Tumble(INERTIA, (1.0, 0.0, 0.0, 0.0), rate, INPUTS.mean_motion, "inertial")
     motion, shape = Sampled(INPUTS.mean_motion, 1.0), DockingCorridor()
     attitudes = tumble.nodes(1.0, window)
-    limit = theta_set("polytope", shape, tumble, motion, tuning.u_max, attitudes)
+    limit = theta_set(tuning, shape, tumble, motion, attitudes)
     return Program(motion, shape, tuning, limit), attitudes, tumble
 
 
@@ -61,6 +61,9 @@ def steps(rounds: int = 20) -> dict[str, float]:
                 status, _ = step(
                     ahead,
                     *mpc.fixed,
+                    mpc.start,
+                    mpc.spots,
+                    mpc.held,
                     mpc.low,
                     mpc.high,
                     state,

@@ -1,9 +1,9 @@
 """Does any impulse history from a start keep the chaser in the turning corridor at all nodes?
 
-Positions at nodes 0 and 1 follow from the start; those at the nodes k >= 2 are free, for u(k) = P r(k+2) + Q r(k+1) +
-R r(k). So the positions in the body, p_k = C(k) r_k, are the variables, and every row touches three neighbours at most:
-a banded linear program (a second-order cone program for inputs in a ball). Starts may be variables too: the set of all
-starts is convex, and its extent along a line takes two programs.
+s(0) and s(1) of :class:`Sampled` follow from the start; s(k) is free for k >= 2, for u(k) = P s(k+2) + Q s(k+1) +
+R s(k). So the s in body axes, C(k) s(k), are the variables (with impulses they are the positions), and every row
+touches three neighbours at most: a banded linear program (a second-order cone program for inputs in a ball). Starts may
+be variables too: the set of all starts is convex, and its extent along a line takes two programs.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from safestart.model.scenario import Floats
 FEASIBLE = 1e-7
 """A smaller violation of the corridor, m, counts as none: the solver's own tolerance."""
 _FARTHEST = 1e4
-"""Positions in the body are within this, m; the proof of infeasibility multiplies its residual by it."""
+"""Variables are within this, m; the proof of infeasibility multiplies its residual by it."""
 
 
 @dataclass(frozen=True)
@@ -47,14 +47,21 @@ class AnyHistory:
         self, motion: Sampled, shape: DockingCorridor, u_max: float, attitudes: Floats, *, ball: bool = False
     ) -> None:
         faces = shape.faces()
-        nodes, count = len(attitudes), len(attitudes) - 2
-        corridor = kron(identity(nodes), csc_matrix(faces.normals))
-        here, back = attitudes[:-2], attitudes.swapaxes(1, 2)
-        parts = [
-            _banded(here @ matrix @ back[shift : shift + count], shift, nodes)
-            for shift, matrix in ((0, motion.r), (1, motion.q), (2, motion.p))
-        ]
-        inputs: Any = parts[0] + parts[1] + parts[2]
+        nodes = len(attitudes)
+        # Impulses: the position is s. Held thrust: it is a sum of s at two nodes, one of them after the last node.
+        frames = np.concatenate([attitudes, attitudes[-1:]]) if motion.held else attitudes
+        count, width = len(frames) - 2, len(frames)
+        back = frames.swapaxes(1, 2)
+
+        def rows(matrix: Floats, shift: int, rows: int) -> Any:
+            return _banded(frames[:rows] @ matrix @ back[shift : shift + rows], shift, width)
+
+        corridor: Any = kron(identity(nodes), csc_matrix(faces.normals))
+        self._places: Any = None
+        if motion.held:
+            self._places = rows(motion.flat[0, :3], 0, nodes) + rows(motion.flat[1, :3], 1, nodes)
+            corridor = corridor @ self._places
+        inputs: Any = rows(motion.r, 0, count) + rows(motion.q, 1, count) + rows(motion.p, 2, count)
         room, limit = np.tile(faces.offsets, nodes), np.full(3 * count, u_max)
         self._soft = len(room)
         if ball:
@@ -70,10 +77,12 @@ class AnyHistory:
             self._bound = np.concatenate([room, limit, limit])
             self._cones = [("rows", matrix.shape[0])]
         whole = csc_matrix(matrix)
-        # Nodes 0 and 1 from the start.
-        first = np.vstack(
-            [np.hstack([attitudes[0], np.zeros((3, 3))]), attitudes[1] @ motion.a[:3]], dtype=np.float64
-        )
+        # s(0) and s(1) from the start; with impulses they are the positions at nodes 0 and 1.
+        if motion.held:
+            first = np.linalg.inv(np.hstack([motion.flat[0], motion.flat[1]]))
+            first = np.vstack([frames[0] @ first[:3], frames[1] @ first[3:]])
+        else:
+            first = np.vstack([np.hstack([frames[0], np.zeros((3, 3))]), frames[1] @ motion.a[:3]])
         self._first = first
         self._given, self._free = np.asarray(whole[:, :6] @ first), whole[:, 6:]
 
@@ -87,7 +96,10 @@ class AnyHistory:
         found, dual = np.array(solution.x), np.array(solution.z)
         solved = str(solution.status) in ("Solved", "AlmostSolved")
         violation = float(found[-1]) if solved else float("nan")
-        positions = np.concatenate([self._first @ state, found[:-1]]).reshape(-1, 3)
+        positions = np.concatenate([self._first @ state, found[:-1]])
+        if self._places is not None:
+            positions = self._places @ positions
+        positions = positions.reshape(-1, 3)
         feasible = solved and violation <= FEASIBLE
         return Answer(feasible, violation, not feasible and self._proves(dual, matrix, bound), positions)
 

@@ -50,13 +50,16 @@ def shifts_needed(closed: Floats) -> int:
 
 
 def recursion(program: Program, attitudes: Floats, plan: Plan, shifts: int) -> Recursion:
-    """Certify one plan; ``attitudes`` (>= N_p + shifts + 2, 3, 3) from its step on."""
+    """Certify one plan; ``attitudes`` (>= N_p + shifts + 2 + weights of the motion, 3, 3) from its step on."""
     motion, tuning, faces = program.motion, program.tuning, program.faces
     n_c, n_lqr = tuning.n_c, tuning.n_lqr
     frames = attitudes[n_c:]
     count = n_lqr + shifts + 1
-    targets = equilibrium.states(motion, frames[: count + 2]) @ plan.theta
-    held = equilibrium.inputs(motion, frames[: count + 3]) @ plan.theta
+    seen = frames[: count + 1 + motion.ahead]
+    targets = equilibrium.states(motion, seen) @ plan.theta
+    held = equilibrium.inputs(motion, seen) @ plan.theta
+    spots = equilibrium.places(motion, seen) @ plan.theta
+    sides, most = tuning.sides
     deviation = np.empty((count, 6))
     deviation[0] = plan.states[n_c] - targets[0]
     for i in range(1, count):
@@ -65,22 +68,24 @@ def recursion(program: Program, attitudes: Floats, plan: Plan, shifts: int) -> R
     pushes = deviation @ program.condensed.gain.T
     late = deviation[n_lqr:]
     first = late @ last.T
-    after = late @ motion.a.T
-    after[:, 3:] += first
+    after = late @ motion.a.T + first @ motion.b.T
     second = after @ last.T
 
     def body(vectors: Floats, at: int) -> Floats:
         out: Floats = np.einsum("kij,kj->ki", frames[at : at + len(vectors)], vectors)
         return out
 
-    places = [plan.theta + body(deviation[:, :3], 0), plan.theta + body(after[:, :3], n_lqr + 1)]
+    places = [
+        spots[:count] + body(deviation[:, :3], 0),
+        spots[n_lqr + 1 : n_lqr + 1 + len(after)] + body(after[:, :3], n_lqr + 1),
+    ]
     given = [
         held[:count] + body(pushes, 0),
         held[n_lqr : n_lqr + len(first)] + body(first, n_lqr),
         held[n_lqr + 1 : n_lqr + 1 + len(second)] + body(second, n_lqr + 1),
     ]
     corridor = min(float(faces.slack(place).min()) for place in places)
-    inputs = tuning.u_max - max(float(np.abs(push).max()) for push in given)
+    inputs = most - max(float(np.abs(push @ sides.T).max()) for push in given)
     beyond = _beyond(program, deviation[-1], last)
     holds = corridor >= -TOLERANCE and inputs >= -TOLERANCE and beyond <= TOLERANCE
     return Recursion(holds, corridor, inputs, beyond, shifts)
@@ -92,7 +97,7 @@ def _beyond(program: Program, deviation: Floats, last: Floats) -> float:
     form = solve_discrete_lyapunov(closed.T, np.eye(6))
     values = np.linalg.eigvalsh(form)
     size = math.sqrt(float(deviation @ form @ deviation) / float(values[0]))
-    dead = program.motion.a + np.vstack([np.zeros((3, 6)), last])
+    dead = program.motion.a + program.motion.b @ last
     gains = (np.eye(6), program.condensed.gain, last, dead, last @ dead)
     return size * max(float(np.linalg.norm(gain, 2)) for gain in gains)
 
@@ -101,8 +106,9 @@ def cost_decrease(program: Program, attitudes: Floats, flight: Flight) -> float:
     """Largest (V(k+1) - V(k) + stage cost) / V(k) over the steps; at most 0 where the cost falls as promised."""
     worst = -np.inf
     for k, (plan, after) in enumerate(itertools.pairwise(flight.plans)):
-        target = equilibrium.states(program.motion, attitudes[k : k + 2])[0] @ plan.theta
-        held = equilibrium.inputs(program.motion, attitudes[k : k + 3])[0] @ plan.theta
+        seen = attitudes[k : k + program.motion.ahead]
+        target = equilibrium.states(program.motion, seen)[0] @ plan.theta
+        held = equilibrium.inputs(program.motion, seen)[0] @ plan.theta
         stage = float(((plan.states[0] - target) ** 2).sum())
         stage += program.tuning.rho * float(((plan.inputs[0] - held) ** 2).sum())
         if plan.cost > 1e-12:

@@ -13,7 +13,7 @@ import numpy as np
 
 from safestart.control.tracking_mpc.controller import Plan, Program
 from safestart.control.tracking_mpc.tumble import Tumble
-from safestart.dynamics.cwh import transition_matrix
+from safestart.dynamics.cwh import input_matrix, transition_matrix
 from safestart.dynamics.two_body import Orbit, TwoBody
 from safestart.model.scenario import Floats
 from safestart.runtime.progress import Context
@@ -65,7 +65,7 @@ def fly(
     truth: Truth = "hcw",
     context: Context | None = None,
 ) -> Flight:
-    """Fly up to ``steps`` steps from an LVLH ``start`` (6,) under ``attitudes`` (>= steps + N_p + 2, 3, 3)."""
+    """Fly up to ``steps`` steps from an LVLH ``start`` (6,) under ``attitudes`` (>= steps + ``ahead``, 3, 3)."""
     period, motion = program.motion.period, program.motion
     state = np.array(start, dtype=np.float64)
     states, plans = [state], []
@@ -76,31 +76,35 @@ def fly(
         plan = program.plan(attitudes[k:], state)
         if not plan.feasible:
             break
-        impulse = attitudes[k].T @ plan.inputs[0]
+        given = attitudes[k].T @ plan.inputs[0]
         if underway is None:
-            state = motion.a @ state
-            state[3:] += impulse
+            state = motion.after(state, given)
         else:
-            underway.fly(np.zeros(3), np.array([k * period, (k + 1) * period]))
-            underway.push(impulse)
+            thrust = given / period if motion.held else np.zeros(3)
+            underway.fly(thrust, np.array([k * period, (k + 1) * period]))
+            if not motion.held:
+                underway.push(given)
             state = underway.state.copy()
         plans.append(plan)
         states.append(state)
     path = np.array(states)
     body = np.einsum("kij,kj->ki", attitudes[: len(path)], path[:, :3])
     slack = float(program.faces.slack(body).min())
-    between = _between(program, tumble, path)
+    given = np.array([frame.T @ plan.inputs[0] for frame, plan in zip(attitudes, plans, strict=False)])
+    between = _between(program, tumble, path, given.reshape(-1, 3))
     return Flight(path, body, tuple(plans), slack, between, len(plans) == steps)
 
 
-def _between(program: Program, tumble: Tumble, path: Floats) -> float:
-    """Least slack along the drifts (HCW), m."""
-    period, least = program.motion.period, np.inf
-    nodes = period * np.arange(float(len(path) - 1))
+def _between(program: Program, tumble: Tumble, path: Floats, given: Floats) -> float:
+    """Least slack between the nodes (HCW) with the LVLH inputs ``given`` (K, 3), m."""
+    motion, least = program.motion, np.inf
+    nodes = motion.period * np.arange(float(len(path) - 1))
     for part in range(_BETWEEN):
-        time = period * (part + 1) / (_BETWEEN + 1)
-        drift = transition_matrix(program.motion.mean_motion, time)[:3]
+        time = motion.period * (part + 1) / (_BETWEEN + 1)
+        places = path[:-1] @ transition_matrix(motion.mean_motion, time)[:3].T
+        if motion.held:
+            places += given @ input_matrix(motion.mean_motion, time)[:3].T / motion.period
         turned = tumble.attitude.rotation(nodes + time)
-        body = np.einsum("kij,kj->ki", turned, path[:-1] @ drift.T)
+        body = np.einsum("kij,kj->ki", turned, places)
         least = min(least, float(np.min(program.faces.slack(body), initial=np.inf)))
     return least

@@ -31,8 +31,10 @@ class Belief:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """``least_slack`` m at the nodes, ``largest_input`` m/s per axis, ``impulse`` m/s, ``last_range`` m, ``unplanned``
-    steps without a plan that keeps every row."""
+    """``least_slack`` m at the nodes, ``largest_input`` m/s (per axis, or in length in a ball), ``impulse`` m/s.
+
+    ``last_range``, m; ``unplanned``: steps without a plan that keeps every row.
+    """
 
     least_slack: float
     largest_input: float
@@ -52,11 +54,19 @@ class NoisyFlights:
             float(belief.orbit),
             float(motion.period),
             motion.a,
+            motion.b,
             np.eye(6) if gain is None else np.ascontiguousarray(gain),
             _CODES[variant],
         )
         offsets = np.ascontiguousarray(program.faces.offsets)
-        self._tail = (*program.fixed, offsets, program.low, program.high, program.give)
+        self._tail = (
+            *program.fixed,
+            program.tuning.input_limit == "ball",
+            offsets,
+            program.low,
+            program.high,
+            program.give,
+        )
 
     def fly(
         self, start: Floats, attitudes: Floats, rates: Floats, navigation: Floats, sizes: Floats

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from safestart.control.tracking_mpc.assemble import assemble, equilibrium_input
+from safestart.control.tracking_mpc.assemble import assemble
 from safestart.control.tracking_mpc.step_kernel import INFEASIBLE, SOLVED, soften, solve_from
 from safestart.runtime.kernels import compiled
 
@@ -70,47 +70,33 @@ def predict(first, rate, inertia, inverse, orbit, period, out):  # type: ignore[
 
 
 @compiled(error_model="numpy")
-def plan_inputs(attitudes, motion, a, push, z, state, out):  # type: ignore[no-untyped-def]
-    """All inputs ``out`` (N_p, 3), LVLH axes, of the plan ``z`` from ``state`` (6,)."""
+def plan_inputs(attitudes, start, held, push, z, state, out):  # type: ignore[no-untyped-def]
+    """All inputs ``out`` (N_p, 3), LVLH axes, of the plan ``z`` from ``state`` (6,); maps of theta as assembled."""
     n = len(z)
     theta = z[n - 3 :]
     deviation = np.empty(push.shape[2])
-    near, after = np.empty(3), np.empty(3)
-    for i in range(3):
-        near[i] = after[i] = 0.0
+    for i in range(6):
+        deviation[i] = state[i]
         for k in range(3):
-            near[i] += attitudes[0, k, i] * theta[k]
-            after[i] += attitudes[1, k, i] * theta[k]
-    for i in range(3):
-        drift = after[i]
-        for k in range(3):
-            drift -= a[i, k] * near[k]
-        deviation[i] = state[i] - near[i]
-        after[i] = drift
-    for i in range(3):
-        deviation[3 + i] = state[3 + i]
-        for k in range(3):
-            deviation[3 + i] -= motion[0, i, k] * after[k]
+            deviation[i] -= start[i, k] * theta[k]
     deviation[6:] = z[: n - 3]
-    own, back = np.empty((3, 3)), np.empty((3, 3))
     for j in range(len(push)):
-        equilibrium_input(attitudes, j, motion, back, own)
         for i in range(3):
-            held = 0.0
+            value = 0.0
             for k in range(3):
                 for b in range(3):
-                    held += attitudes[j, k, i] * own[k, b] * theta[b]
+                    value += attitudes[j, k, i] * held[j, k, b] * theta[b]
             for k in range(push.shape[2]):
-                held += push[j, i, k] * deviation[k]
-            out[j, i] = held
+                value += push[j, i, k] * deviation[k]
+            out[j, i] = value
 
 
 @compiled(error_model="numpy")
-def overstepped(attitudes, a, normals, offsets, state):  # type: ignore[no-untyped-def]
-    """How far ``state`` (6,) oversteps the corridor at this node and, whatever the input, at the next, m."""
+def overstepped(attitudes, a, nodes, normals, offsets, state):  # type: ignore[no-untyped-def]
+    """How far ``state`` (6,) oversteps the corridor at the ``nodes`` (1 or 2) that no input reaches, m."""
     worst = -np.inf
     body, place = np.empty(3), np.empty(3)
-    for node in range(2):
+    for node in range(nodes):
         for i in range(3):
             place[i] = state[i]
             if node == 1:
@@ -139,18 +125,22 @@ def fly_noisy(  # type: ignore[no-untyped-def]
     orbit,
     period,
     a,
+    b_matrix,
     gain,
     variant,
     navigation,
     sizes,
-    a_rr,
+    weights,
+    flat,
     motion,
     reach,
     push,
     cost,
     tau,
     normals,
+    sides,
     limits,
+    ball,
     offsets,
     low,
     high,
@@ -159,7 +149,7 @@ def fly_noisy(  # type: ignore[no-untyped-def]
     """Fly len(truth) - 1 steps; returns (least slack, largest input, impulse, last range, steps without a plan).
 
     ``truth`` (K + 1, 3, 3) and ``rates`` (K + 1, 3): the attitude as it is and the inertial rate as it is believed.
-    ``navigation`` (K + 1, 6): errors of what is measured; ``sizes`` (K,): factor on each impulse. ``gain`` (6, 6) is
+    ``navigation`` (K + 1, 6): errors of what is measured; ``sizes`` (K,): factor on each input. ``gain`` (6, 6) is
     the filter's. A step without a plan that keeps every row, those of this node and the next among them, follows the
     last plan (HARD), or the one of least violation.
     """
@@ -168,7 +158,9 @@ def fly_noisy(  # type: ignore[no-untyped-def]
     rows, shift = np.empty((n, count)), np.empty((6, count))
     hessian, slope = np.empty((n, n)), np.empty((n, 6))
     z, dual = np.empty(n), np.empty(count)
-    attitudes = np.empty((total + 2, 3, 3))
+    attitudes = np.empty((total + 1 + len(weights), 3, 3))
+    at_start, spots, held = np.empty((6, 3)), np.empty((total, 3, 3)), np.empty((total, 3, 3))
+    fixed_nodes = 2 if len(weights) == 1 else 1
     planned = np.zeros((total, 3))
     follow = total
     state, estimate = start.copy(), start + navigation[0]
@@ -188,10 +180,27 @@ def fly_noisy(  # type: ignore[no-untyped-def]
             break
         predict(truth[k], rates[k], inertia, inverse, orbit, period, attitudes)
         assemble(
-            attitudes, a_rr, motion, reach, push, cost, tau, normals, limits, rows, shift, hessian, slope
+            attitudes,
+            weights,
+            flat,
+            motion,
+            reach,
+            push,
+            cost,
+            tau,
+            normals,
+            sides,
+            limits,
+            at_start,
+            spots,
+            held,
+            rows,
+            shift,
+            hessian,
+            slope,
         )
         status, _ = solve_from(rows, shift, hessian, slope, low, high, estimate, z, dual)
-        outside = overstepped(attitudes, a, normals, offsets, estimate) > _FIXED
+        outside = overstepped(attitudes, a, fixed_nodes, normals, offsets, estimate) > _FIXED
         if status != SOLVED or outside:
             unplanned += 1
             if variant == HARD:
@@ -199,7 +208,7 @@ def fly_noisy(  # type: ignore[no-untyped-def]
             elif status != SOLVED:
                 status, _t = soften(rows, shift, hessian, slope, low, high, give, estimate, z, dual)
         if status == SOLVED:
-            plan_inputs(attitudes, motion, a, push, z, estimate, planned)
+            plan_inputs(attitudes, at_start, held, push, z, estimate, planned)
             follow = 0
         else:
             follow += 1
@@ -210,17 +219,20 @@ def fly_noisy(  # type: ignore[no-untyped-def]
             pushed = 0.0
             for b in range(3):
                 pushed += truth[k, i, b] * given[b]
-            largest = max(largest, abs(pushed))
+            if not ball:
+                largest = max(largest, abs(pushed))
             size += pushed * pushed
+        if ball:
+            largest = max(largest, math.sqrt(size))
         impulse += math.sqrt(size)
         moved, expected = np.zeros(6), np.zeros(6)
         for i in range(6):
             for b in range(6):
                 moved[i] += a[i, b] * state[b]
                 expected[i] += a[i, b] * estimate[b]
-        for i in range(3):
-            moved[3 + i] += sizes[k] * given[i]
-            expected[3 + i] += given[i]
+            for b in range(3):
+                moved[i] += sizes[k] * b_matrix[i, b] * given[b]
+                expected[i] += b_matrix[i, b] * given[b]
         state = moved
         for i in range(6):
             estimate[i] = expected[i]

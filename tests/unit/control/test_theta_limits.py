@@ -11,6 +11,7 @@ from safestart.control.tracking_mpc.sampled import Sampled
 from safestart.control.tracking_mpc.theta_radius import ball_radius, bracket, printed_radius
 from safestart.control.tracking_mpc.theta_set import corner_cut, cut_inside, printed_cut, theta_set
 from safestart.control.tracking_mpc.tumble import Tumble
+from safestart.control.tracking_mpc.tuning import Tuning
 from tests.unit.tracking.envisat import INERTIA, MEAN_MOTION, SHAPE, envisat
 
 MOTION = Sampled(MEAN_MOTION, 1.0)
@@ -84,7 +85,7 @@ def test_corners_at_the_limit():
     corners = np.array([[sx * (0.1 + y), y, sz * (0.1 + y)] for sx in (-1, 1) for sz in (-1, 1)])
     assert np.abs(maps @ corners.T).max() == pytest.approx(0.075, abs=1e-12)
     limits = {
-        name: theta_set(name, SHAPE, tumble, MOTION, 0.075, attitudes).y_max
+        name: theta_set(Tuning(theta_limit=name), SHAPE, tumble, MOTION, attitudes).y_max
         for name in ("printed", "ball", "corners")
     }
     assert limits["printed"] < limits["ball"] < limits["corners"] == y
@@ -93,6 +94,6 @@ def test_corners_at_the_limit():
 def test_a_target_at_rest_limits_nothing():
     still = Tumble(INERTIA, (1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0, "lvlh")
     motion = Sampled(0.0, 1.0)
-    limit = theta_set("polytope", SHAPE, still, motion, 0.01, still.nodes(1.0, 50))
+    limit = theta_set(Tuning(u_max=0.01), SHAPE, still, motion, still.nodes(1.0, 50))
     assert limit.contains(np.array([0.0, 1000.0, 0.0]))
     assert bracket(still, motion, 0.01)[1] > 1e6

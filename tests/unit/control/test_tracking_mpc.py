@@ -35,7 +35,7 @@ def test_an_equilibrium_is_a_trajectory(period):
 def test_the_papers_kernel_is_no_trajectory():
     """M(k) = ker [A(k) - I, B(k)] assumes v_e(k + 1) = v_e(k): the residual is what our inputs differ by."""
     motion, attitudes = Sampled(MEAN_MOTION, 1.0), envisat().nodes(1.0, 4)
-    velocity = equilibrium.velocities(motion, attitudes)
+    velocity = equilibrium.states(motion, attitudes)[:, 3:]
     assert np.abs(velocity[1] - velocity[0]).max() > 5e-3
 
 
@@ -176,7 +176,7 @@ def test_the_least_violation_is_least():
 def test_the_polytope_leaves_out_only_what_others_imply():
     tumble, motion = envisat(), Sampled(MEAN_MOTION, 1.0)
     attitudes = tumble.nodes(1.0, 150)
-    limit = theta_set("polytope", SHAPE, tumble, motion, 0.075, attitudes)
+    limit = theta_set(Tuning(), SHAPE, tumble, motion, attitudes)
     maps = equilibrium.inputs(motion, attitudes)
     points = np.random.default_rng(1).uniform([-12, 0, -12], [12, 12, 12], (4000, 3))
     whole = (np.abs(points @ maps.reshape(-1, 3).T) <= 0.075).all(axis=1) & SHAPE.faces().contains(points)

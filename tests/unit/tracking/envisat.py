@@ -24,9 +24,9 @@ def envisat(reference="lvlh", rate=(0.0, RATE, RATE)):
 TUNED = Tuning()
 
 
-def program(tuning=TUNED, period=1.0, window=300, tumble=None, tightening=None):
+def program(tuning=TUNED, period=1.0, window=300, tumble=None, tightening=None, held=False):
     tumble = tumble or envisat()
-    motion = Sampled(MEAN_MOTION, period)
+    motion = Sampled(MEAN_MOTION, period, held)
     attitudes = tumble.nodes(period, window)
-    limit = theta_set(tuning.theta_limit, SHAPE, tumble, motion, tuning.u_max, attitudes)
+    limit = theta_set(tuning, SHAPE, tumble, motion, attitudes)
     return Program(motion, SHAPE, tuning, limit, tightening), attitudes

@@ -3,9 +3,10 @@
 Variables are z = (w_0 .. w_{Nc-1}, theta): deviations of the free inputs from the equilibrium's, LVLH axes, and the
 artificial reference, body axes. Rows, in this order, for F faces and H rows that limit theta alone:
 
-    corridor at steps 2 .. N_p - 1 (F rows each), inputs at steps 0 .. N_p - 1 (3 rows each, both sides), theta (H).
+    corridor at steps f .. N_p - 1 (F rows each), inputs at steps 0 .. N_p - 1 (S rows each, both sides), theta (H).
 
-No input affects the corridor rows at steps 0 and 1, which are checked separately. At step N_p the deviation is 0.
+No input affects the corridor rows before step f (2 with impulses, 1 with held thrust), which are checked separately. At
+step N_p the deviation is 0.
 """
 
 from __future__ import annotations
@@ -26,16 +27,46 @@ def three(left, right, out):  # type: ignore[no-untyped-def]
 
 
 @compiled(error_model="numpy")
-def equilibrium_input(attitudes, j, motion, back, out):  # type: ignore[no-untyped-def]
-    """Out (3, 3) = C(j) (P C(j+2)' + Q C(j+1)' + R C(j)'), ``motion`` (3, 3, 3) = P, Q, R."""
-    for i in range(3):
+def equilibria(attitudes, weights, flat, motion, start, spots, held):  # type: ignore[no-untyped-def]
+    """Maps of theta, from the ``attitudes`` at this step and after it; see :mod:`equilibrium` for the formulas.
+
+    ``start`` (6, 3): x_e(0), LVLH. ``spots`` (N_p, 3, 3): position of x_e(j) in the body. ``held`` (N_p, 3, 3): u_e(j),
+    body axes. ``motion`` (3, 3, 3) is P, Q, R; ``flat`` (2, 6, 3) is X0, X1.
+    """
+    total, points = len(held), len(weights)
+    found, back = np.zeros((total + 2, 3, 3)), np.empty((3, 3))
+    for j in range(total + 2):
+        for w in range(points):
+            for i in range(3):
+                for k in range(3):
+                    found[j, i, k] += weights[w] * attitudes[j + w, k, i]
+    for i in range(6):
         for k in range(3):
             value = 0.0
-            for s in range(3):
+            for b in range(3):
+                value += flat[0, i, b] * found[0, b, k] + flat[1, i, b] * found[1, b, k]
+            start[i, k] = value
+    for j in range(total):
+        for i in range(3):
+            for k in range(3):
+                value = 0.0
+                for s in range(3):
+                    for b in range(3):
+                        value += motion[s, i, b] * found[j + 2 - s, b, k]
+                back[i, k] = value
+        three(attitudes[j], back, held[j])
+        if points == 1:
+            for i in range(3):
+                for k in range(3):
+                    spots[j, i, k] = 1.0 if i == k else 0.0
+            continue
+        for i in range(3):
+            for k in range(3):
+                value = 0.0
                 for b in range(3):
-                    value += motion[s, i, b] * attitudes[j + 2 - s, k, b]
-            back[i, k] = value
-    three(attitudes[j], back, out)
+                    value += flat[0, i, b] * found[j, b, k] + flat[1, i, b] * found[j + 1, b, k]
+                back[i, k] = value
+        three(attitudes[j], back, spots[j])
 
 
 @compiled(error_model="numpy")
@@ -55,31 +86,37 @@ def place(source, start, column, rows, shift):  # type: ignore[no-untyped-def]
 
 @compiled(error_model="numpy", fastmath={"contract", "reassoc", "nsz"})
 def assemble(  # type: ignore[no-untyped-def]
-    attitudes, a_rr, motion, reach, push, cost, tau, normals, limits, rows, shift, hessian, slope
+    attitudes,
+    weights,
+    flat,
+    motion,
+    reach,
+    push,
+    cost,
+    tau,
+    normals,
+    sides,
+    limits,
+    start,
+    spots,
+    held,
+    rows,
+    shift,
+    hessian,
+    slope,
 ):
-    """Fill ``rows`` (n, R), ``shift`` (6, R), ``hessian`` (n, n) and ``slope`` (n, 6).
+    """Fill ``rows`` (n, R), ``shift`` (6, R), ``hessian`` (n, n) and ``slope`` (n, 6), and the maps of theta.
 
-    A row's value is rows' z + shift' x_0, the gradient at z = 0 is slope x_0. ``attitudes`` (N_p + 2, 3, 3) are those
-    at this step and after it; ``motion`` (3, 3, 3) is P, Q, R; ``limits`` (H, 3) are the rows on theta alone.
+    A row's value is rows' z + shift' x_0, the gradient at z = 0 is slope x_0. ``attitudes`` (N_p + 1 + m, 3, 3) are
+    those at this step and after it; ``sides`` (S, 3) and ``limits`` (H, 3) are the rows on inputs and on theta alone;
+    ``start``, ``spots`` and ``held`` become those of :func:`equilibria`.
     """
     total, m, faces = len(push), cost.shape[0], len(normals)
     free = m - 6
-    start = np.empty((6, 3))
-    for i in range(3):
-        for k in range(3):
-            start[i, k] = attitudes[0, k, i]
-    for i in range(3):
-        for k in range(3):
-            value = 0.0
-            for b in range(3):
-                drift = attitudes[1, k, b]
-                for c in range(3):
-                    drift -= a_rr[b, c] * attitudes[0, k, c]
-                value += motion[0, i, b] * drift
-            start[3 + i, k] = value
+    equilibria(attitudes, weights, flat, motion, start, spots, held)
     turned, face = np.empty((3, m)), np.empty(m)
     at = 0
-    for j in range(2, total):
+    for j in range(2 if len(weights) == 1 else 1, total):
         three(attitudes[j], reach[j], turned)
         for f in range(faces):
             face[:] = 0.0
@@ -88,16 +125,20 @@ def assemble(  # type: ignore[no-untyped-def]
                     add_scaled(face, turned[i], normals[f, i])
             place(face, start, at, rows, shift)
             for i in range(3):
-                rows[free + i, at] += normals[f, i]
+                for k in range(3):
+                    rows[free + k, at] += normals[f, i] * spots[j, i, k]
             at += 1
-    own, back = np.empty((3, 3)), np.empty((3, 3))
     for j in range(total):
-        equilibrium_input(attitudes, j, motion, back, own)
         three(attitudes[j], push[j], turned)
-        for i in range(3):
-            place(turned[i], start, at, rows, shift)
-            for k in range(3):
-                rows[free + k, at] += own[i, k]
+        for f in range(len(sides)):
+            face[:] = 0.0
+            for i in range(3):
+                if sides[f, i] != 0.0:
+                    add_scaled(face, turned[i], sides[f, i])
+            place(face, start, at, rows, shift)
+            for i in range(3):
+                for k in range(3):
+                    rows[free + k, at] += sides[f, i] * held[j, i, k]
             at += 1
     for f in range(len(limits)):
         rows[:free, at] = 0.0

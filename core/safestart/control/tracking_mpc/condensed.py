@@ -33,7 +33,7 @@ class Condensed:
 def condense(motion: Sampled, n_c: int, n_lqr: int, rho: float) -> Condensed:
     """Roll the deviation out over N_p = n_c + n_lqr + 2 steps."""
     gain, last = motion.regulator(rho), motion.dead_beat()
-    b = np.vstack([np.zeros((3, 3)), np.eye(3)])
+    b = motion.b
     m, total = 6 + 3 * n_c, n_c + n_lqr + 2
     state = np.zeros((total + 1, 6, m))
     push = np.zeros((total, 3, m))

@@ -57,8 +57,9 @@ class Program:
         self.condensed: Condensed = condense(motion, tuning.n_c, tuning.n_lqr, tuning.rho)
         total, count = tuning.inputs, len(self.faces.offsets)
         off_corridor, off_input = (np.zeros(total + 1), np.zeros(total)) if tightening is None else tightening
-        room = self.faces.offsets - off_corridor[2:total, None]
-        pushing = np.repeat(tuning.u_max - off_input, 3)
+        sides, most = tuning.sides
+        room = self.faces.offsets - off_corridor[motion.reached_from : total, None]
+        pushing = np.repeat(most - off_input, len(sides))
         if (pushing <= 0.0).any():
             required = f"tightening below u_max, {tuning.u_max:g} m/s, at every step"
             raise invalid("u_max", required, float(off_input.max()))
@@ -71,43 +72,52 @@ class Program:
         self.give = np.concatenate(
             [
                 np.ones(room.size),
-                np.zeros(3),
-                np.full(len(pushing) - 3, tuning.u_max),
+                np.zeros(len(sides)),
+                np.full(len(pushing) - len(sides), tuning.u_max),
                 np.zeros(len(theta_high)),
             ]
         )
         n, size = 3 * tuning.n_c + 3, len(self.high)
         self.rows, self.shift = np.empty((n, size)), np.empty((6, size))
         self.hessian, self.slope = np.empty((n, n)), np.empty((n, 6))
+        # Maps of theta: to x_e(0), to positions in the body, to inputs in the body.
+        self.start, self.spots, self.held = (
+            np.empty((6, 3)),
+            np.empty((total, 3, 3)),
+            np.empty((total, 3, 3)),
+        )
         self.fixed = (
-            np.ascontiguousarray(motion.a[:3, :3]),
+            motion.weights,
+            motion.flat,
             np.array([motion.p, motion.q, motion.r]),
             self.condensed.reach,
             self.condensed.push,
             self.condensed.cost,
             float(tuning.tau),
             np.ascontiguousarray(self.faces.normals),
+            sides,
             np.ascontiguousarray(limit.normals),
         )
 
     @property
     def ahead(self) -> int:
-        """Number of attitudes that a program reads: this step's and N_p + 1 more."""
-        return self.tuning.inputs + 2
+        """Number of attitudes that a program reads: this step's and N_p + m more, m weights of the motion."""
+        return self.tuning.inputs - 1 + self.motion.ahead
 
     def assemble(self, attitudes: Floats) -> None:
-        """Fill the rows for ``attitudes`` (>= N_p + 2, 3, 3), this step's first; raises ``InvalidInput`` for fewer."""
+        """Fill the rows for ``attitudes`` (>= ``ahead``, 3, 3) from this step on; raises ``InvalidInput`` for fewer."""
         if attitudes.shape[1:] != (3, 3) or len(attitudes) < self.ahead:
             raise invalid("attitudes", f"at least {self.ahead} rotations (3, 3)", attitudes.shape)
         attitudes = np.ascontiguousarray(attitudes[: self.ahead])
-        assemble(attitudes, *self.fixed, self.rows, self.shift, self.hessian, self.slope)
+        maps = self.start, self.spots, self.held
+        assemble(attitudes, *self.fixed, *maps, self.rows, self.shift, self.hessian, self.slope)
 
     def fixed_violation(self, attitudes: Floats, states: Floats) -> Floats:
-        """(...), m: largest violation of the corridor by LVLH states (..., 6), this step and the next; <= 0 inside."""
-        now = states[..., :3] @ attitudes[0].T
-        after = (states @ self.motion.a[:3].T) @ attitudes[1].T
-        both = np.stack([now, after], axis=-2)
-        out: Floats = -self.faces.slack(both).min(axis=(-2, -1))
+        """(...), m: largest violation by LVLH states (..., 6) at the nodes that no input reaches; <= 0 inside."""
+        nodes = [states[..., :3] @ attitudes[0].T]
+        if self.motion.reached_from > 1:
+            nodes.append((states @ self.motion.a[:3].T) @ attitudes[1].T)
+        out: Floats = -self.faces.slack(np.stack(nodes, axis=-2)).min(axis=(-2, -1))
         return out
 
     def plan(self, attitudes: Floats, state: Floats, *, soft: bool = False) -> Plan:
@@ -140,7 +150,7 @@ class Program:
     ) -> Plan:
         theta = z[-3:].copy()
         frames = attitudes[: self.ahead]
-        targets = equilibrium.states(self.motion, frames) @ theta
+        targets = equilibrium.states(self.motion, frames[: self.motion.ahead]) @ theta
         deviation = np.concatenate([state - targets[0], z[:-3]])
         pushes = self.condensed.push @ deviation
         held = equilibrium.inputs(self.motion, frames) @ theta
@@ -148,14 +158,13 @@ class Program:
         states = np.empty((len(pushes) + 1, 6))
         states[0] = state
         for j, given in enumerate(inputs):
-            states[j + 1] = self.motion.a @ states[j]
-            states[j + 1, 3:] += frames[j].T @ given
+            states[j + 1] = self.motion.after(states[j], frames[j].T @ given)
         cost = float(deviation @ self.condensed.cost @ deviation) + self.tuning.tau * float(theta @ theta)
         return Plan(violation == 0.0, violation, theta, inputs, states, cost, dual, status)
 
 
 @dataclass(frozen=True, slots=True)
-class PlannedImpulse(Command):
+class PlannedInput(Command):
     """A command with the plan behind it."""
 
     plan: Plan | None = None
@@ -164,12 +173,13 @@ class PlannedImpulse(Command):
 class TrackingMpc:
     """The controller for the loop: step k solves its program from navigation's current state.
 
-    The planned input belongs to the end of its step, the loop's impulse to the start of its interval: the impulse
-    decided in step k - 1 acts at the start of interval k, and step k plans from the state after it.
+    Held thrust belongs to its own interval. A planned impulse belongs to the end of its step, the loop's to the start
+    of its interval: the impulse decided in step k - 1 acts at the start of interval k, and step k plans from the state
+    after it.
     """
 
     def __init__(self, program: Program, attitudes: Floats, *, soft: bool = True) -> None:
-        """``attitudes`` (K, 3, 3) at all nodes of the flight and N_p + 1 after it."""
+        """``attitudes`` (K, 3, 3) at all nodes of the flight and ``program.ahead`` - 1 after it."""
         self.program, self.attitudes, self.soft = program, attitudes, soft
         self._due = np.zeros(3)
 
@@ -177,12 +187,14 @@ class TrackingMpc:
         """A new flight: no impulse is due."""
         self._due = np.zeros(3)
 
-    def command(self, k: int, state: Floats) -> PlannedImpulse:
-        """The impulse decided a step ago, and the plan whose first input is due a step later."""
-        impulse = self._due
+    def command(self, k: int, state: Floats) -> PlannedInput:
+        """The held thrust of this interval; or the impulse decided a step ago, and the plan of the next one."""
+        motion, impulse = self.program.motion, self._due
         after = np.array(state, dtype=np.float64)
         after[3:] += impulse
         plan = self.program.plan(self.attitudes[k:], after, soft=self.soft)
-        usable = plan.status == SOLVED
-        self._due = self.attitudes[k].T @ plan.inputs[0] if usable else np.zeros(3)
-        return PlannedImpulse(np.zeros(3), plan.feasible, "tracking", impulse, plan)
+        given = self.attitudes[k].T @ plan.inputs[0] if plan.status == SOLVED else np.zeros(3)
+        if motion.held:
+            return PlannedInput(given / motion.period, plan.feasible, "tracking", np.zeros(3), plan)
+        self._due = given
+        return PlannedInput(np.zeros(3), plan.feasible, "tracking", impulse, plan)

@@ -76,14 +76,19 @@ def soften(rows, shift, hessian, slope, low, high, give, state, z, dual):  # typ
 @compiled(error_model="numpy")
 def step(  # type: ignore[no-untyped-def]
     attitudes,
-    a_rr,
+    weights,
+    flat,
     motion,
     reach,
     push,
     cost,
     tau,
     normals,
+    sides,
     limits,
+    start,
+    spots,
+    held,
     low,
     high,
     state,
@@ -95,7 +100,26 @@ def step(  # type: ignore[no-untyped-def]
     dual,
 ):
     """Assemble and solve; returns (status, steps). See :func:`assemble` and :func:`minimise` for the arrays."""
-    assemble(attitudes, a_rr, motion, reach, push, cost, tau, normals, limits, rows, shift, hessian, slope)
+    assemble(
+        attitudes,
+        weights,
+        flat,
+        motion,
+        reach,
+        push,
+        cost,
+        tau,
+        normals,
+        sides,
+        limits,
+        start,
+        spots,
+        held,
+        rows,
+        shift,
+        hessian,
+        slope,
+    )
     return solve_from(rows, shift, hessian, slope, low, high, state, z, dual)
 
 

@@ -6,7 +6,8 @@
 
     |u_e| <= (|P + Q + R| + T |P - R| Omega + T^2 (|P| + |R|) alpha / 2) |theta|.
 
-``bracket`` encloses the exact maximum over all phases of the polhode and all attitudes in which LVLH may see it.
+``bracket`` encloses the exact maximum over all phases of the polhode and all attitudes in which LVLH may see it. With
+held thrust ``ball`` is the lower end of the bracket.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import numpy as np
 
 from safestart.control.tracking_mpc.sampled import Sampled
 from safestart.control.tracking_mpc.tumble import Tumble
+from safestart.control.tracking_mpc.tuning import InputLimit
 from safestart.model.scenario import Floats
 
 _PHASES = 20_000
@@ -52,6 +54,8 @@ def printed_radius(tumble: Tumble, motion: Sampled, u_max: float) -> float:
 
 def ball_radius(tumble: Tumble, motion: Sampled, u_max: float) -> float:
     """A radius, m, within which |u_e| <= u_max at all times and attitudes (rigorous); inf if no input is needed."""
+    if motion.held:
+        return bracket(tumble, motion, u_max, "ball")[0]
     omega, alpha = _seen_rates(tumble)
     p, q, r, period = motion.p, motion.q, motion.r, motion.period
     need = (
@@ -62,42 +66,71 @@ def ball_radius(tumble: Tumble, motion: Sampled, u_max: float) -> float:
     return u_max / need if need > 0.0 else math.inf
 
 
-def bracket(tumble: Tumble, motion: Sampled, u_max: float) -> tuple[float, float]:
+def bracket(tumble: Tumble, motion: Sampled, u_max: float, limit: InputLimit = "box") -> tuple[float, float]:
     """(low, high), m: the exact theta_max over all phases and attitudes lies between them; infinite where it is.
 
-    C(k) u-map = C P R2 C' D2' + C Q R1 C' D1' + C R C' with D_j the body's own turn over j steps, R_j that of LVLH and
-    C any attitude. Its part of P ~ 1/T, Q ~ -2/T, R ~ 1/T is the same for every C; it is taken at 20 000 phases, with a
-    Lipschitz bound between them (|dD_j/dt| <= j T max |omega dot|). The rest is bounded by norms for ``low`` and
-    sampled for ``high``.
+    theta's input is the sum over j of C U_j R_j C' D_j' with U_j the constants of u_e = sum U_j r(k+j), D_j the body's
+    own turn over j steps, R_j that of LVLH and C any attitude. The part of U_j that is a multiple of the identity,
+    about (1, -2, 1) / T, is the same for every C; it is taken at 20 000 phases, with a Lipschitz bound between them
+    (|dD_j/dt| <= j T max |omega dot|). The rest is bounded by norms for ``low`` and sampled for ``high``.
     """
     period, body = motion.period, tumble.body
     omega, change = tumble.rates()
     omega, change = omega * (1.0 + 1e-12), change * (1.0 + 1e-12)
     times = body.polhode_period() * np.arange(_PHASES if omega > 0.0 else 1) / _PHASES
+    shares = np.convolve([1.0, -2.0, 1.0], motion.weights) / period
+    constants = _constants(motion)
+    steps = np.arange(len(shares))
     here = body.rotation(times)
-    first = here @ body.rotation(times + period).swapaxes(1, 2)
-    second = here @ body.rotation(times + 2.0 * period).swapaxes(1, 2)
-    steady = (second - 2.0 * first + np.eye(3)) / period
-    needs = np.linalg.norm(steady, axis=2).max(axis=1)
-    gap = 0.5 * (times[1] - times[0]) * 4.0 * change if len(times) > 1 else 0.0
-    one, two = _turn(tumble, period), _turn(tumble, 2.0 * period)
-    p, q, r = motion.p @ two, motion.q @ one, motion.r
-    p_left, q_left, r_left = p - np.eye(3) / period, q + 2.0 * np.eye(3) / period, r - np.eye(3) / period
-    left = (
-        _norm(p_left + q_left + r_left)
-        + 0.5 * _norm(p_left + r_left) * period**2 * (omega**2 + change)
-        + _norm(p_left - r_left) * period * omega
+    turns = [here @ body.rotation(times + j * period).swapaxes(1, 2) for j in steps[1:]]
+    steady = sum(
+        (w * turn for w, turn in zip(shares[1:], turns, strict=True)),
+        np.tile(shares[0] * np.eye(3), (len(times), 1, 1)),
     )
-    most = float(needs.max()) + gap + left
+    needs = _largest(steady, limit)
+    gap = (
+        0.5 * (times[1] - times[0]) * float(np.abs(shares) @ steps) * period * change
+        if len(times) > 1
+        else 0.0
+    )
+    moved = [matrix @ _turn(tumble, j * period) for j, matrix in enumerate(constants)]
+    left = [matrix - w * np.eye(3) for matrix, w in zip(moved, shares, strict=True)]
+    # Taylor's formula about the middle of the three positions that impulses need.
+    span = period * (steps - 1.0)
+    most = (
+        float(needs.max())
+        + gap
+        + _norm(sum(left, np.zeros((3, 3))))
+        + _norm(sum((t * m for t, m in zip(span, left, strict=True)), np.zeros((3, 3)))) * omega
+        + 0.5 * sum(t * t * _norm(m) for t, m in zip(span, left, strict=True)) * (omega**2 + change)
+    )
     worst = np.argsort(needs)[-_KEPT:]
     frames = _attitudes()
-    seen = [frames @ matrix @ frames.swapaxes(1, 2) for matrix in (p, q, r)]
+    seen = [frames @ matrix @ frames.swapaxes(1, 2) for matrix in moved]
     found = 0.0
     for index in worst.tolist():
-        maps = seen[0] @ second[index] + seen[1] @ first[index] + seen[2]
-        found = max(found, float(np.linalg.norm(maps, axis=2).max()))
+        maps = sum((one @ turn[index] for one, turn in zip(seen[1:], turns, strict=True)), seen[0])
+        found = max(found, float(_largest(maps, limit).max()))
     low = u_max / most if most > 0.0 else math.inf
     return low, (u_max / found if found > 0.0 else math.inf)
+
+
+def _constants(motion: Sampled) -> list[Floats]:
+    """U_j: u_e(k) = sum U_j r(k+j), LVLH."""
+    out = [np.zeros((3, 3)) for _ in range(len(motion.weights) + 2)]
+    for j, matrix in enumerate((motion.r, motion.q, motion.p)):
+        for i, weight in enumerate(motion.weights):
+            out[i + j] += weight * matrix
+    return out
+
+
+def _largest(maps: Floats, limit: InputLimit) -> Floats:
+    """(K,): largest input per m of |theta| for ``maps`` (K, 3, 3): a component in a box, the length in a ball."""
+    if limit == "box":
+        rows: Floats = np.linalg.norm(maps, axis=2).max(axis=1)
+        return rows
+    out: Floats = np.linalg.norm(maps, 2, axis=(1, 2))
+    return out
 
 
 def _seen_rates(tumble: Tumble) -> tuple[float, float]:

@@ -2,8 +2,9 @@
 
 Every one holds the corridor's faces. ``printed`` adds y <= y_max of paper 002 (42)-(45); ``ball`` the largest such cut
 inside the rigorous ball; ``corners`` the largest whose corners need at most u_max at every node of the window;
-``polytope`` the rows |u_e(k; theta)| <= u_max themselves, without those that others imply; ``zero`` theta = 0. A window
-is the nodes of a flight and of its last plan, so that a theta allowed at one node is allowed at the next.
+``polytope`` the input's own rows on u_e(k; theta), without those that others imply; ``zero`` theta = 0. A window is the
+nodes of a flight and of its last plan, so that a theta allowed at one node is allowed at the next. With held thrust the
+chaser passes a little beside theta: the corridor's faces move in by the most that this can be.
 """
 
 from __future__ import annotations
@@ -14,11 +15,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from safestart.control.tracking_mpc.equilibrium import inputs
+from safestart.control.tracking_mpc.equilibrium import inputs, places
 from safestart.control.tracking_mpc.sampled import Sampled
 from safestart.control.tracking_mpc.theta_radius import ball_radius, printed_radius
 from safestart.control.tracking_mpc.tumble import Tumble
-from safestart.control.tracking_mpc.tuning import DockingCorridor, ThetaLimit
+from safestart.control.tracking_mpc.tuning import DockingCorridor, Tuning
+from safestart.errors import invalid
 from safestart.model.scenario import Floats
 
 _FARTHEST = 1e5
@@ -41,33 +43,54 @@ class ThetaSet:
 
 
 def theta_set(
-    limit: ThetaLimit,
-    shape: DockingCorridor,
-    tumble: Tumble,
-    motion: Sampled,
-    u_max: float,
-    attitudes: Floats,
+    tuning: Tuning, shape: DockingCorridor, tumble: Tumble | None, motion: Sampled, attitudes: Floats
 ) -> ThetaSet:
-    """The set of a limit for a window of ``attitudes`` (K, 3, 3)."""
-    faces = shape.faces()
+    """The set of a tuning's limit for a window of ``attitudes`` (K, 3, 3).
+
+    Raises ``InvalidInput`` for ``printed`` with held thrust, and for ``printed`` and ``ball`` without a ``tumble``.
+    """
+    limit = tuning.theta_limit
+    sides, most = tuning.sides
     if limit == "zero":
         return ThetaSet(np.eye(3), np.zeros(3), np.zeros(3))
     if limit == "polytope":
-        return _polytope(shape, inputs(motion, attitudes), u_max)
-    if limit == "printed":
-        y_max = printed_cut(shape, printed_radius(tumble, motion, u_max))
-    elif limit == "ball":
-        y_max = cut_inside(shape, ball_radius(tumble, motion, u_max))
+        return _polytope(shape, sides @ inputs(motion, attitudes), most, _beside(motion, attitudes))
+    if limit == "corners":
+        y_max = corner_cut(shape, sides @ inputs(motion, attitudes), most)
+    elif tumble is None:
+        raise invalid("theta_limit", "corners, polytope or zero for a target that is not torque-free", limit)
+    elif limit == "printed":
+        if motion.held:
+            raise invalid("theta_limit", "another limit: paper 002's formula is about impulses", limit)
+        y_max = printed_cut(shape, printed_radius(tumble, motion, tuning.u_max))
     else:
-        y_max = corner_cut(shape, inputs(motion, attitudes), u_max)
+        y_max = cut_inside(shape, ball_radius(tumble, motion, most))
+    faces = shape.faces()
     normals = np.vstack([faces.normals, [0.0, 1.0, 0.0]])
-    high = np.append(faces.offsets, max(y_max, 0.0))
+    high = np.append(faces.offsets, max(y_max, shape.y0))
+    if motion.held:
+        far = _farthest(shape, y_max) if y_max < _FARTHEST else 0.0
+        high[:-1] -= far * _beside(motion, attitudes)
     return ThetaSet(normals, np.full(len(high), -np.inf), high, y_max)
+
+
+def _beside(motion: Sampled, attitudes: Floats) -> float:
+    """How far a chaser that stays at theta is beside it at most, in m per m of |theta|."""
+    if not motion.held:
+        return 0.0
+    return float(np.linalg.norm(places(motion, attitudes) - np.eye(3), 2, axis=(1, 2)).max())
+
+
+def _farthest(shape: DockingCorridor, y: float) -> float:
+    """Distance from the target to the corners of the corridor cut at ``y``, m."""
+    x, z = shape.x0 + (y - shape.y0) / shape.c_x, shape.z0 + (y - shape.y0) / shape.c_z
+    return math.hypot(x, y, z)
 
 
 def printed_cut(shape: DockingCorridor, radius: float) -> float:
     """y_max of (42)-(45) as printed, with the sign error of xi_1; not positive where the ball is too small for it."""
-    cx, cz, x0, z0 = shape.c_x, shape.c_z, shape.x0, shape.z0
+    cx, cz = shape.c_x, shape.c_z
+    x0, z0 = shape.x0 - shape.y0 / cx, shape.z0 - shape.y0 / cz
     if math.isinf(radius):
         return _FARTHEST
     first = (cx * cz) ** 2 * (x0 * x0 + z0 * z0) + (cz * z0 + cx * x0) ** 2
@@ -80,17 +103,19 @@ def cut_inside(shape: DockingCorridor, radius: float) -> float:
     if math.isinf(radius):
         return _FARTHEST
     a = 1.0 + 1.0 / shape.c_x**2 + 1.0 / shape.c_z**2
-    b = shape.x0 / shape.c_x + shape.z0 / shape.c_z
-    c = shape.x0**2 + shape.z0**2 - radius * radius
+    x0, z0 = shape.x0 - shape.y0 / shape.c_x, shape.z0 - shape.y0 / shape.c_z
+    b = x0 / shape.c_x + z0 / shape.c_z
+    c = x0**2 + z0**2 - radius * radius
     return (math.sqrt(b * b - a * c) - b) / a if c <= 0.0 else -1.0
 
 
 def corner_cut(shape: DockingCorridor, maps: Floats, u_max: float) -> float:
-    """Largest y whose four corners need |u_e| <= u_max in all of ``maps`` (K, 3, 3); below 0: none."""
+    """Largest y whose four corners keep |maps theta| <= u_max for all of ``maps`` (K, S, 3); below 0: none."""
     y_max = _FARTHEST
     for side_x in (-1.0, 1.0):
         for side_z in (-1.0, 1.0):
-            at_port = maps @ np.array([side_x * shape.x0, 0.0, side_z * shape.z0])
+            x0, z0 = shape.x0 - shape.y0 / shape.c_x, shape.z0 - shape.y0 / shape.c_z
+            at_port = maps @ np.array([side_x * x0, 0.0, side_z * z0])
             along = maps @ np.array([side_x / shape.c_x, 1.0, side_z / shape.c_z])
             for sign in (1.0, -1.0):
                 rest, growth = u_max - sign * at_port, sign * along
@@ -101,19 +126,26 @@ def corner_cut(shape: DockingCorridor, maps: Floats, u_max: float) -> float:
     return y_max
 
 
-def _polytope(shape: DockingCorridor, maps: Floats, u_max: float) -> ThetaSet:
-    """Corridor and |maps theta| <= u_max, without the rows that the others imply."""
+def _polytope(shape: DockingCorridor, maps: Floats, u_max: float, beside: float) -> ThetaSet:
+    """Corridor and |maps theta| <= u_max for ``maps`` (K, S, 3), without the rows that the others imply."""
     faces = shape.faces()
     rows = maps.reshape(-1, 3)
     normals = np.vstack([faces.normals, rows, -rows, [[0.0, 1.0, 0.0]]])
     high = np.concatenate([faces.offsets, np.full(2 * len(rows), u_max), [_FARTHEST]])
     # Seen from a point inside, the necessary rows are the corners of the hull of normal / distance.
-    reach = float(np.max(rows @ [0.0, 1.0, 0.0], initial=-np.inf))
-    other = float(np.max(-rows @ [0.0, 1.0, 0.0], initial=-np.inf))
-    height = u_max / max(reach, other, u_max / _FARTHEST)
-    inside = np.array([0.0, 0.5 * min(height, 1.0), 0.0])
+    reach = float(np.abs(rows @ [0.0, 1.0, 0.0]).max(initial=0.0))
+    height = u_max / max(reach, u_max / _FARTHEST)
+    if height <= shape.y0:
+        # The input cannot hold the middle of the port: no theta, by two rows that contradict each other.
+        normals = np.vstack([faces.normals, [0.0, 1.0, 0.0]])
+        high = np.append(faces.offsets, shape.y0 - 1.0)
+        return ThetaSet(normals, np.full(len(high), -np.inf), high)
+    inside = np.array([0.0, shape.y0 + 0.5 * min(height - shape.y0, 1.0), 0.0])
     room = high - normals @ inside
-    kept = np.sort(ConvexHull(normals / room[:, None]).vertices)
+    hull = ConvexHull(normals / room[:, None])
     # The corridor's own faces are identified by their order, so they stay.
-    kept = np.union1d(np.arange(len(faces.offsets)), kept)
+    kept = np.union1d(np.arange(len(faces.offsets)), np.sort(hull.vertices))
+    if beside > 0.0:
+        corners = inside - hull.equations[:, :3] / hull.equations[:, 3:]
+        high[: len(faces.offsets)] -= beside * float(np.linalg.norm(corners, axis=1).max())
     return ThetaSet(normals[kept], np.full(len(kept), -np.inf), high[kept])

@@ -47,7 +47,7 @@ class Tube:
 def tube_of(motion: Sampled, tuning: Tuning, errors: Errors, *, bounded: bool = False) -> Tube:
     """The filter and the tightening; raises ``InvalidInput`` for errors that leave no input."""
     measured = np.diag([max(errors.position, _LEAST) ** 2] * 3 + [max(errors.velocity, _LEAST) ** 2] * 3)
-    pushed = np.diag([0.0] * 3 + [max(errors.impulse, _LEAST) ** 2] * 3)
+    pushed = max(errors.impulse, _LEAST) ** 2 * (motion.b @ motion.b.T)
     predicted = solve_discrete_are(motion.a.T, np.eye(6), pushed, measured)
     innovation = predicted + measured
     gain = predicted @ np.linalg.inv(innovation)

@@ -118,18 +118,8 @@ class SpaceQuestion:
 
 def five_faces(shape: CorridorShape, axis: Vector = (0.0, 1.0, 0.0)) -> tuple[Face, ...]:
     """The paper's corridor along ``axis`` (body frame), turned from +y by the shortest rotation."""
-    length = math.hypot(*axis)
-    if not 0.0 < length < math.inf:
-        raise invalid("axis", "three finite numbers, not all 0", axis)
-    x, y, z = (float(e) / length for e in axis)
-    if y > -1.0 + 1e-12:
-        # I + [v]x + [v]x^2 / (1 + y) for v = (y axis) x axis = (z, 0, -x).
-        share = 1.0 / (1.0 + y)
-        turn = np.array(
-            [[1.0 - share * x * x, x, -share * x * z], [-x, y, -z], [-share * x * z, z, 1.0 - share * z * z]]
-        )
-    else:
-        turn = np.diag([1.0, -1.0, -1.0])
+    x, y, z = axis
+    turn = turned_from_y(axis)
     cx, cz, rh = shape.c_x, shape.c_z, shape.hold_radius
     rows = (
         ("hold_plane", (0.0, -1.0, 0.0), -rh),
@@ -143,6 +133,23 @@ def five_faces(shape: CorridorShape, axis: Vector = (0.0, 1.0, 0.0)) -> tuple[Fa
         turned = (turn @ np.array(normal)).tolist() if (x, z) != (0.0, 0.0) or y < 0.0 else list(normal)
         out.append(Face(name, (turned[0], turned[1], turned[2]), offset))
     return tuple(out)
+
+
+def turned_from_y(axis: Vector) -> Floats:
+    """The shortest rotation (3, 3) that turns +y into ``axis``; raises ``InvalidInput`` for an axis of length 0."""
+    length = math.hypot(*axis)
+    if not 0.0 < length < math.inf:
+        raise invalid("axis", "three finite numbers, not all 0", axis)
+    x, y, z = (float(e) / length for e in axis)
+    if y > -1.0 + 1e-12:
+        # I + [v]x + [v]x^2 / (1 + y) for v = (y axis) x axis = (z, 0, -x).
+        share = 1.0 / (1.0 + y)
+        turn = np.array(
+            [[1.0 - share * x * x, x, -share * x * z], [-x, y, -z], [-share * x * z, z, 1.0 - share * z * z]]
+        )
+    else:
+        turn = np.diag([1.0, -1.0, -1.0])
+    return np.asarray(turn)
 
 
 def _check_faces(faces: Sequence[Face]) -> None:

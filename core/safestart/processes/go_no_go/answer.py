@@ -23,6 +23,7 @@ class Verdicts(NamedTuple):
     examples: list[list[dict[str, Any]]] | None = None
     proof: list[dict[str, Any] | None] | None = None
     decided_by: list[str | None] | None = None
+    tracking: list[dict[str, Any]] | None = None
 
 
 class Answer(NamedTuple):
@@ -53,6 +54,7 @@ class Answer(NamedTuple):
             "reason": said.reason,
             "end_s": said.end_s,
             "examples": said.examples,
+            "tracking": said.tracking,
             "proof": said.proof,
         }
 
@@ -71,6 +73,7 @@ class Answer(NamedTuple):
             "face_margins_m": dict(zip(found.faces, found.face_margin[0], strict=True)),
             "end_s": said.end_s and said.end_s[0],
             "examples": said.examples and said.examples[0],
+            "tracking": said.tracking and said.tracking[0],
             "proof": said.proof and said.proof[0],
             "r_sync_m": limit,
             "r_sync_reason": NO_SYNC_LIMIT if limit is None else None,

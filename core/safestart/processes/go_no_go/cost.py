@@ -18,6 +18,8 @@ def cost(inputs: QuestionFields, starts: int) -> float:
     """Seconds of one core, roughly, for so many starts."""
     if method_of(inputs.method).at_once:
         return _CLOSED_FORM_S * starts
+    if method_of(inputs.method).start_s:
+        return FIRST_S + method_of(inputs.method).start_s * starts
     horizon = inputs.within_s if inputs.question == "synchronize" else inputs.horizon_s
     one = program_s(horizon) * (_UNCERTAIN if inputs.uncertain or inputs.disturbance_m_s2 else 1.0)
     programs = FIRST_S + one * min(starts, MOST_PROGRAMS)

@@ -22,6 +22,7 @@ class Method:
     ``proves``: GO and NO_GO come with proof documents on request. ``sound``: every GO can be flown. ``at_once``: one
     start takes microseconds, so that a service may answer it on its event loop. ``first`` names a function that is
     tried before on a single start, from inputs and conditions to :class:`Verdicts` in microseconds, or None.
+    ``start_s``: seconds that a start takes, 0 for that of a cone program.
     """
 
     name: str
@@ -31,6 +32,7 @@ class Method:
     sound: bool = False
     at_once: bool = False
     first: str = ""
+    start_s: float = 0.0
 
 
 _HERE = "safestart.processes.go_no_go.methods"
@@ -57,6 +59,14 @@ _ALL = (
         f"{_HERE}.auto:decide",
         sound=True,
         first=f"{_HERE}.certified:go_at_once",
+    ),
+    Method(
+        "tracking",
+        "the tracking MPC of paper 002 flown to rest at the port, its thrust history proved and its plans certified; "
+        "beside it the exact answer, which decides NO_GO",
+        f"{_HERE}.tracking:decide",
+        sound=True,
+        start_s=0.5,
     ),
 )
 

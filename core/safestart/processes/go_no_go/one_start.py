@@ -13,6 +13,7 @@ from safestart.processes.go_no_go.method_registry import MethodName
 from safestart.processes.go_no_go.question_fields import QuestionKind
 from safestart.processes.go_no_go.spec import DECIDED_BY, GoNoGoInputs, StateInput
 from safestart.processes.go_no_go.uncertainty import Member
+from safestart.processes.tracking_mpc.controller_input import TrackingAnswer
 from safestart.processes.wire import CorridorInput
 
 ONE_START = Flat(GoNoGoInputs, {"corridor": CorridorInput, "states": StateInput})
@@ -43,6 +44,9 @@ class GoNoGoAnswer(WireModel):
     examples: list[Member] | None = Field(
         None,
         description="With half-widths, when UNDECIDED: members looked at, if possible one GO and one NO_GO.",
+    )
+    tracking: TrackingAnswer | None = Field(
+        None, description="Method tracking: the controller's flight, beside the exact answer."
     )
     proof: dict[str, Any] | None = Field(
         None, description="Proof document for `safestart verify`, if requested."

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from safestart.model.scenario import MAX_RANGE
 from safestart.processes.go_no_go.method_registry import DEFAULT, METHODS, RENAMED, MethodName
 from safestart.processes.go_no_go.uncertainty import HalfWidths
+from safestart.processes.tracking_mpc.controller_input import TrackingSettings
 from safestart.processes.wire import Horizon
 
 QuestionKind = Literal["stay", "synchronize"]
@@ -66,4 +67,15 @@ class QuestionFields(HalfWidths):
     start_error_m_s: float = Field(
         0.0, ge=0, le=10, description="Bound on the error of its velocity, m/s (stay)."
     )
-    proofs: bool = Field(False, description="Return proof documents (exact, auto); at most 100 starts.")
+    tracking: TrackingSettings | None = Field(
+        None, description="Settings of the tracking MPC (method tracking); absent: their defaults."
+    )
+    proofs: bool = Field(
+        False, description="Return proof documents (methods that prove); at most 100 starts."
+    )
+
+    @model_validator(mode="after")
+    def _settings_of_its_method(self) -> QuestionFields:
+        if self.tracking is not None and self.method != "tracking":
+            raise ValueError(f"tracking: only with method tracking, received {self.method}")
+        return self

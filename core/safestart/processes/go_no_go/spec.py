@@ -13,13 +13,15 @@ from safestart.processes.go_no_go.cost import cost
 from safestart.processes.go_no_go.method_registry import UNPROVED, MethodName
 from safestart.processes.go_no_go.question_fields import QuestionFields, QuestionKind
 from safestart.processes.go_no_go.uncertainty import Member
+from safestart.processes.tracking_mpc.controller_input import TrackingAnswer
 from safestart.processes.views import Column, Facts, Findings
 from safestart.processes.wire import ScenarioInput
 
 MAX_STATES = 100_000
 DECIDED_BY = (
     "What decided: certified (the theorem of docs/theory/certified.md: for ever), exact or atlas (proved for "
-    "horizon_s), families (half-widths), tube (disturbance), paper (not sound); null when UNDECIDED."
+    "horizon_s), families (half-widths), tube (disturbance), tracking (flown, proved, certified), paper (not sound); "
+    "null when UNDECIDED."
 )
 
 
@@ -84,6 +86,9 @@ class GoNoGoOutputs(WireModel):
         description="With half-widths: for each UNDECIDED state the members looked at, one GO and one NO_GO where the "
         "verdict depends on which member is true.",
     )
+    tracking: list[TrackingAnswer] | None = Field(
+        None, description="Method tracking: the controller's flight from each start, beside the exact answer."
+    )
     proof: list[dict[str, Any] | None] | None = Field(
         None, description="Proof documents for `safestart verify`, when asked for; null for UNDECIDED."
     )
@@ -116,7 +121,7 @@ SPEC = ProcessSpec(
                     "binding",
                     "violated_faces",
                 ),
-                *("reason", "end_s"),
+                *("reason", "end_s", "tracking"),
             ),
         ),
     ),

@@ -25,9 +25,14 @@ def run(inputs: SpaceInputs, context: Context) -> ProcessOutput:
     question = question_of(inputs)
     states = states_of(inputs, question)
     watch = space_watch_of(question)
-    answers = []
+    flown = _by_tracking(inputs, question) if inputs.method == "tracking" else None
+    answers, tracking = [], []
     for k, state in enumerate(states):
-        answers.append(decide_in_space(question, state))
+        answer = decide_in_space(question, state)
+        if flown is not None:
+            answer, said, told = flown(state, answer, _told(question, answer))
+            tracking.append((said, told))
+        answers.append(answer)
         context.step(k + 1, len(states), "starts")
     errors = [model_error(question, state) for state in states]
     distances = (watch.offsets - states[:, :3] @ watch.normals.T).tolist()
@@ -52,18 +57,27 @@ def run(inputs: SpaceInputs, context: Context) -> ProcessOutput:
             "position_m": states[:, :3].tolist(),
             "velocity_m_s": states[:, 3:].tolist(),
             "reason": [
-                _sentence(question, answer, error) for answer, error in zip(answers, errors, strict=True)
+                _sentence(answer, error, tracking[k][1] if tracking else _told(question, answer))
+                for k, (answer, error) in enumerate(zip(answers, errors, strict=True))
             ],
+            "tracking": [said for said, _ in tracking] or None,
             "proof": proof,
         }
     )
 
 
-def _sentence(question: SpaceQuestion, answer: Answer, error: float) -> str:
+def _by_tracking(inputs: SpaceInputs, question: SpaceQuestion) -> Any:
+    """The flights of method tracking; imported here, as no other method needs a compiler."""
+    from safestart.processes.start_in_space.tracking import flights
+
+    return flights(inputs, question)
+
+
+def _sentence(answer: Answer, error: float, told: str) -> str:
     """The verdict in words, with a warning where the linear model's own error may be larger than the margin."""
     if abs(answer.margin_m) < error:
-        return f"{_told(question, answer)}; the linear model itself may be off by about {error:.2g} m"
-    return _told(question, answer)
+        return f"{told}; the linear model itself may be off by about {error:.2g} m"
+    return told
 
 
 def _told(question: SpaceQuestion, answer: Answer) -> str:

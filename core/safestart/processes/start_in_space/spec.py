@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from safestart.model.scenario import MAX_ACCELERATION, MAX_MEAN_MOTION, MIN_ACCELERATION
 from safestart.processes.base import ProcessSpec, Table, WireModel
@@ -17,11 +17,13 @@ from safestart.processes.start_in_space.parts import (
     SpaceStart,
     ThrustInput,
 )
+from safestart.processes.tracking_mpc.controller_input import TrackingAnswer, TrackingSettings
 from safestart.processes.views import Column, Facts, Findings
 from safestart.processes.wire import Horizon
 
 MOST_STARTS = 1000
 MOST_PROOFS = 100
+Method = Literal["exact", "auto", "tracking"]
 
 
 class SpaceInputs(WireModel):
@@ -51,19 +53,34 @@ class SpaceInputs(WireModel):
     mean_motion_rad_s: float | None = Field(
         None, ge=0, le=MAX_MEAN_MOTION, description="Circular orbit, rad/s; instead of orbit. Default 1.1e-3."
     )
-    method: Literal["exact", "auto"] = Field(
-        "exact", description="Cone programs, proved either way; both the same."
+    method: Method = Field(
+        "exact",
+        description="exact, auto: cone programs, proved either way. tracking: the tracking MPC of paper 002 flown to "
+        "rest at the port, its thrust history proved and its plans certified; beside it the exact answer, which "
+        "decides NO_GO. For five faces, a circular orbit, a spin or a torque-free body, a ball or a box of thrusts.",
+    )
+    tracking: TrackingSettings | None = Field(
+        None, description="Settings of the tracking MPC (method tracking); absent: their defaults."
+    )
+    within_s: Horizon = Field(
+        200.0, description="Latest arrival of the tracking MPC at the port (method tracking), s."
     )
     horizon_s: Horizon = Field(60.0, description="How long to stay, s.")
     proofs: bool = Field(
         False, description="Return proof documents for `safestart verify`; at most 100 starts."
     )
 
+    @model_validator(mode="after")
+    def _settings_of_its_method(self) -> SpaceInputs:
+        if self.tracking is not None and self.method != "tracking":
+            raise ValueError(f"tracking: only with method tracking, received {self.method}")
+        return self
+
 
 class SpaceOutputs(WireModel):
     """Arrays over the starts, in their order; margins in metres."""
 
-    method: Literal["exact", "auto"]
+    method: Method
     question: Literal["stay"]
     faces: list[str] = Field(description="Names of the faces.")
     verdict: list[Literal["GO", "NO_GO", "UNDECIDED"]]
@@ -78,9 +95,20 @@ class SpaceOutputs(WireModel):
     position_m: list[list[float]] = Field(description="Starts, LVLH, m.")
     velocity_m_s: list[list[float]] = Field(description="Starts, LVLH, m/s.")
     reason: list[str] = Field(description="The verdict in a sentence.")
+    tracking: list[TrackingAnswer] | None = Field(
+        None, description="Method tracking: the controller's flight from each start, beside the exact answer."
+    )
     proof: list[dict[str, Any] | None] | None = Field(
         None, description="Proof documents for `safestart verify`, when asked for; null for UNDECIDED."
     )
+
+
+_FLIGHT_S = 1.0
+
+
+def _cost(inputs: SpaceInputs) -> float:
+    one = 3.0 * program_s(inputs.horizon_s) + (_FLIGHT_S if inputs.method == "tracking" else 0.0)
+    return FIRST_S + one * len(inputs.starts)
 
 
 SPEC = ProcessSpec(
@@ -95,7 +123,7 @@ SPEC = ProcessSpec(
     outputs=SpaceOutputs,
     run="safestart.processes.start_in_space.run:run",
     light=True,
-    cost=lambda inputs: FIRST_S + 3.0 * program_s(inputs.horizon_s) * len(inputs.starts),
+    cost=_cost,
     states="starts",
     tables=(
         Table(
@@ -108,6 +136,7 @@ SPEC = ProcessSpec(
                 "velocity_m_s",
                 "violated_faces",
                 "reason",
+                "tracking",
             ),
         ),
     ),

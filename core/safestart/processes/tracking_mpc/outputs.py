@@ -10,7 +10,7 @@ from safestart.processes.base import WireModel
 
 
 class ThetaMax(WireModel):
-    """Distance from the target up to which the input suffices to stay, m; null: any."""
+    """Distance from the target up to which the input suffices to stay, m; null: any (printed: or thrust is held)."""
 
     printed: float | None = Field(description="Paper 002, (39)-(41): leaves out the centripetal term.")
     ball: float | None = Field(description="Rigorous, closed form, all attitudes.")
@@ -18,7 +18,9 @@ class ThetaMax(WireModel):
         description="The exact one over all phases and attitudes is at least this."
     )
     exact_high: float | None = Field(description="And at most this.")
-    printed_is_safe: bool = Field(description="The printed one is at most exact_low.")
+    printed_is_safe: bool | None = Field(
+        description="The printed one is at most exact_low; null: thrust is held, and the formula is about impulses."
+    )
 
 
 class YMax(WireModel):

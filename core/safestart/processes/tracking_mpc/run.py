@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from safestart.campaign.part import Part
 from safestart.campaign.records import MEDIA_TYPE
 from safestart.control.tracking_mpc.theta_radius import ball_radius, bracket, printed_radius
 from safestart.control.tracking_mpc.theta_set import theta_set
+from safestart.control.tracking_mpc.tuning import ThetaLimit
 from safestart.processes.base import Artifact, ProcessOutput
 from safestart.processes.plotting import npz
 from safestart.processes.tracking_mpc.plots import pictures
@@ -38,7 +40,13 @@ def shard(part: dict[str, Any], context: Context) -> Part:
 def merge(inputs: TrackingMpcInputs, parts: Sequence[Part], context: Context) -> ProcessOutput:
     """Everything but the study's runs."""
     setup = setup_of(inputs)
-    histories = AnyHistory(setup.motion, setup.shape, inputs.u_max_m_s, setup.attitudes[: inputs.steps + 1])
+    histories = AnyHistory(
+        setup.motion,
+        setup.shape,
+        inputs.u_max_m_s,
+        setup.attitudes[: inputs.steps + 1],
+        ball=inputs.input_limit == "ball",
+    )
     exact = histories.answer(setup.start)
     flight = fly(
         setup.program, setup.tumble, setup.attitudes, setup.start, inputs.steps, inputs.truth, context
@@ -46,7 +54,12 @@ def merge(inputs: TrackingMpcInputs, parts: Sequence[Part], context: Context) ->
     first = setup.program.plan(setup.attitudes, setup.start, soft=True)
     certificate = _certificate(inputs, setup, flight)
     unsafe = counter_example(
-        setup.shape, setup.tumble, setup.motion, inputs.u_max_m_s, setup.attitudes[:LEAST_WINDOW]
+        setup.shape,
+        setup.tumble,
+        setup.motion,
+        inputs.u_max_m_s,
+        setup.attitudes[:LEAST_WINDOW],
+        inputs.input_limit,
     )
     total = summary(inputs, [part.document for part in parts])
     document = {
@@ -85,19 +98,27 @@ def merge(inputs: TrackingMpcInputs, parts: Sequence[Part], context: Context) ->
 
 def limits(inputs: TrackingMpcInputs, setup: Setup) -> dict[str, Any]:
     """``theta_max_m`` and ``y_max_m``."""
-    target, motion, u_max = setup.tumble, setup.motion, inputs.u_max_m_s
-    printed, (low, high) = printed_radius(target, motion, u_max), bracket(target, motion, u_max)
+    target, motion = setup.tumble, setup.motion
+    _, most = setup.tuning.sides
+    # Paper 002's formula is about impulses.
+    printed = None if motion.held else printed_radius(target, motion, inputs.u_max_m_s)
+    low, high = bracket(target, motion, most, inputs.input_limit)
+    asked: tuple[ThetaLimit, ...] = ("printed", "corners")
     cuts = {
-        name: theta_set(name, setup.shape, target, motion, u_max, setup.attitudes).y_max
-        for name in ("printed", "corners")
+        name: None
+        if name == "printed" and motion.held
+        else theta_set(
+            replace(setup.tuning, theta_limit=name), setup.shape, target, motion, setup.attitudes
+        ).y_max
+        for name in asked
     }
     return {
         "theta_max_m": {
-            "printed": finite(printed),
-            "ball": finite(ball_radius(target, motion, u_max)),
+            "printed": None if printed is None else finite(printed),
+            "ball": finite(ball_radius(target, motion, most)),
             "exact_low": finite(low),
             "exact_high": finite(high),
-            "printed_is_safe": bool(printed <= low),
+            "printed_is_safe": None if printed is None else bool(printed <= low),
         },
         "y_max_m": {name: None if y is None or not 0.0 <= y < 1e4 else y for name, y in cuts.items()},
     }
@@ -164,7 +185,7 @@ def _certificate(inputs: TrackingMpcInputs, setup: Setup, flight: Flight) -> dic
     shown = [
         recursion(program, setup.attitudes[k:], plan, setup.shifts) for k, plan in enumerate(flight.plans)
     ]
-    low, _ = bracket(setup.tumble, setup.motion, inputs.u_max_m_s)
+    low, _ = bracket(setup.tumble, setup.motion, setup.tuning.sides[1], inputs.input_limit)
     largest = max(float(np.linalg.norm(plan.theta)) for plan in flight.plans)
     return {
         "recursive_feasibility": {
@@ -177,7 +198,7 @@ def _certificate(inputs: TrackingMpcInputs, setup: Setup, flight: Flight) -> dic
         },
         "cost_decrease_margin": finite(cost_decrease(program, setup.attitudes, flight)),
         "theta_held_for_ever": bool(largest <= low),
-        "theta_window_s": inputs.period_s * (len(setup.attitudes) - 3),
+        "theta_window_s": inputs.period_s * (len(setup.attitudes) - setup.motion.ahead),
         "verdict_holds_until_s": holds_until(
             program, setup.tumble, flight, inputs.inertia_error, inputs.spin_error
         ),

@@ -40,8 +40,16 @@ def setup_of(inputs: TrackingMpcInputs, tightening: Any = None) -> Setup:
     """Build; raises ``InvalidInput`` for a body that is none, a start outside, a period that is too long."""
     corridor = inputs.corridor
     shape = DockingCorridor(corridor.c_x, corridor.c_z, corridor.x0_m, corridor.z0_m)
-    tuning = Tuning(inputs.u_max_m_s, inputs.n_c, inputs.n_lqr, inputs.rho, inputs.tau, inputs.theta_limit)
-    motion = Sampled(inputs.mean_motion, inputs.period_s)
+    tuning = Tuning(
+        inputs.u_max_m_s,
+        inputs.n_c,
+        inputs.n_lqr,
+        inputs.rho,
+        inputs.tau,
+        inputs.theta_limit,
+        inputs.input_limit,
+    )
+    motion = Sampled(inputs.mean_motion, inputs.period_s, inputs.thrust == "held")
     tumble = tumble_of(inputs)
     tumble.slow_enough(inputs.period_s)
     position = np.array(inputs.start.position_m)
@@ -49,11 +57,11 @@ def setup_of(inputs: TrackingMpcInputs, tightening: Any = None) -> Setup:
     if outside > 0.0:
         raise invalid("start", "a position inside the corridor", f"one {outside:.3g} m outside")
     # The regulator alone says how many steps a certificate looks ahead.
-    pace = motion.a + np.vstack([np.zeros((3, 6)), motion.regulator(inputs.rho)])
+    pace = motion.a + motion.b @ motion.regulator(inputs.rho)
     shifts = shifts_needed(pace)
-    count = max(LEAST_WINDOW, inputs.steps + tuning.inputs + shifts + 4)
+    count = max(LEAST_WINDOW, inputs.steps + tuning.inputs + shifts + 1 + motion.ahead)
     attitudes = tumble.nodes(inputs.period_s, count)
-    limit = theta_set(inputs.theta_limit, shape, tumble, motion, inputs.u_max_m_s, attitudes)
+    limit = theta_set(tuning, shape, tumble, motion, attitudes)
     program = Program(motion, shape, tuning, limit, tightening)
     start = np.concatenate([attitudes[0].T @ position, np.array(inputs.start.velocity_m_s)])
     return Setup(tumble, motion, shape, tuning, program, attitudes, start, shifts)

@@ -101,7 +101,16 @@ class TrackingMpcInputs(WireModel):
     period_s: float = Field(
         1.0, gt=0, le=MAX_PERIOD_S, description="Length T of a step, s; an impulse ends it."
     )
-    u_max_m_s: float = Field(0.075, gt=0, le=100, description="Largest impulse per body axis and step, m/s.")
+    u_max_m_s: float = Field(0.075, gt=0, le=100, description="Largest input per step, m/s.")
+    input_limit: Literal["box", "ball"] = Field(
+        "box",
+        description="box: u_max_m_s per body axis. ball: in length; plans use a polyhedron of 62 faces inside it.",
+    )
+    thrust: Literal["impulse", "held"] = Field(
+        "impulse",
+        description="impulse: at the end of each step. held: an acceleration over the step, u_max_m_s / period_s at "
+        "most, in LVLH; the input is acceleration x period_s.",
+    )
     corridor: DockingCorridorInput = Field(
         default_factory=lambda: DockingCorridorInput.model_validate({}), description="Corridor in the body."
     )

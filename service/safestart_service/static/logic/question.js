@@ -115,7 +115,7 @@ export function mapLacks(values) {
 /** The deciding method in words, by its name on the wire. */
 export const DECIDED = {
   certified: "by the certificate in closed form: a known manoeuvre, for ever", exact: "by a cone program", atlas: "by an atlas of cone programs",
-  families: "by cone programs", tube: "by a cone program in the tightened corridor",
+  families: "by cone programs", tube: "by a cone program in the tightened corridor", tracking: "by a flight of the tracking MPC, proved and certified",
 };
 
 /** How sure the verdict is, beside its word. */

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Set
+
 from safestart.errors import invalid
 from safestart.processes.go_no_go.spec import GoNoGoInputs
 from safestart.processes.wire import ScenarioInput
@@ -26,12 +28,12 @@ KNOWN = frozenset(
 """Supported inputs; any other input must have its default value."""
 
 
-def more_asked(inputs: GoNoGoInputs) -> str | None:
-    """The first input that a closed form does not cover; None if it covers all."""
-    if inputs.model_fields_set <= KNOWN:
+def more_asked(inputs: GoNoGoInputs, known: Set[str] = KNOWN) -> str | None:
+    """The first input beyond the ``known``, those that a closed form covers; None if there is none."""
+    if inputs.model_fields_set <= known:
         return None
     for name, field in GoNoGoInputs.model_fields.items():
-        if name not in KNOWN and getattr(inputs, name) != field.default:
+        if name not in known and getattr(inputs, name) != field.default:
             return name
     return None
 

@@ -40,7 +40,7 @@ def prove(inputs: GoNoGoInputs, solve: Solve, context: Context) -> Verdicts:
         raise invalid("proofs", f"at most {MOST_PROOFS} starts", len(points))
     if not question.plain and len(points) > MOST_SEARCHES:
         raise invalid("states", f"at most {MOST_SEARCHES} with synchronize or a speed limit", len(points))
-    starts = _in_lvlh(inputs, question, points)
+    starts = in_lvlh(inputs, question, points)
     disturbance = disturbed.disturbance_of(inputs)
     if inputs.uncertain:
         if disturbance is not None:
@@ -69,7 +69,7 @@ def prove(inputs: GoNoGoInputs, solve: Solve, context: Context) -> Verdicts:
     )
 
 
-def _in_lvlh(inputs: GoNoGoInputs, question: Question, points: Floats) -> Floats:
+def in_lvlh(inputs: GoNoGoInputs, question: Question, points: Floats) -> Floats:
     """Position and velocity (S, 2 d) of the starts, LVLH."""
     rate = question.scenario.target.tumble_rate if inputs.rest is Rest.BODY else 0.0
     return np.concatenate(body_to_lvlh(points, np.zeros_like(points), rate, 0.0), axis=-1)

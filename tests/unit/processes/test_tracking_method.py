@@ -1,0 +1,121 @@
+"""Go-no-go by the tracking MPC: GO with documents that the checker verifies, never where nothing can stay."""
+
+import pytest
+
+from safestart.errors import InvalidInput
+from safestart.processes.execute import execute
+from safestart.proofs import checker
+
+PLANAR = {"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "method": "tracking"}
+ENVISAT = [[17023.3, 397.1, -2171.4], [397.1, 124825.7, 344.2], [-2171.4, 344.2, 129112.2]]
+SPACE = {
+    "attitude": {"kind": "torque_free", "inertia_kg_m2": ENVISAT, "body_rate_deg_s": [0, 3.53, 3.53]},
+    "orbit": {"mean_motion_rad_s": 0.00104536},
+    "method": "tracking",
+    "corridor": {"x0_m": 0.5, "z0_m": 0.5, "c_x": 1, "c_z": 1, "r_h_m": 1},
+}
+
+
+@pytest.mark.parametrize("question", ["stay", "synchronize"])
+def test_a_go_is_proved_and_certified(question):
+    starts = [{"x_m": 5, "y_m": 40}, {"x_m": 0, "y_m": 150}, {"x_m": 3, "y_m": 20}]
+    asked = PLANAR | {"question": question, "states": starts, "proofs": True}
+    outputs = execute("go-no-go", asked).document["outputs"]
+    assert outputs["verdict"] == ["GO", "NO_GO", "GO"]
+    assert outputs["decided_by"] == ["tracking", "exact", "tracking"]
+    for verdict, proof, margin in zip(outputs["verdict"], outputs["proof"], outputs["margin_m"], strict=True):
+        shown = checker.check(proof)
+        assert shown.verdict == verdict
+        assert shown.margin_m == pytest.approx(margin, abs=1e-6)
+    near, far, _ = outputs["tracking"]
+    assert near["certified"]
+    assert near["arrives_s"] == 58.0
+    assert near["exact_verdict"] == "GO"
+    assert near["exact_margin_m"] >= near["margin_m"]
+    assert not far["feasible"]
+    assert far["least_violation_m"] > 0.0
+    assert (outputs["end_s"] or [None])[0] == (58.0 if question == "synchronize" else None)
+
+
+def test_what_it_cannot_take_is_undecided_beside_the_exact_answer():
+    """A regulator with a short horizon has no plan where the exact answer is GO."""
+    tuned = {"n_c": 1, "theta_limit": "zero"}
+    asked = PLANAR | {"tracking": tuned, "states": [{"x_m": 5, "y_m": 40}]}
+    outputs = execute("go-no-go", asked).document["outputs"]
+    assert outputs["verdict"] == ["UNDECIDED"]
+    assert outputs["margin_m"] == [None]
+    assert outputs["tracking"][0]["exact_verdict"] == "GO"
+    assert "exact: a thrust history keeps" in outputs["reason"][0]
+
+
+@pytest.mark.parametrize(
+    "thrust",
+    [
+        {"kind": "ball", "a_max_m_s2": 0.1},
+        {"kind": "box", "a_max_m_s2": [0.1, 0.1, 0.12], "frame": "body"},
+        {"kind": "box", "a_max_m_s2": [0.1, 0.1, 0.12], "frame": "lvlh"},
+    ],
+)
+def test_a_freely_tumbling_target(thrust):
+    starts = [
+        {"position_m": [1.5, 4, 1.5]},
+        {"position_m": [2, 9, 1], "frame": "body"},
+        {"position_m": [0, 40, 0]},
+    ]
+    asked = SPACE | {"thrust": thrust, "starts": starts, "proofs": True}
+    outputs = execute("start-in-space", asked).document["outputs"]
+    assert outputs["verdict"] == ["GO", "GO", "UNDECIDED"]
+    assert [one["certified"] for one in outputs["tracking"]] == [True, True, False]
+    for proof in outputs["proof"][:2]:
+        assert checker.check(proof).verdict == "GO"
+    assert outputs["proof"][2] is None
+
+
+def test_a_corridor_along_another_axis():
+    """The corridor and the start turned by the same rotation give the same flight."""
+    plain = SPACE | {
+        "attitude": {"kind": "spin", "rate_deg_s": 3.0, "axis": [0, 1, 0]},
+        "thrust": {"kind": "ball", "a_max_m_s2": 0.1},
+        "starts": [{"position_m": [2, 9, 1]}],
+        "orbit": {"mean_motion_rad_s": 0.0},
+    }
+    turned = plain | {
+        "attitude": {"kind": "spin", "rate_deg_s": 3.0, "axis": [1, 0, 0]},
+        "corridor": SPACE["corridor"] | {"axis": [1, 0, 0]},
+        "starts": [{"position_m": [9, -2, 1]}],
+    }
+    one, other = (execute("start-in-space", asked).document["outputs"] for asked in (plain, turned))
+    assert one["verdict"] == other["verdict"] == ["GO"]
+    assert one["margin_m"] == pytest.approx(other["margin_m"], abs=1e-9)
+    assert one["tracking"][0]["delta_v_m_s"] == pytest.approx(other["tracking"][0]["delta_v_m_s"], abs=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "field"),
+    [
+        ({"speed_limit_m_s": 1.0}, "method"),
+        ({"disturbance_m_s2": 0.001}, "method"),
+        ({"hold_x_m": 1.0}, "hold_y_m"),
+        ({"method": "exact", "tracking": {}}, "tracking"),
+        ({"tracking": {"n_c": 40}}, "n_c"),
+        ({"states": [{"x_m": 0, "y_m": 5}] * 51}, "states"),
+    ],
+)
+def test_refusals(wrong, field):
+    with pytest.raises(InvalidInput, match=field):
+        execute("go-no-go", PLANAR | {"states": [{"x_m": 0, "y_m": 5}]} | wrong)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "field"),
+    [
+        ({"orbit": {"semi_major_axis_m": 8e6, "eccentricity": 0.1}}, "orbit"),
+        ({"corridor": {"faces": [{"name": "a", "normal": [0, -1, 0], "offset_m": 0}]}}, "corridor"),
+        ({"thrust": {"kind": "box", "a_max_m_s2": [0.1, 0, 0.1]}}, "thrust"),
+        ({"method": "auto", "tracking": {}}, "tracking"),
+    ],
+)
+def test_refusals_in_space(wrong, field):
+    asked = SPACE | {"thrust": {"kind": "ball", "a_max_m_s2": 0.1}, "starts": [{"position_m": [0, 5, 0]}]}
+    with pytest.raises(InvalidInput, match=field):
+        execute("start-in-space", asked | wrong)
