@@ -60,12 +60,18 @@ class FlightCourses:
 
 
 def courses_of(
-    times: Floats, states: Floats, thrust: Floats, mean_motion: float, attitude: Attitude
+    times: Floats,
+    states: Floats,
+    thrust: Floats,
+    mean_motion: float,
+    attitude: Attitude,
+    jumps: Floats | None = None,
 ) -> FlightCourses:
     """The courses of a flight: ``times`` (T,) s, ``states`` (T, 6) LVLH, ``thrust`` (T - 1, 3) m/s^2 from each on.
 
-    ``attitude`` leads from LVLH to the body. Burns that follow one another with the same thrust are one. Raises
-    ``InvalidInput`` without a mean motion, where there is no orbit.
+    ``attitude`` leads from LVLH to the body. Burns that follow one another with the same thrust are one. ``jumps``
+    (T, 3), m/s: impulses at the times, after which the states are. Raises ``InvalidInput`` without a mean motion,
+    where there is no orbit.
     """
     if not mean_motion > 0.0:
         raise invalid("mean_motion_rad_s", "more than 0 for files that hold an orbit", mean_motion)
@@ -80,7 +86,7 @@ def courses_of(
         Ephemeris("CHASER", "CHASER", "GCRF", _SYSTEM, epochs, to_inertial(states, target)),
         Ephemeris("TARGET", "TARGET", "GCRF", _SYSTEM, epochs, target),
         AttitudeCourse("TARGET", "TARGET", "GCRF", "SC_BODY_1", _SYSTEM, epochs, quaternions),
-        _burns(times, thrust),
+        _burns(times, thrust) + (() if jumps is None else impulses(times, jumps, BEGIN, 0.0)),
     )
 
 

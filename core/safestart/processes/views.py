@@ -112,6 +112,19 @@ class Flights:
 
 
 @dataclass(frozen=True, slots=True)
+class Scene:
+    """A flight about a turning body, animated in space, from an NPZ file.
+
+    Arrays over ``time_s`` (K,): ``position_lvlh_m`` (K, 3), ``attitude`` (K, 3, 3) from LVLH to the body, and
+    ``reference_m`` (K - 1, 3) in the body; ``outline_m`` (E, 2, 3): edges fixed in the body.
+    """
+
+    kind: ClassVar[str] = "scene"
+    title: str
+    artifact: str
+
+
+@dataclass(frozen=True, slots=True)
 class Comparison:
     """Measures for the comparison of two or more runs: columns of a table whose rows column ``by`` names."""
 
@@ -122,7 +135,7 @@ class Comparison:
     logarithmic: tuple[str, ...] = ()
 
 
-View = Findings | Facts | Rows | Matrices | Overlay | Flights | Comparison
+View = Findings | Facts | Rows | Matrices | Overlay | Flights | Scene | Comparison
 
 
 def kinds(views: Iterable[View]) -> list[str]:

@@ -11,7 +11,8 @@ from safestart.control.tracking_mpc.step_kernel import INFEASIBLE, SOLVED, softe
 from safestart.runtime.kernels import compiled
 
 HARD, SOFT, TUBE = 0, 1, 2
-_FIXED = 1e-9
+_FIXED = 1e-6
+"""Allowed violation, m, of rows that no input affects: the attitudes ahead are right to 1e-7 rad only."""
 _FINEST = 0.1
 """Largest turn of an integration step, rad: the fourth-order method is then off by less than 1e-7 rad in a step."""
 

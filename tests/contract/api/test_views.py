@@ -15,7 +15,7 @@ import safestart_service
 from safestart.engines.registry import ENGINES
 from safestart.processes.base import ProcessSpec
 from safestart.processes.registry import PROCESS_IDS, process
-from safestart.processes.views import Comparison, Facts, Findings, Flights, Matrices, Overlay, Rows
+from safestart.processes.views import Comparison, Facts, Findings, Flights, Matrices, Overlay, Rows, Scene
 from tests.contract.api.service_client import service
 
 STATIC = Path(safestart_service.__file__).parent / "static"
@@ -95,11 +95,14 @@ def test_every_view_shows_what_the_outputs_have(name: str) -> None:
             case Overlay():
                 for path in (view.by, "cells"):
                     check_column(spec, view.table, path)
-                assert view.certain in set(ENGINES)
+                named = {one["name"] for one in spec.extensions.get("safestart:engines", [])}
+                assert view.certain in named
             case Flights():
                 case_model = follow(spec.outputs, f"{view.path}.*.*")
                 for column in view.columns:
                     follow(case_model, column.path)
+            case Scene():
+                assert view.artifact.endswith(".npz")
             case Comparison():
                 for path in (view.by, *(measure.path for measure in view.measures), *view.logarithmic):
                     check_column(spec, view.table, path)

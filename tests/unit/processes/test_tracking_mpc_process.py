@@ -3,7 +3,13 @@
 import numpy as np
 import pytest
 
+from safestart.attitude.quaternion import matrix_of
 from safestart.errors import InvalidInput
+from safestart.interchange.ccsds.message import message_of
+from safestart.interchange.ccsds.parameters import orbit_of
+from safestart.interchange.read import attitude_from, ephemeris_from
+from safestart.interchange.relative import relative_states
+from safestart.interchange.sampling import quaternions_at
 from safestart.processes.execute import execute
 from safestart.processes.registry import process
 
@@ -26,7 +32,31 @@ def test_the_paper_s_case():
     assert len(region["x_m"]) == len(region["exact"]["mask"]) == 42
     assert region["confusion"]["fp"] == 0
     assert sum(region["confusion"].values()) == 42
-    assert {a.name for a in result.artifacts} == {"path.png", "over_time.png", "flight.npz", "region.png"}
+    pictures = {"path.png", "over_time.png", "region.png"}
+    files = {"chaser.oem", "chaser.opm", "chaser.ocm", "target.oem", "target.aem", "flight.czml"}
+    assert {a.name for a in result.artifacts} == {*pictures, *files, "flight.npz", "region.npz", "scene.npz"}
+    assert region["arrives"]["count"] == region["mpct"]["count"] == 42
+    assert [one["set"] for one in region["sets"]] == ["tracking_mpc", "arrives", "any_history"]
+
+
+@pytest.mark.parametrize("thrust", ["impulse", "held"])
+def test_the_flight_s_files_hold_it(thrust):
+    """Read back, the pair of ephemerides gives the flight, the attitude file its body frame, the OPM its impulses."""
+    asked = PAPER | {"steps": 12, "thrust": thrust, "input_limit": "ball"}
+    result = execute("tracking-mpc", asked)
+    files = {a.name: a.data for a in result.artifacts}
+    chaser, target = (ephemeris_from(files[f"{name}.oem"]) for name in ("chaser", "target"))
+    seen = relative_states(chaser, target, chaser.epochs)
+    outputs = result.document["outputs"]
+    np.testing.assert_allclose(seen.states[:, :3], outputs["position_lvlh_m"], atol=2e-8)
+    attitude = attitude_from(files["target.aem"])
+    turns = matrix_of(quaternions_at(attitude, chaser.epochs)) @ seen.axes.swapaxes(1, 2)
+    body = np.einsum("kij,kj->ki", turns, seen.states[:, :3])
+    np.testing.assert_allclose(body, outputs["position_body_m"], atol=2e-8)
+    burns = orbit_of(message_of(files["chaser.opm"])).manoeuvres
+    spent = sum(float(np.linalg.norm(burn.delta_v)) for burn in burns)
+    assert spent == pytest.approx(outputs["impulse_m_s"], rel=1e-9)
+    assert {burn.duration for burn in burns} == {0.0 if thrust == "impulse" else 1.0}
 
 
 def test_infeasible_is_an_answer():

@@ -10,14 +10,6 @@ import numpy as np
 from safestart.attitude.spin import Spin
 from safestart.interchange.flights import FlightCourses, courses_of
 
-MEDIA_TYPES = {
-    "oem": "text/plain",
-    "aem": "text/plain",
-    "opm": "text/plain",
-    "ocm": "text/plain",
-    "czml": "application/json",
-}
-
 
 def courses(inputs: dict[str, Any], outputs: dict[str, Any]) -> FlightCourses:
     """The courses of both craft; raises ``InvalidInput`` for a flight without a mean motion."""

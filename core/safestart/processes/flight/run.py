@@ -16,8 +16,9 @@ from safestart.exact.decide import decide
 from safestart.exact.question import Goal, Question
 from safestart.model.scenario import Floats, Rest, Scenario
 from safestart.optim.prediction import prediction_of
-from safestart.processes.base import Artifact, ProcessOutput
-from safestart.processes.flight.files import MEDIA_TYPES, courses
+from safestart.processes.base import ProcessOutput
+from safestart.processes.course_files import course_files
+from safestart.processes.flight.files import courses
 from safestart.processes.flight.spec import FlightInputs
 from safestart.processes.wire import DT_S, finite
 from safestart.runtime.progress import Context
@@ -35,11 +36,7 @@ def run(inputs: FlightInputs, context: Context) -> ProcessOutput:
     context.step(1, 1)
     if inputs.mean_motion_rad_s == 0.0:
         return ProcessOutput(flown)
-    files = courses(inputs.model_dump(mode="json"), flown).files()
-    return ProcessOutput(
-        flown,
-        tuple(Artifact(name, MEDIA_TYPES[name.rpartition(".")[2]], data) for name, data in files.items()),
-    )
+    return ProcessOutput(flown, course_files(courses(inputs.model_dump(mode="json"), flown)))
 
 
 def best_flight(

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import Field
 
 from safestart.processes.base import WireModel
+from safestart.processes.wire import Confusion
 
 
 class ThetaMax(WireModel):
@@ -85,16 +86,35 @@ class Mask(WireModel):
     mask: list[bool]
 
 
+class NamedSet(WireModel):
+    """A set of starts."""
+
+    set: Literal["tracking_mpc", "arrives", "any_history"]
+    cells: int
+
+
+class NamedConfusion(Confusion):
+    """A set (claimed) against any impulse history (true)."""
+
+    claim: Literal["tracking_mpc", "arrives"]
+
+
 class Region(WireModel):
-    """Starts at rest in LVLH, z = 0, and which of them are feasible."""
+    """Starts at rest in LVLH by layers of z, and which of them are feasible; masks are in region.npz, too."""
 
     x_m: list[float]
     y_m: list[float]
-    mpct: Mask
-    exact: Mask
+    z_m: list[float]
+    mpct: Mask = Field(description="The controller's program has a plan.")
+    arrives: Mask = Field(
+        description="Of these: its loop, flown without errors for `steps` steps, keeps every row and ends within 5 cm."
+    )
+    exact: Mask = Field(description="Some history keeps every row at the nodes.")
     share: float | None = Field(description="Of the starts that any history can bring in, those MPCT can.")
     iou: float | None
     confusion: dict[str, int] = Field(description="MPCT (claimed) against exact (true): tp, fp, fn, tn.")
+    sets: list[NamedSet]
+    matrices: list[NamedConfusion]
 
 
 class StudyOutputs(WireModel):

@@ -15,7 +15,9 @@ from safestart.control.tracking_mpc.theta_set import theta_set
 from safestart.control.tracking_mpc.tuning import ThetaLimit
 from safestart.processes.base import Artifact, ProcessOutput
 from safestart.processes.plotting import npz
+from safestart.processes.tracking_mpc.files import flight_files, scene
 from safestart.processes.tracking_mpc.plots import pictures
+from safestart.processes.tracking_mpc.regions import maps, region
 from safestart.processes.tracking_mpc.setup import LEAST_WINDOW, Setup, setup_of
 from safestart.processes.tracking_mpc.spec import TrackingMpcInputs
 from safestart.processes.tracking_mpc.statements import notes, statements
@@ -26,7 +28,6 @@ from safestart.tracking.any_history import AnyHistory
 from safestart.tracking.certificate import cost_decrease, holds_until, recursion
 from safestart.tracking.flight import Flight, fly
 from safestart.tracking.printed_limit import counter_example
-from safestart.tracking.region import by_any_history, by_program, grid_of
 
 
 def shard(part: dict[str, Any], context: Context) -> Part:
@@ -87,6 +88,10 @@ def merge(inputs: TrackingMpcInputs, parts: Sequence[Part], context: Context) ->
     document["statements"] = statements(inputs, document)
     context.step(inputs.steps, inputs.steps + 1, "pictures")
     artifacts = list(pictures(setup, flight, document))
+    if flight.plans:
+        artifacts += [scene(setup, flight), *flight_files(setup, flight)]
+    if document["region"] is not None:
+        artifacts.append(maps(document["region"]))
     if unsafe is not None:
         arrays = {"state_lvlh": unsafe.states, "inputs_m_s": unsafe.inputs, "theta_m": unsafe.theta}
         artifacts.append(npz("counter_example.npz", arrays))
@@ -121,29 +126,6 @@ def limits(inputs: TrackingMpcInputs, setup: Setup) -> dict[str, Any]:
             "printed_is_safe": None if printed is None else bool(printed <= low),
         },
         "y_max_m": {name: None if y is None or not 0.0 <= y < 1e4 else y for name, y in cuts.items()},
-    }
-
-
-def region(inputs: TrackingMpcInputs, setup: Setup, histories: AnyHistory) -> dict[str, Any]:
-    """Which starts the controller and which any history can."""
-    assert inputs.region is not None
-    grid = grid_of(setup.shape, inputs.region.rows)
-    taken = by_program(setup.program, setup.attitudes, grid)
-    reached = by_any_history(histories, setup.attitudes[0], grid)
-    both, either = int((taken & reached).sum()), int((taken | reached).sum())
-    return {
-        "x_m": grid.points[:, 0].tolist(),
-        "y_m": grid.points[:, 1].tolist(),
-        "mpct": {"count": int(taken.sum()), "mask": taken.tolist()},
-        "exact": {"count": int(reached.sum()), "mask": reached.tolist()},
-        "share": both / int(reached.sum()) if reached.any() else None,
-        "iou": both / either if either else None,
-        "confusion": {
-            "tp": both,
-            "fp": int((taken & ~reached).sum()),
-            "fn": int((~taken & reached).sum()),
-            "tn": int((~taken & ~reached).sum()),
-        },
     }
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field, field_validator, model_validator
 
@@ -11,7 +11,7 @@ from safestart.model.orbit import EARTH_RADIUS, MU
 from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.sharding import Sharding
 from safestart.processes.tracking_mpc.outputs import TrackingMpcOutputs
-from safestart.processes.views import Column, Facts, Findings, Rows
+from safestart.processes.views import Column, Facts, Findings, Matrices, Overlay, Rows, Scene
 from safestart.processes.wire import Seed
 
 ENVISAT = [[17023.3, 397.1, -2171.4], [397.1, 124825.7, 344.2], [-2171.4, 344.2, 129112.2]]
@@ -43,9 +43,12 @@ class StartInput(WireModel):
 
 
 class RegionInput(WireModel):
-    """Starts y = 0.25 + 0.5 i, x = +-(0.25 + 0.5 j) inside the corridor, z = 0 (body), at rest in LVLH."""
+    """Starts y = 0.25 + 0.5 i, x = +-(0.25 + 0.5 j) inside the corridor, in layers of z (body), at rest in LVLH."""
 
     rows: int = Field(30, ge=1, le=100, description="Rows i; 30 rows of the paper's corridor are 930 starts.")
+    z_m: list[Annotated[float, Field(ge=-1000, le=1000)]] = Field(
+        [0.0], min_length=1, max_length=20, description="Layers, body z, m."
+    )
 
 
 class StudyInput(WireModel):
@@ -159,6 +162,17 @@ class TrackingMpcInputs(WireModel):
 
 _HERE = "safestart.processes.tracking_mpc"
 
+_SETS = (
+    (
+        "tracking_mpc",
+        "the tracking MPC has a plan",
+        "#009E73",
+        "starts from which the first program has a plan",
+    ),
+    ("arrives", "its flight arrives", "#0072B2", "of these, starts whose flight keeps every row and arrives"),
+    ("any_history", "some impulse history", "#E69F00", "starts from which some history keeps every row"),
+)
+
 SPEC = ProcessSpec(
     id="tracking-mpc",
     title="MPC for tracking a tumbling target",
@@ -191,6 +205,19 @@ SPEC = ProcessSpec(
                 Column("Cost", "cost"),
             )
         ),
+        Scene("The flight about the tumbling target", "scene.npz"),
+        Overlay("Which starts", "region.npz", table="region.sets", by="set", certain="tracking_mpc"),
+        Matrices(
+            "The controller against any impulse history",
+            "Rows: the controller's program has a plan (tracking_mpc), its flight arrives (arrives). Columns: some "
+            "history keeps the corridor or none does. Intervals: Wilson, 95 %.",
+            path="region.matrices.*",
+            names=("claim",),
+            heading="{0}",
+            claims=("taken", "not taken"),
+            facts=("some history", "none"),
+            cells=("taken, possible", "taken, impossible", "possible, not taken", "neither"),
+        ),
         Rows(
             "Flight",
             "flight",
@@ -202,6 +229,11 @@ SPEC = ProcessSpec(
             ),
         ),
     ),
+    extensions={
+        "safestart:engines": [
+            dict(zip(("name", "title", "colour", "summary"), one, strict=True)) for one in _SETS
+        ]
+    },
     keywords=("MPC", "tracking", "tumbling", "docking", "guidance"),
     example={"n_c": 3, "theta_limit": "polytope", "region": {"rows": 10}},
 )

@@ -7,6 +7,7 @@ import { csv, figure } from "../logic/words.js";
 import { root } from "./api.js";
 import { drawFlights, drawOverlay } from "./arrays.js";
 import { definition, el, save, table } from "./page.js";
+import { drawScene, sceneParts } from "./scene.js";
 
 /** Rows shown at most; the download has all of them. */
 const MOST_ROWS = 500;
@@ -24,7 +25,7 @@ export function shown(result) {
 }
 
 /** Whether a view is large: the pictures precede the first large one. */
-const isLong = ({ kind, table: name }, { tables }) => ["overlay", "flights"].includes(kind) || (kind === "rows" && (tables[name] ?? []).length > SHORT);
+const isLong = ({ kind, table: name }, { tables }) => ["overlay", "flights", "scene"].includes(kind) || (kind === "rows" && (tables[name] ?? []).length > SHORT);
 
 const KINDS = {
   findings(view, { tables, names }, parts) {
@@ -64,6 +65,13 @@ const KINDS = {
     const chart = el("div", { class: "chart masks", role: "group", "aria-label": "Cells where both, one or neither of the two sets hold" }), said = el("p", { class: "note agreement" });
     parts.push(el("h2", {}, view.title), el("div", { class: "inline on-screen" }, one, " against ", two), chart, said);
     draws.push(() => drawOverlay({ view, result, chart, said, one, two }));
+  },
+
+  scene(view, result, parts, draws) {
+    if (!result.artifacts.some((file) => file.name === view.artifact)) return;
+    const made = sceneParts(view.title);
+    parts.push(el("h2", {}, view.title), made.card);
+    draws.push(() => drawScene({ view, result, parts: made }));
   },
 
   flights(view, result, parts, draws) {

@@ -11,7 +11,8 @@ from safestart.processes.wire import ScenarioInput
 KNOWN = frozenset(
     {
         *ScenarioInput.model_fields,
-        *("states", "rest", "method", "proofs"),
+        # The inputs refuse settings of the tracking MPC with another method.
+        *("states", "rest", "method", "proofs", "tracking"),
         # Details of refused questions, and the time, which a closed form does not have or takes as for ever.
         *(
             "horizon_s",

@@ -31,7 +31,7 @@ from safestart.processes.wire import DT_S, finite
 from safestart.runtime.progress import Context
 from safestart.tracking.take import Approach, Taken, take
 
-_KNOWN = KNOWN | {"question", "tracking"}
+_KNOWN = KNOWN | {"question"}
 
 
 def decide(inputs: GoNoGoInputs, _: Conditions, context: Context) -> Verdicts:
