@@ -1,6 +1,6 @@
 """The engines, one entry each, the only place with facts about an engine. Importing this module loads none of them.
 
-The colours are Okabe and Ito's, distinct for every kind of colour vision.
+The colours are Okabe and Ito's, with one of Tol's, distinct for every kind of colour vision.
 """
 
 from __future__ import annotations
@@ -8,6 +8,7 @@ from __future__ import annotations
 from safestart.engines.backward_options import BackwardInput
 from safestart.engines.hj.options import HamiltonJacobiInput
 from safestart.engines.spec import EngineSpec
+from safestart.engines.tracking_options import TrackingSettings
 from safestart.errors import invalid
 
 _SPECS = (
@@ -68,6 +69,18 @@ _SPECS = (
         summary="closed-loop flights of the three-regime controller and its safety filter against exact CWH truth",
         line="-.",
         share=6.0,
+    ),
+    EngineSpec(
+        name="tracking",
+        title="tracking MPC (flown)",
+        colour="#882255",
+        engine="safestart.engines.tracking:Tracking",
+        summary="the tracking MPC of paper 002, thrust held in a ball, flown to the port: a plan at every step, inside "
+        "at every node",
+        options=TrackingSettings,
+        line=":",
+        share=6.0,
+        default=False,
     ),
 )
 

@@ -18,7 +18,8 @@ class EngineSpec:
     colour in every picture, ``screen_colour`` the one on pages, light and dark, if that must differ. ``line`` is the
     style of its outline; an engine without one is drawn filled. ``engine`` names the class as ``module:class``,
     imported only where it runs. ``options`` is the wire model of its options: the field of the benchmark's inputs with
-    the engine's name. ``share`` is its part of a benchmark's time, relative to 1 for a fast engine.
+    the engine's name. ``default``: a benchmark that names no engines runs it. ``share`` is its part of a benchmark's
+    time, relative to 1 for a fast engine.
     """
 
     name: str
@@ -29,6 +30,7 @@ class EngineSpec:
     line: LineStyle | None = "-"
     options: type[WireModel] | None = None
     share: float = 1.0
+    default: bool = True
     screen_colour: str | None = None
 
     def document(self) -> dict[str, str]:

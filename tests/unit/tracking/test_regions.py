@@ -5,8 +5,9 @@ import pytest
 
 from safestart.control.tracking_mpc.sampled import Sampled
 from safestart.control.tracking_mpc.tuning import Tuning
+from safestart.errors import InvalidInput
 from safestart.tracking.any_history import AnyHistory
-from safestart.tracking.region import by_any_history, by_program, grid_of
+from safestart.tracking.region import by_any_history, by_flight, by_program, grid_of
 from tests.unit.tracking.envisat import MEAN_MOTION, SHAPE, envisat, program
 
 GRID = grid_of(SHAPE, 30)
@@ -34,6 +35,24 @@ def test_the_counts_of_the_study(period, u_max, exact, counts):
         taken = by_program(mpc, attitudes, GRID)
         assert abs(int(taken.sum()) - count) <= ONE_PER_CENT, limit
         assert not (taken & ~reachable).any()
+
+
+def test_layers_and_flights():
+    """Layers of z are layers of the same grid; flights arrive from what the program takes, and only from there."""
+    grid = grid_of(SHAPE, 8, (0.0, 1.5))
+    assert len(grid_of(SHAPE, 8).points) == int((grid.points[:, 2] == 0.0).sum()) < len(grid.points)
+    assert SHAPE.faces().contains(grid.points).all()
+    tumble = envisat("inertial")
+    mpc, attitudes = program(tumble=tumble, window=340)
+    taken = by_program(mpc, attitudes, grid)
+    reachable = by_any_history(AnyHistory(mpc.motion, SHAPE, 0.075, attitudes[:61]), attitudes[0], grid)
+    assert not (taken & ~reachable).any()
+    arrives = by_flight(mpc, tumble, attitudes, grid, 60, taken)
+    assert (arrives == taken).all()
+    few = by_flight(mpc, tumble, attitudes, grid, 15, taken)
+    assert 0 < int(few.sum()) < int(taken.sum())
+    with pytest.raises(InvalidInput, match="z_m"):
+        grid_of(SHAPE, 2, (9.0,))
 
 
 def test_longer_horizons_reach_more():

@@ -23,7 +23,10 @@ class BenchmarkQuestion(ScenarioInput):
 
     grid: GridInput = Field(default_factory=GridInput)
     engines: Annotated[list[EngineName], DISTINCT] = Field(
-        list(ENGINES), min_length=1, max_length=len(ENGINES), description="Engines to run."
+        [name for name, spec in ENGINES.items() if spec.default],
+        min_length=1,
+        max_length=len(ENGINES),
+        description="Engines to run.",
     )
     horizon_s: Horizon = Field(40.0, description="Horizon of the reachable sets, s; a multiple of 2 s.")
     rest: Rest = Field(Rest.LVLH, description="Frame in which the starts are at rest.")

@@ -6,10 +6,10 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
+from safestart.engines.tracking_options import TrackingSettings
 from safestart.model.scenario import MAX_RANGE
 from safestart.processes.go_no_go.method_registry import DEFAULT, METHODS, RENAMED, MethodName
 from safestart.processes.go_no_go.uncertainty import HalfWidths
-from safestart.processes.tracking_mpc.controller_input import TrackingSettings
 from safestart.processes.wire import Horizon
 
 QuestionKind = Literal["stay", "synchronize"]

@@ -6,6 +6,7 @@ from typing import Any, Literal
 
 from pydantic import Field, model_validator
 
+from safestart.engines.tracking_options import TrackingSettings
 from safestart.model.scenario import MAX_ACCELERATION, MAX_MEAN_MOTION, MIN_ACCELERATION
 from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.costs import FIRST_S, program_s
@@ -17,7 +18,7 @@ from safestart.processes.start_in_space.parts import (
     SpaceStart,
     ThrustInput,
 )
-from safestart.processes.tracking_mpc.controller_input import TrackingAnswer, TrackingSettings
+from safestart.processes.tracking_mpc.controller_input import TrackingAnswer
 from safestart.processes.views import Column, Facts, Findings
 from safestart.processes.wire import Horizon
 

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from safestart.control.tracking_mpc.tuning import Tuning
+from safestart.engines.tracking_options import TrackingSettings
 from safestart.exact.answer import GUARD, Answer, Verdict
-from safestart.processes.tracking_mpc.controller_input import TrackingSettings
 from safestart.processes.wire import DT_S, finite
 from safestart.tracking.take import Taken
 
