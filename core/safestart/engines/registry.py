@@ -8,7 +8,6 @@ from __future__ import annotations
 from safestart.engines.backward_options import BackwardInput
 from safestart.engines.hj.options import HamiltonJacobiInput
 from safestart.engines.spec import EngineSpec
-from safestart.engines.tracking_options import TrackingSettings
 from safestart.errors import invalid
 
 _SPECS = (
@@ -77,7 +76,6 @@ _SPECS = (
         engine="safestart.engines.tracking:Tracking",
         summary="the tracking MPC of paper 002, thrust held in a ball, flown to the port: a plan at every step, inside "
         "at every node",
-        options=TrackingSettings,
         line=":",
         share=6.0,
         default=False,

@@ -34,8 +34,8 @@ _CHUNK = 32
 class Tracking:
     """Flies every start inside the corridor from which the first program has a plan."""
 
-    def __init__(self, options: TrackingSettings | None = None) -> None:
-        self._settings = options or TrackingSettings.model_validate({})
+    def __init__(self) -> None:
+        self._settings = TrackingSettings.model_validate({})
 
     def solve(self, problem: Problem, context: Context) -> EngineResult:
         """The mask, without a margin: the controller knows its rows only at the nodes."""
