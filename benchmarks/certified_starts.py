@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.peers.manoeuvre_flight import fly
 from safestart.closed_form.certified import certify
 from safestart.closed_form.manoeuvre import Manoeuvre, manoeuvre_of
 from safestart.closed_form.members import Faces
@@ -164,24 +165,25 @@ def examine(
             continue
         answer = decide(question, state, verdict_only=True)
         counts[f"{answer.verdict.value} by the solver"] += 1
-        if answer.verdict is not Verdict.GO:
-            one = certify(scenario, point, rest)
-            open_.append(
-                {
-                    "scenario": repr(scenario),
-                    "rest": rest.value,
-                    "point": point.tolist(),
-                    "margin_m": float(one.margin),
-                    "exact": [
-                        answer.verdict.value,
-                        answer.lower,
-                        answer.upper,
-                        question.horizon,
-                        question.steps,
-                    ],
-                    "turn_per_step": scenario.target.tumble_rate * question.dt,
-                }
-            )
+        if answer.verdict is Verdict.GO:
+            continue
+        told = f"{answer.verdict.value} with thrust held, GO by the manoeuvre's own thrust"
+        # By a face a manoeuvre may take a tenth of a second, too short for the question's intervals.
+        plan = manoeuvre_of(scenario, point, rest)
+        assert plan is not None
+        flown = fly(scenario, rest, point, plan, question.horizon, 20_000, 1e-12)
+        if flown.least > 0.0 and flown.thrust <= 1.0:
+            counts[told] += 1
+            continue
+        open_.append(
+            {
+                "scenario": repr(scenario),
+                "rest": rest.value,
+                "point": point.tolist(),
+                "flown": [flown.least, flown.thrust],
+                "exact": [answer.verdict.value, answer.lower, answer.upper, question.horizon, question.steps],
+            }
+        )
     return counts, open_
 
 
