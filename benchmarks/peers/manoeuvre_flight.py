@@ -40,15 +40,18 @@ def fly(
     after: float,
     samples: int = 400,
     tolerance: float = 1e-10,
+    velocity: Floats | None = None,
 ) -> Flown:
     """Fly ``plan``'s thrust open loop in LVLH from ``point`` at rest, and for ``after`` seconds beyond its end.
 
+    ``velocity`` (3,), m/s in LVLH, stands in the place of the rest.
     ``samples`` of each part are looked at; ``tolerance`` is the integrator's, relative and, times 10, in metres.
     """
     n, w = scenario.target.mean_motion, scenario.target.tumble_rate
     place = np.zeros(3)
     place[: len(point)] = point
-    velocity = w * np.array([-place[1], place[0], 0.0]) if rest is Rest.BODY else np.zeros(3)
+    if velocity is None:
+        velocity = w * np.array([-place[1], place[0], 0.0]) if rest is Rest.BODY else np.zeros(3)
 
     def rate(t: float, s: Floats) -> Floats:
         ux, uy, uz = plan.thrust_lvlh(np.array([t]))[0]
