@@ -56,7 +56,7 @@ def test_the_decision_is_one(kind: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "change", [{"stop": 0.2}, {"stop": 2000.0}, {"after": 0.8}, {"thrusts": (0.005, 0.005)}, {"speed": 0.05}]
+    "change", [{"stop": 0.2}, {"stop": 2000.0}, {"after": 1.5}, {"thrusts": (0.005, 0.005)}, {"speed": 0.05}]
 )
 def test_the_decision_about_the_time_after_the_end_is_one(change: dict[str, Any]) -> None:
     said, document = claim("synchronize-go-moving"), json.loads(original("synchronize-go-moving"))
