@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any
 
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import Response
+from starlette.types import Scope
 
 from safestart.errors import NotFound
 from safestart.processes.go_no_go import run
@@ -18,7 +20,7 @@ from safestart.runtime.progress import Context
 from safestart_service.computing.dispatch import one_document, posted
 from safestart_service.documents.deprecation import RENAMED_METHOD
 from safestart_service.documents.openapi import REF, answer, content, json_body, refusals
-from safestart_service.http.answers import Json
+from safestart_service.http.answers import Json, root_path
 from safestart_service.http.body import read_body
 from safestart_service.http.lean import query_route
 
@@ -29,21 +31,22 @@ else:
 _SILENT = Context()
 
 
-def _instant(inputs: GoNoGoInputs, query: bytes) -> dict[str, Any] | None:
+def _instant(inputs: GoNoGoInputs, scope: Scope) -> dict[str, Any] | None:
     """The document of a question that takes microseconds, else None: a cone program would block other requests."""
     found = run.at_once(inputs, _SILENT)
-    return None if found is None else _linked(found.document_of_one(), inputs, query)
+    return None if found is None else _linked(found.document_of_one(), inputs, scope)
 
 
 async def _answer(request: Request, inputs: GoNoGoInputs) -> Response:
     document = await one_document(request, inputs)
-    return Json(_linked(document, inputs, request.scope["query_string"]))
+    return Json(_linked(document, inputs, request.scope))
 
 
-def _linked(document: dict[str, Any], inputs: GoNoGoInputs, query: bytes) -> dict[str, Any]:
+def _linked(document: dict[str, Any], inputs: GoNoGoInputs, scope: Scope) -> dict[str, Any]:
     """The answer with the address of a proof of the same question; none for what is undecided or not sound."""
     if document["verdict"] != "UNDECIDED" and method_of(inputs.method).sound:
-        document["proof_url"] = f"/go-no-go/proof?{query.decode('latin-1')}"
+        query = scope["query_string"].decode("latin-1")
+        document["proof_url"] = f"{scope.get('root_path', '')}/go-no-go/proof?{query}"
     return document
 
 
@@ -128,9 +131,9 @@ async def go_no_go_many(request: Request) -> Response:
     """
     if in_space(await read_body(request)):
         return await posted(request, SPACE.id, bare=True)
-    return await posted(request, SPEC.id, bare=True, announced=_renamed)
+    return await posted(request, SPEC.id, bare=True, announced=partial(_renamed, root_path(request)))
 
 
-def _renamed(inputs: GoNoGoInputs) -> dict[str, str]:
+def _renamed(root: str, inputs: GoNoGoInputs) -> dict[str, str]:
     """Header fields for a deprecated name of a method."""
-    return RENAMED_METHOD.fields() if inputs.method in RENAMED else {}
+    return RENAMED_METHOD.fields(root) if inputs.method in RENAMED else {}
