@@ -18,7 +18,8 @@ def older(document: dict[str, Any]) -> dict[str, Any]:
     """A description in OpenAPI 3.1, of the parts that ours uses, as one in 3.0."""
     schemas = document["components"]["schemas"]
     types = {f"#/components/schemas/{name}": schema["type"] for name, schema in schemas.items()}
-    return _outside(document, types) | {"openapi": VERSION}
+    found: dict[str, Any] = _outside(document, types)
+    return found | {"openapi": VERSION}
 
 
 def _outside(node: Any, types: dict[str, str]) -> Any:
