@@ -11,7 +11,8 @@ from safestart.processes.base import WireModel
 from safestart.processes.flat import Flat, Parameter
 from safestart.processes.sharding import load
 from safestart.processes.start_in_space.parts import FiveFaces, SpaceStart
-from safestart.processes.start_in_space.spec import SPEC, SpaceInputs, SpaceOutputs
+from safestart.processes.start_in_space.spec import SPEC, Method, SpaceInputs, SpaceOutputs
+from safestart.processes.tracking_mpc.controller_input import TrackingAnswer
 from safestart.runtime.progress import Context
 
 _WHOLE = Flat(SpaceInputs, {"starts": SpaceStart})
@@ -20,7 +21,7 @@ PARAMETERS: dict[str, Parameter] = _WHOLE.parameters | _FIVE.parameters
 """Flat names; the five faces come as their own parameters or, like any others, as the JSON of ``corridor``."""
 _ARRAYS = (
     *("verdict", "margin_m", "model_error_m", "violated_faces", "position_m", "velocity_m_s"),
-    *("reason", "proof"),
+    *("reason", "tracking", "proof"),
 )
 
 
@@ -35,13 +36,16 @@ class SpaceAnswer(WireModel):
     position_m: list[float] = Field(description="The start, LVLH, m.")
     velocity_m_s: list[float] = Field(description="The start, LVLH, m/s.")
     faces: list[str] = Field(description="Names of the faces.")
+    tracking: TrackingAnswer | None = Field(
+        None, description="Method tracking: the controller's flight, beside the exact answer."
+    )
     proof: dict[str, Any] | None = Field(
         None, description="Proof document for `safestart verify`, if requested."
     )
     proof_url: str | None = Field(
         None, description="Where a service gives the proof document alone; null for UNDECIDED."
     )
-    method: Literal["exact", "auto"]
+    method: Method
     question: Literal["stay"]
 
 

@@ -29,21 +29,22 @@ def tuning_of(settings: TrackingSettings | None, acceleration: float) -> Tuning:
     )
 
 
-def verdict_of(flight: Taken, exact: Answer) -> tuple[Verdict, str | None]:
+def verdict_of(flight: Taken, exact: Answer, *, stays: bool = True) -> tuple[Verdict, str | None]:
     """The verdict, and what decided it.
 
-    GO: the flight arrives, its plans are certified, its distance is proved. NO_GO: nothing can stay.
+    GO: the flight arrives, its plans are certified, its distance is proved, and it ``stays`` where that is asked.
+    NO_GO: nothing can stay.
     """
-    if flight.arrived is not None and flight.certified and flight.margin > GUARD:
+    if flight.arrived is not None and flight.certified and flight.margin > GUARD and stays:
         return Verdict.GO, "tracking"
     if exact.verdict is Verdict.NO_GO:
         return Verdict.NO_GO, "exact"
     return Verdict.UNDECIDED, None
 
 
-def sentence(flight: Taken, exact: Answer, told: str, within: float) -> str:
+def sentence(flight: Taken, exact: Answer, told: str, within: float, *, stays: bool = True) -> str:
     """The verdict in words, with the exact answer beside it, which is ``told`` in words."""
-    verdict, beside = verdict_of(flight, exact)[0], f"exact: {told}"
+    verdict, beside = verdict_of(flight, exact, stays=stays)[0], f"exact: {told}"
     if verdict is Verdict.GO and flight.arrived is not None:
         return (
             f"the tracking MPC arrives: at rest at the port after {flight.arrived * DT_S:g} s, at least "
@@ -57,6 +58,8 @@ def sentence(flight: Taken, exact: Answer, told: str, within: float) -> str:
         lacks = f"the tracking MPC is not at rest at the port within {within:g} s, or loses its plan"
     elif not flight.certified:
         lacks = "the tracking MPC arrives, but not every plan is certified for later steps"
+    elif not stays:
+        lacks = "the tracking MPC arrives, but nothing proves that the chaser can stay there"
     else:
         lacks = f"the tracking MPC arrives, but comes to {flight.margin:.3g} m of a face between its nodes"
     return f"undecided: {lacks}; {beside}"

@@ -14,6 +14,7 @@ from safestart.attitude.spin import Spin
 from safestart.control.tracking_mpc.tuning import DockingCorridor
 from safestart.errors import invalid
 from safestart.exact.answer import Answer, Verdict
+from safestart.exact.arrival import arrival_of
 from safestart.exact.decide import decide as decide_start
 from safestart.exact.prove import proof_of
 from safestart.exact.question import Question
@@ -31,7 +32,7 @@ from safestart.processes.wire import DT_S, finite
 from safestart.runtime.progress import Context
 from safestart.tracking.take import Approach, Taken, take
 
-_KNOWN = KNOWN | {"question"}
+_KNOWN = KNOWN | {"question", "after_arrival"}
 
 
 def decide(inputs: GoNoGoInputs, _: Conditions, context: Context) -> Verdicts:
@@ -60,12 +61,16 @@ def decide(inputs: GoNoGoInputs, _: Conditions, context: Context) -> Verdicts:
     }
     for k, start in enumerate(in_lvlh(inputs, question, points)):
         flight, exact = _flight(question, approach, start), decide_start(question, start)
-        verdict, by = flown.verdict_of(flight, exact)
-        answer = _answer(question, flight) if by == "tracking" else exact
+        answer = _answer(question, flight)
+        stays = answer.arrival is not None or question.goal is None or inputs.after_arrival == "any"
+        verdict, by = flown.verdict_of(flight, exact, stays=stays)
+        answer = answer if by == "tracking" else exact
         verdicts.append(verdict.value)
         row = {
             "margin_m": finite(answer.margin_m) if by else None,
-            "reason": flown.sentence(flight, exact, asked.sentence(question, exact), inputs.within_s),
+            "reason": flown.sentence(
+                flight, exact, asked.sentence(question, exact), inputs.within_s, stays=stays
+            ),
             "end_s": flight.arrived * DT_S if by == "tracking" and flight.arrived else None,
             "proof": proof_of(question, start, answer) if by and inputs.proofs else None,
             "decided_by": by,
@@ -113,7 +118,13 @@ def _flight(question: Question, approach: Approach, start: Floats) -> Taken:
 
 
 def _answer(question: Question, flight: Taken) -> Answer:
-    """The flight as a GO of the exact question."""
-    rows = len(flight.thrust) if question.goal is not None else question.steps
-    thrust = flight.thrust[:rows, : question.dimensions]
-    return Answer(Verdict.GO, flight.margin, flight.margin, np.inf, thrust, (), 0)
+    """The flight as a GO of the exact question; of `synchronize` with how it goes on after its end."""
+    rows, d = len(flight.thrust), question.dimensions
+    arrival = None
+    if question.goal is None:
+        rows = question.steps
+    elif flight.arrived is not None:
+        end = flight.states[-1]
+        arrival = arrival_of(question, np.concatenate([end[:d], end[3 : 3 + d]]), rows * question.dt)
+    thrust = flight.thrust[:rows, :d]
+    return Answer(Verdict.GO, flight.margin, flight.margin, np.inf, thrust, (), 0, arrival=arrival)
