@@ -8,6 +8,7 @@ the highest bound first. A few programs refute a hundred ends.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache
 from itertools import groupby
@@ -15,18 +16,37 @@ from itertools import groupby
 import numpy as np
 
 from safestart.exact.answer import GUARD, Answer, Evidence, Part, Verdict
+from safestart.exact.arrival import arrival_of
 from safestart.exact.cut_source import Ending
 from safestart.exact.limits import AT_END
 from safestart.exact.norm_rows import end_blocks
 from safestart.exact.search import Search
+from safestart.exact.watch import Watch
 from safestart.model.scenario import Bools, Floats
 
 # Refuted ends are solved only to a tenth of their margin: the verdict is certain, and the worst end sets the bound.
 _SHARE = 0.1
 
 
-def synchronize(watch: Ending, state: Floats, tolerance: float, *, verdict_only: bool = False) -> Answer:
-    """Answer `synchronize` for one start ``state`` (2 d,), as :func:`safestart.exact.decide.decide` does."""
+def synchronize(watch: Watch, state: Floats, tolerance: float, *, verdict_only: bool = False) -> Answer:
+    """Answer `synchronize` for one start ``state`` (2 d,), as :func:`safestart.exact.decide.decide` does.
+
+    A GO says what holds after its end, where that is proved.
+    """
+    answer = ended(watch, state, tolerance, verdict_only=verdict_only)
+    if answer.verdict is not Verdict.GO or answer.thrust is None:
+        return answer
+    question, end = watch.question, len(answer.thrust)
+    last = watch.until(end).prediction.flight(state, answer.thrust)[-1, -1]
+    arrival = arrival_of(question, last, end * question.dt)
+    if arrival is None and verdict_only:
+        # The flight that proves the verdict first may end by a face; the best one ends well inside.
+        return synchronize(watch, state, tolerance)
+    return replace(answer, arrival=arrival)
+
+
+def ended(watch: Ending, state: Floats, tolerance: float, *, verdict_only: bool = False) -> Answer:
+    """The same, whatever comes after the end, for any watch that can end earlier."""
     ends = _Ends(watch, state)
     reason = ""
     while (steps := ends.most_hopeful()) is not None:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any
 
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import Response
+from starlette.types import Scope
 
 from safestart.errors import NotFound
 from safestart.processes.flat import described
@@ -21,7 +23,7 @@ from safestart.runtime.progress import Context
 from safestart_service.computing.dispatch import one_document, posted
 from safestart_service.documents.deprecation import RENAMED_METHOD
 from safestart_service.documents.openapi import REF, content, json_body, refusals
-from safestart_service.http.answers import Json
+from safestart_service.http.answers import Json, root_path
 from safestart_service.http.body import read_body
 from safestart_service.http.lean import query_route
 
@@ -32,23 +34,24 @@ else:
 _SILENT = Context()
 
 
-def _instant(inputs: OneStart, query: bytes) -> dict[str, Any] | None:
+def _instant(inputs: OneStart, scope: Scope) -> dict[str, Any] | None:
     """The document of a question that takes microseconds, else None: a cone program would block other requests."""
     if isinstance(inputs, SpaceInputs):
         return None
     found = run.at_once(inputs, _SILENT)
-    return None if found is None else _linked(found.document_of_one(), inputs, query)
+    return None if found is None else _linked(found.document_of_one(), inputs, scope)
 
 
 async def _answer(request: Request, inputs: OneStart) -> Response:
     document = await one_document(request, inputs)
-    return Json(_linked(document, inputs, request.scope["query_string"]))
+    return Json(_linked(document, inputs, request.scope))
 
 
-def _linked(document: dict[str, Any], inputs: OneStart, query: bytes) -> dict[str, Any]:
+def _linked(document: dict[str, Any], inputs: OneStart, scope: Scope) -> dict[str, Any]:
     """The answer with the address of a proof of the same question; none for what is undecided or not sound."""
     if document["verdict"] != "UNDECIDED" and door.sound(inputs):
-        document["proof_url"] = f"/go-no-go/proof?{query.decode('latin-1')}"
+        query = scope["query_string"].decode("latin-1")
+        document["proof_url"] = f"{scope.get('root_path', '')}/go-no-go/proof?{query}"
     return document
 
 
@@ -75,6 +78,7 @@ many = APIRouter(tags=["instant answers"])
 
 @one.get(
     "/go-no-go",
+    operation_id="goNoGo",
     summary="Go/no-go for one start",
     responses={
         200: content(
@@ -100,6 +104,7 @@ async def go_no_go_one(_query: Annotated[GoNoGoQuery, Query()]) -> Response:
 
 @proof.get(
     "/go-no-go/proof",
+    operation_id="getGoNoGoProof",
     summary="Only the proof of a go/no-go",
     responses={
         200: content("application/json", {"type": "object"}, "The document that `safestart verify` checks."),
@@ -117,6 +122,7 @@ async def go_no_go_proof(_query: Annotated[GoNoGoQuery, Query()]) -> Response:
 
 @many.post(
     "/go-no-go",
+    operation_id="goNoGoMany",
     summary="Go/no-go for many starts",
     openapi_extra=json_body(
         {SPEC.id: GoNoGoInputs, SPACE.id: SpaceInputs}, {SPEC.id: SPEC.example, SPACE.id: SPACE.example}
@@ -138,9 +144,9 @@ async def go_no_go_many(request: Request) -> Response:
     """
     if in_space(await read_body(request)):
         return await posted(request, SPACE.id, bare=True)
-    return await posted(request, SPEC.id, bare=True, announced=_renamed)
+    return await posted(request, SPEC.id, bare=True, announced=partial(_renamed, root_path(request)))
 
 
-def _renamed(inputs: GoNoGoInputs) -> dict[str, str]:
+def _renamed(root: str, inputs: GoNoGoInputs) -> dict[str, str]:
     """Header fields for a deprecated name of a method."""
-    return RENAMED_METHOD.fields() if inputs.method in RENAMED else {}
+    return RENAMED_METHOD.fields(root) if inputs.method in RENAMED else {}

@@ -65,7 +65,8 @@ class SpaceInputs(WireModel):
     question: QuestionKind = Field(
         "stay",
         description="stay: inside all faces at all times of horizon_s. synchronize: in addition at rest against the "
-        "turning body inside a ball around the hold point at the end, at some time up to within_s.",
+        "turning body inside a ball around the hold point at the end, at some time up to within_s; what comes after is "
+        "not asked.",
     )
     horizon_s: Horizon = Field(60.0, description="How long to stay, s.")
     within_s: Horizon = Field(200.0, description="Latest end of synchronize, s.")
