@@ -3,7 +3,7 @@
 Requests are late, fail, come out of order or although they were given up, and the service is killed and started again.
 In CI a few sequences; by hand as many as one likes:
 
-    SAFESTART_EDIT_SEQUENCES=500 SAFESTART_EDIT_SEED=1 pytest tests/browser/test_edit_sequences.py
+    EDIT_SEQUENCES=500 EDIT_SEED=1 pytest tests/browser/test_edit_sequences.py
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from playwright.sync_api import Browser, Page
 from tests.browser.conftest import Visit
 from tests.browser.explored import FAULTS, Seen, Served, Truth, edit, faults_in, seen, settled
 
-SEQUENCES = int(os.environ.get("SAFESTART_EDIT_SEQUENCES", "8"))
-SEED = int(os.environ.get("SAFESTART_EDIT_SEED", "1"))
+SEQUENCES = int(os.environ.get("EDIT_SEQUENCES", "8"))
+SEED = int(os.environ.get("EDIT_SEED", "1"))
 TEXTS: dict[str, list[str]] = {
     "omega_t_deg_s": ["0.5", "1", "2", "3", "4", "6", "3e0", "", "-5", "99", "-"],
     "a_max_m_s2": ["0.05", "0.1", "0.2", "0.02", "", "-1", "0"],
