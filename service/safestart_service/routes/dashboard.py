@@ -36,7 +36,7 @@ async def trade(request: Request) -> Response:
 async def submit(request: Request) -> Response:
     """A form for each process, made from its schema."""
     return pages.page(
-        "submit.html", root=_root(request), here="/dashboard/submit", script="submit.js", plots=False
+        "submit.html", root=_root(request), here="/dashboard/submit", script="submit.js", plots=True
     )
 
 

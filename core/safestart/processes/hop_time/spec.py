@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from safestart.processes.base import ProcessSpec, WireModel
-from safestart.processes.views import Column, Facts
+from safestart.processes.base import ProcessSpec, Table, WireModel
+from safestart.processes.views import Column, Facts, Layer, Picture
 
 
 class HopTimeInputs(WireModel):
@@ -32,6 +32,9 @@ class HopTimeOutputs(WireModel):
     fold_deg: float | None = Field(
         description="Angle, modulo 180 deg, beyond which there is no such hop; null: every angle has one."
     )
+    path: list[list[float]] = Field(
+        description="The hop's path in LVLH: radial and along-track, in shares of the distance at its start."
+    )
 
 
 SPEC = ProcessSpec(
@@ -46,7 +49,17 @@ SPEC = ProcessSpec(
     outputs=HopTimeOutputs,
     run="safestart.processes.hop_time.run:run",
     light=True,
-    views=(Facts((Column("Length [orbits]", "orbits"), Column("Fold [deg]", "fold_deg"))),),
+    tables=(Table("path", ("path",)),),
+    views=(
+        Facts((Column("Length [orbits]", "orbits"), Column("Fold [deg]", "fold_deg"))),
+        Picture(
+            "Path of the hop, the target at 0",
+            "along-track [distance at the start]",
+            "radial [distance at the start]",
+            (Layer("hop", "line", "path", "path.1", "path.0"),),
+            equal=True,
+        ),
+    ),
     keywords=("hopping", "guidance", "V-bar", "R-bar", "glideslope"),
     example={"angle_deg": 40, "rho": 0.7},
 )
