@@ -143,10 +143,7 @@ class Layer:
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """A picture of tables: layers over two axes. ``equal``: both axes have one scale, and the inputs' corridor is drawn.
-
-    ``logarithmic``: y.
-    """
+    """Layers over two axes. ``equal``: one scale for both, and the inputs' corridor is drawn; ``logarithmic``: y."""
 
     kind: ClassVar[str] = "picture"
     title: str

@@ -17,6 +17,7 @@ from starlette.exceptions import HTTPException
 
 from safestart.errors import SafestartError
 from safestart.model.validation import refusal
+from safestart_service.pages import render as pages
 
 MEDIA_TYPE = "application/problem+json"
 OGC_PREFIX = "http://www.opengis.net/def/exceptions/ogcapi-processes-1/1.0/"
@@ -167,6 +168,8 @@ async def _on_http(request: Request, error: Exception) -> Response:
     detail = str(error.detail)
     required = received = None
     headers = dict(error.headers or {})
+    if status is HTTPStatus.NOT_FOUND and pages.wanted(request):
+        return pages.missing(request)
     if status is HTTPStatus.NOT_FOUND and detail == status.phrase:
         detail = f"nothing is at {request.scope['path']}; /openapi.json lists all paths"
     elif status is HTTPStatus.METHOD_NOT_ALLOWED:

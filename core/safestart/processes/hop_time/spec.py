@@ -41,7 +41,7 @@ SPEC = ProcessSpec(
     id="hop-time",
     title="How long a hop takes",
     description=(
-        "Length of a hop of paper 004 along any line through the target that leaves a share rho of the distance and "
+        "Length of a hop of Silva et al. along any line through the target that leaves a share rho of the distance and "
         "ends perpendicular to the line, in periods of a circular orbit, from the hop-time equation in closed form. "
         "Angles beyond the fold of its branch are refused."
     ),
