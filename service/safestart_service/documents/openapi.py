@@ -11,6 +11,7 @@ from pydantic.json_schema import models_json_schema
 
 from safestart.processes.go_no_go.one_start import GoNoGoAnswer
 from safestart.processes.registry import PROCESS_IDS, process
+from safestart.processes.start_in_space.one_start import SpaceAnswer
 from safestart.runtime.access import Role
 from safestart_service.access.gate import needed_role
 from safestart_service.documents import deprecation, schemas
@@ -22,6 +23,7 @@ TAG = "For If-None-Match."
 ANSWERS: tuple[type[BaseModel], ...] = (
     Problem,
     GoNoGoAnswer,
+    SpaceAnswer,
     schemas.Landing,
     schemas.Conformance,
     schemas.ProcessList,

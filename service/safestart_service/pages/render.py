@@ -69,9 +69,8 @@ def wanted(request: Request) -> bool:
     return request.method in ("GET", "HEAD") and "text/html" in request.headers.get("accept", "")
 
 
-def missing(request: Request) -> HTMLResponse:
+def missing(request: Request, root: str) -> HTMLResponse:
     """The page for a browser at a path where nothing is."""
-    root = request.scope.get("root_path", "")
     return page("missing.html", status=404, root=root, here="", path=request.scope["path"])
 
 

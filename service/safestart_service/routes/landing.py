@@ -7,7 +7,7 @@ from fastapi.responses import RedirectResponse, Response
 
 from safestart_service.documents.openapi import TAG, answer, content, refusals
 from safestart_service.documents.schemas import Conformance, Landing
-from safestart_service.http.answers import Json, base_url, link, tagged
+from safestart_service.http.answers import Json, base_url, link, root_path, tagged
 from safestart_service.pages import render as pages
 
 router = APIRouter(tags=["service"])
@@ -73,4 +73,4 @@ def openapi(request: Request) -> Response:
 )
 def docs(request: Request) -> Response:
     """The OpenAPI description as a page that needs neither script nor network."""
-    return pages.docs(request.app.openapi(), request.scope.get("root_path", ""))
+    return pages.docs(request.app.openapi(), root_path(request))
