@@ -22,3 +22,10 @@ export function titled(name) {
 
 /** A description without what only its source needs: powers as people write them, no backticks. */
 export const plainly = (text) => (text ?? "").replaceAll("^2", "²").replaceAll("^3", "³").replaceAll("+-", "±").replaceAll("`", "");
+
+/** The title of an input by its path, with its unit: `grid.y_max_m` is Grid: corridor cut at [m]. */
+export function inputTitle(path) {
+  const parts = path.split(".").map(titled), { unit } = parts.at(-1);
+  const words = parts.map(({ text }, k) => (k ? `${text[0].toLowerCase()}${text.slice(1)}` : text)).join(": ");
+  return unit ? `${words} [${unit}]` : words;
+}

@@ -70,7 +70,7 @@ function showAnswer({ state, answer, error, question }) {
   const place = $("state");
   if (state === "failed") {
     fail(place, error, () => store.hasten());
-    mark($("form"), error.document?.field);
+    mark($("form"), error.document?.field, error.message);
   } else if (state === "asking") loading(place, "Running");
   else if (state === "none") place.replaceChildren();
   else {
@@ -102,7 +102,7 @@ async function queue() {
   } catch (error) {
     for (const button of buttons) button.disabled = false;
     fail($("state"), error);
-    mark($("form"), error.document?.field);
+    mark($("form"), error.document?.field, error.message);
   }
 }
 

@@ -62,7 +62,10 @@ const keyCard = () => el("section", { class: "card alone" }, el("h2", {}, "This 
 /** A word in a frame, and its subject: a job's status says nothing about the verdict of its result. */
 export const badge = (about, word, kind) => el("span", { class: `badge ${about}` }, el("span", { class: "about" }, about), " ", el("b", { class: about === "job" ? `status ${kind}` : `outcome ${kind}` }, word));
 
-export const status = (job) => badge("job", job.dismissal_requested && job.status === "running" ? "stopping" : job.status, job.status);
+/** The words for a job's status; the wire's own stay the classes. */
+const STATUS = { accepted: "waiting", dismissed: "cancelled" };
+
+export const status = (job) => badge("job", job.dismissal_requested && job.status === "running" ? "stopping" : STATUS[job.status] ?? job.status, job.status);
 
 /** A link to a file of the API, fetched with the key. */
 export function download(call, href, name, text) {

@@ -3,6 +3,7 @@
 import { keyInputs } from "../logic/inputs.js";
 import { outcome } from "../logic/outcome.js";
 import { columnsOf, tablesOf } from "../logic/tables.js";
+import { inputTitle } from "../logic/titles.js";
 import { figure } from "../logic/words.js";
 import { badge, definition, download, el } from "./page.js";
 import { names } from "./process.js";
@@ -23,9 +24,9 @@ export function verdictBadge({ spec, tables }) {
 
 /** What the first screen of a result holds: the head of its views and its inputs beside the first of its pictures. */
 export function firstScreen(result, head, picture) {
-  const inputs = keyInputs(result.spec, result.inputs);
-  const told = el("section", { class: "key-inputs", "aria-label": "Key inputs" }, el("h2", {}, "Asked with"), el("dl", {}, ...inputs.map(([name, value]) => definition(name, value))));
-  return el("div", { class: "first" }, el("div", { class: "said" }, ...head), el("div", { class: "beside" }, ...(picture ? [picture] : []), told));
+  const inputs = keyInputs(result.spec, result.inputs), short = !head.some((node) => node.matches(".findings, .scroll"));
+  const told = el("section", { class: "key-inputs", "aria-label": "Key inputs" }, el("h2", {}, "Asked with"), el("dl", {}, ...inputs.map(([path, value]) => definition(inputTitle(path), value))));
+  return el("div", { class: "first" }, el("div", { class: "said" }, ...head, ...(short ? [told] : [])), el("div", { class: "beside" }, ...(picture ? [picture] : []), ...(short ? [] : [told])));
 }
 
 /** Show the result of a job. */
