@@ -76,6 +76,7 @@ def create_app(
         title=TITLE,
         version=version("safestart-service"),
         description=DESCRIPTION,
+        license_info={"name": "Apache-2.0", "url": "https://www.apache.org/licenses/LICENSE-2.0"},
         lifespan=lifespan,
         openapi_url=None,
         docs_url=None,

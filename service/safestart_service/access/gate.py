@@ -26,7 +26,9 @@ if TYPE_CHECKING:
 Presented = tuple[bytes | None, bytes | None, bytes | None]
 """Host, Authorization and X-API-Key of a request."""
 
-PUBLIC = frozenset({"/", "/conformance", "/dashboard", "/docs", "/healthz", "/openapi.json", "/readyz"})
+PUBLIC = frozenset(
+    {"/", "/conformance", "/dashboard", "/docs", "/healthz", "/openapi.json", "/openapi-3.0.json", "/readyz"}
+)
 """Answered without a key: what the service is, its health, and pages that hold no data and ask for the key."""
 INSTANT = frozenset({"/go-no-go", "/go-no-go/proof", "/certificates"})
 """Computed from the request alone: a POST to these paths changes nothing."""

@@ -14,7 +14,12 @@ router = APIRouter(tags=["dashboard"])
 _PAGE = content("text/html", {"type": "string"}, "A page.")
 
 
-@router.get("/dashboard", summary="Explore the safe-start region", responses={200: _PAGE, **refusals()})
+@router.get(
+    "/dashboard",
+    operation_id="getExplorePage",
+    summary="Explore the safe-start region",
+    responses={200: _PAGE, **refusals()},
+)
 async def explore(request: Request) -> Response:
     """Operating point, regions, one start and its flight."""
     return pages.page(
@@ -22,7 +27,12 @@ async def explore(request: Request) -> Response:
     )
 
 
-@router.get("/dashboard/trade", summary="Trade study", responses={200: _PAGE, **refusals()})
+@router.get(
+    "/dashboard/trade",
+    operation_id="getTradePage",
+    summary="Trade study",
+    responses={200: _PAGE, **refusals()},
+)
 async def trade(request: Request) -> Response:
     """What more thrust buys at each tumble rate."""
     return pages.page(
@@ -30,7 +40,12 @@ async def trade(request: Request) -> Response:
     )
 
 
-@router.get("/dashboard/submit", summary="Submit a process", responses={200: _PAGE, **refusals()})
+@router.get(
+    "/dashboard/submit",
+    operation_id="getSubmitPage",
+    summary="Submit a process",
+    responses={200: _PAGE, **refusals()},
+)
 async def submit(request: Request) -> Response:
     """A form for each process, made from its schema."""
     return pages.page(
@@ -38,7 +53,12 @@ async def submit(request: Request) -> Response:
     )
 
 
-@router.get("/dashboard/jobs", summary="Jobs as a page", responses={200: _PAGE, **refusals()})
+@router.get(
+    "/dashboard/jobs",
+    operation_id="getJobsPage",
+    summary="Jobs as a page",
+    responses={200: _PAGE, **refusals()},
+)
 async def jobs(request: Request) -> Response:
     """Jobs with progress, place in the queue, time left and why they wait."""
     return pages.page(
@@ -46,7 +66,12 @@ async def jobs(request: Request) -> Response:
     )
 
 
-@router.get("/dashboard/jobs/{jobID}", summary="A job as a page", responses={200: _PAGE, **refusals(422)})
+@router.get(
+    "/dashboard/jobs/{jobID}",
+    operation_id="getJobPage",
+    summary="A job as a page",
+    responses={200: _PAGE, **refusals(422)},
+)
 async def job(request: Request, jobID: JobId) -> Response:
     """Live progress and log, then results, pictures and downloads of one job; unknown ids are told on the page."""
     return pages.page(
@@ -54,7 +79,12 @@ async def job(request: Request, jobID: JobId) -> Response:
     )
 
 
-@router.get("/dashboard/compare", summary="Compare runs", responses={200: _PAGE, **refusals()})
+@router.get(
+    "/dashboard/compare",
+    operation_id="getComparePage",
+    summary="Compare runs",
+    responses={200: _PAGE, **refusals()},
+)
 async def compare(request: Request) -> Response:
     """Two or more successful benchmarks side by side: `?jobs=ID,ID`."""
     return pages.page(

@@ -78,6 +78,7 @@ many = APIRouter(tags=["instant answers"])
 
 @one.get(
     "/go-no-go",
+    operation_id="goNoGo",
     summary="Go/no-go for one start",
     responses={
         200: content(
@@ -103,6 +104,7 @@ async def go_no_go_one(_query: Annotated[GoNoGoQuery, Query()]) -> Response:
 
 @proof.get(
     "/go-no-go/proof",
+    operation_id="getGoNoGoProof",
     summary="Only the proof of a go/no-go",
     responses={
         200: content("application/json", {"type": "object"}, "The document that `safestart verify` checks."),
@@ -120,6 +122,7 @@ async def go_no_go_proof(_query: Annotated[GoNoGoQuery, Query()]) -> Response:
 
 @many.post(
     "/go-no-go",
+    operation_id="goNoGoMany",
     summary="Go/no-go for many starts",
     openapi_extra=json_body(
         {SPEC.id: GoNoGoInputs, SPACE.id: SpaceInputs}, {SPEC.id: SPEC.example, SPACE.id: SPACE.example}
