@@ -42,10 +42,13 @@ def wide(seed: int, steps: int = 16) -> tuple[SpaceQuestion, np.ndarray, np.ndar
 
 
 class Dense:
-    """The rows of one question: ``margin`` (two bounds) and ``kept`` (what a history keeps at the checks)."""
+    """The rows of one question: ``margin`` (two bounds) and ``kept`` (what a history keeps at the checks).
+
+    A history must suit every start of the box; with ``free`` the program chooses the start, too.
+    """
 
     def __init__(
-        self, question: SpaceQuestion, state: np.ndarray, half: np.ndarray, sign: float = -1.0
+        self, question: SpaceQuestion, state: np.ndarray, half: np.ndarray, *, free: bool = False
     ) -> None:
         dt, steps, fine = question.dt, question.steps, 4 * CHECKS
         self.question = question
@@ -76,17 +79,18 @@ class Dense:
             [turn.T @ own if limit.frame == "body" else own for turn in seen[: steps * fine : fine]]
         )
         # Each row: offset + gain . u >= m.
-        offsets, gains = [], []
+        offsets, gains, moves = [], [], []
         for i in range(0, len(times), 4):
             for face in question.faces:
                 normal = np.array(face.normal) / np.linalg.norm(face.normal)
                 if face.frame == "body":
                     normal = seen[i].T @ normal
                 along = normal @ phi[i][:3]
-                taken = float(np.abs(along) @ half)
-                offsets.append(face.offset / np.linalg.norm(face.normal) - along @ state + sign * taken)
+                taken = 0.0 if free else float(np.abs(along) @ half)
+                moves.append(-along * half if free else np.zeros(6))
+                offsets.append(face.offset / np.linalg.norm(face.normal) - along @ state - taken)
                 gains.append(-normal @ self.moved[i][:3])
-        self.offsets, self.gains = np.array(offsets), np.array(gains)
+        self.offsets, self.gains, self.moves = np.array(offsets), np.array(gains), np.array(moves)
         # Norms: limit - |at + gain u|.
         self.norms: list[tuple[float, np.ndarray, np.ndarray]] = []
         goal = question.goal
@@ -136,12 +140,14 @@ class Dense:
             "box": (np.zeros((0, count)), 1.0),
             "thrusters": (np.ones((1, count)), 1.0),
         }[kind]
-        extra = hstack([kron(np.eye(steps), more), csr_matrix((steps * len(more), 1))])
+        moves = np.concatenate([self.moves, np.zeros((len(through) - len(self.moves), 6))])
+        top = csr_matrix(np.column_stack([-mapped, -moves, np.ones(len(mapped))]))
+        extra = hstack([kron(np.eye(steps), more), csr_matrix((steps * len(more), 7))])
         found = linprog(
-            np.concatenate([np.zeros(count * steps), [-1.0]]),
-            vstack([csr_matrix(np.column_stack([-mapped, np.ones(len(mapped))])), extra]),
+            np.concatenate([np.zeros(count * steps + 6), [-1.0]]),
+            vstack([top, extra]),
             np.concatenate([*offsets, np.full(steps * len(more), most)]),
-            bounds=[*bounds, (None, None)],
+            bounds=[*bounds, *[(-1.0, 1.0)] * 6, (None, None)],
             method="highs",
         )
         return -float(found.fun)

@@ -38,11 +38,11 @@ def test_agrees_with_a_dense_program(seed: int) -> None:
         assert answer.upper >= inside - 0.02
         assert dense.kept(answer.thrust) >= answer.lower - 1e-3
     elif answer.verdict is Verdict.NO_GO:
-        best = Dense(question, state, half, 1.0).margin(inside=True) if box else inside
+        best = Dense(question, state, half, free=True).margin(inside=True) if box else inside
         assert answer.upper >= best - 0.02
     else:
         assert box
-        assert inside < 0.02 < Dense(question, state, half, 1.0).margin(inside=False) + 0.04
+        assert inside < 0.02 < Dense(question, state, half, free=True).margin(inside=False) + 0.04
 
 
 @pytest.mark.parametrize(
