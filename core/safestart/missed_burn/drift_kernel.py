@@ -138,7 +138,7 @@ def least_distance(
     cells = np.empty((most, 5))
     bounds = np.empty(most)
     sharp = np.zeros(most, dtype=np.bool_)
-    rows, q, p = np.empty((3, 6)), np.empty(6), np.empty(6)
+    rows, q, p, still = np.empty((3, 6)), np.empty(6), np.empty(6), np.zeros(3)
     d, member, best = np.empty(3), np.empty(len(columns)), np.zeros(len(columns))
     loss = ROUNDING * _magnitude(n, horizon, centre, columns)
     # ``goal``: the best possible bound, given how far the true motion may stray.
@@ -171,7 +171,7 @@ def least_distance(
             sharp[worst] = True
             middle = 0.5 * (cells[worst, 0] + cells[worst, 1])
             position_rows(n, middle, rows)
-            distance = nearest(rows, centre, columns, ends, cells[worst, 2:], d, member)
+            distance = nearest(rows, centre, still, columns, ends, cells[worst, 2:], d, member)
             if distance < upper:
                 upper, when = distance, middle
                 best[:] = member

@@ -8,7 +8,7 @@ from matplotlib.patches import Circle
 from matplotlib.ticker import MaxNLocator
 
 from safestart.dynamics.cwh import transition_matrix
-from safestart.missed_burn.cases import Case
+from safestart.missed_burn.sets import Case
 from safestart.missed_burn.prove import Finding, Proof, Verdict
 from safestart.model.scenario import Floats
 from safestart.processes.base import Artifact
