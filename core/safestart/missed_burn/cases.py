@@ -59,11 +59,13 @@ def cases_of(question: Question) -> list[Case]:
         for first, last in pieces(failures.late, 2.0 * n * burn.size):
             late = before.copy()
             _late(late, burn, k, n, (first, last), errors.thrust_share, errors.thrust_angle)
-            out.append(late.case("late", k, times[k], question.horizon + last, (first, last)))
+            out.append(late.case("late", k, times[k], duration_of(question, "late", k, last), (first, last)))
         for first, last in pieces(failures.stuck, failures.acceleration):
             stuck = state.copy()
             _stuck(stuck, burn, k, n, (first, last), question)
-            out.append(stuck.case("stuck", k, times[k], question.horizon + last, (first, last)))
+            out.append(
+                stuck.case("stuck", k, times[k], duration_of(question, "stuck", k, last), (first, last))
+            )
     return out
 
 
@@ -110,7 +112,9 @@ def _derivatives(n: float, v: Floats) -> tuple[Floats, Floats, Floats]:
     return first, second, a @ second
 
 
-def _stuck(state: StateSet, burn: Burn, k: int, n: float, piece: tuple[float, float], question: Question) -> None:
+def _stuck(
+    state: StateSet, burn: Burn, k: int, n: float, piece: tuple[float, float], question: Question
+) -> None:
     """After the burn the thrust goes on for ``piece`` s: int_0^s Phi(-t) (0, a) dt, tangent, bend, errors of thrust."""
     acceleration, errors = question.failures.acceleration, question.errors
     share, angle = errors.thrust_share, errors.thrust_angle

@@ -79,7 +79,8 @@ def _model(question: Question) -> dict[str, Any]:
                 "earth_radius_m": EARTH_RADIUS,
             },
             "before": [
-                {"position_m": list(state[:3]), "velocity_m_s": list(state[3:])} for state in question.earth.before
+                {"position_m": list(state[:3]), "velocity_m_s": list(state[3:])}
+                for state in question.earth.before
             ],
         }
     if question.radius is not None:

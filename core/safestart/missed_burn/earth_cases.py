@@ -1,8 +1,9 @@
 """Late and lasting burns about the true Earth, as sets of equivalent states at the planned time.
 
 A push e in LVLH at t equals the state f(t) = Phi(0, t) (0, e) at the planned time 0, e turning with LVLH, with the
-derivative f' = Phi(0, t) (-e, omega x e), Phi the transition near the reference, which burns as planned. Over a piece of times f is replaced by its tangent in the middle and a box
-for the change of f'; the integral of f over a piece is its length times f in the middle and half that box.
+derivative f' = Phi(0, t) (-e, omega x e), Phi the transition near the reference, which burns as planned. Over a piece
+of times f is replaced by its tangent in the middle and a box for the change of f'; the integral of f over a piece is
+its length times f in the middle and half that box.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import numpy as np
 
 from safestart.dynamics.two_body_kernel import frame_of
 from safestart.missed_burn.earth import Drift, drift_after, inverse, moved
-from safestart.missed_burn.plan import Question
+from safestart.missed_burn.plan import Question, duration_of
 from safestart.missed_burn.sets import Case, StateSet, frame, pieces, shell
 from safestart.model.scenario import Floats
 
@@ -22,9 +23,7 @@ _LOOSE = 12.0
 encloses the same change by ball arithmetic, which needs a part of it."""
 
 
-def late_and_stuck(
-    question: Question, k: int, before: StateSet, after: StateSet
-) -> list[Case]:
+def late_and_stuck(question: Question, k: int, before: StateSet, after: StateSet) -> list[Case]:
     """Cases of burn ``k``; ``before`` and ``after`` it are inertial sets."""
     if not (question.failures.late or question.failures.stuck):
         return []
@@ -33,31 +32,32 @@ def late_and_stuck(
     along, one, two = frame(np.array(burn.impulse))
     middle, half, across = shell(1.0 - errors.thrust_share, 1.0 + errors.thrust_share, errors.thrust_angle)
     loose = math.hypot(half, across)
-    time, out, rate = burn.time, [], math.sqrt(drift.stiffness)
+    time, rate = burn.time, math.sqrt(drift.stiffness)
+    out: list[Case] = []
     for first, last in pieces(failures.late, 2.0 * rate * burn.size):
         at, reach = 0.5 * (first + last), 0.5 * (last - first)
-        push, change = _pushes(drift, at)
+        lifted, change = _pushes(drift, at)
         late = before.copy()
-        late.centre = late.centre + burn.size * middle * (push @ along)
-        late.block([burn.size * half * (push @ along)], "along", k)
-        late.block([burn.size * across * (push @ u) for u in (one, two)], "across", k)
+        late.centre = late.centre + burn.size * middle * (lifted @ along)
+        late.block([burn.size * half * (lifted @ along)], "along", k)
+        late.block([burn.size * across * (lifted @ u) for u in (one, two)], "across", k)
         late.block([reach * burn.size * middle * (change @ along)], "piece", k)
         late.box(burn.size * reach * (_bend(rate, reach) + loose * _size(rate)), "bend")
-        out.append(late.case("late", k, time, question.horizon + last, (first, last)))
-    total, done = np.zeros(6), 0.0
+        out.append(late.case("late", k, time, duration_of(question, "late", k, last), (first, last)))
+    reached, done = np.zeros(6), 0.0
+    push = middle * failures.acceleration
     for first, last in pieces(failures.stuck, failures.acceleration):
         at, reach = 0.5 * (first + last), 0.5 * (last - first)
         # Up to the middle of this piece: the rest of the last one, and half of this one.
-        total = total + (at - done) * (_pushes(drift, 0.5 * (at + done))[0] @ along)
-        spread = at * reach * _bend(rate, reach)
+        reached = reached + (at - done) * (_pushes(drift, 0.5 * (at + done))[0] @ along)
+        spread: Floats = at * reach * _bend(rate, reach)
         done = at
         stuck = after.copy()
-        push = middle * failures.acceleration
-        stuck.centre = stuck.centre + push * total
+        stuck.centre = stuck.centre + push * reached
         stuck.block([reach * push * (_pushes(drift, at)[0] @ along)], "piece", k)
         stuck.box(failures.acceleration * (spread + 0.5 * reach * reach * _size(rate)), "bend")
         stuck.box(loose * failures.acceleration * _kicked(rate, last), "loose")
-        out.append(stuck.case("stuck", k, time, question.horizon + last, (first, last)))
+        out.append(stuck.case("stuck", k, time, duration_of(question, "stuck", k, last), (first, last)))
     return out
 
 
@@ -86,5 +86,3 @@ def _kicked(rate: float, seconds: float) -> Floats:
     """(6,): what a push of 1 m/s^2 in any direction does in a time."""
     p = rate * seconds
     return np.repeat([(math.cosh(p) - 1.0) / rate**2, math.sinh(p) / rate], 3)
-
-

@@ -31,8 +31,9 @@ def nearest(
 ) -> float:
     """Distance of the nearest member found.
 
-    ``rows`` (3, 6), ``offset`` (3,) of all positions, ``columns`` (C, 6), ``ends`` (K,), ``guess`` (3,): a first direction. Writes the ``direction`` (3,)
-    with the greatest lower bound seen and the coordinates (C,) of the nearest ``member`` in the columns.
+    ``rows`` (3, 6), ``offset`` (3,) of all positions, ``columns`` (C, 6), ``ends`` (K,), ``guess`` (3,): a first
+    direction. Writes the ``direction`` (3,) with the greatest lower bound seen and the coordinates (C,) of the nearest
+    ``member`` in the columns.
     """
     count = len(columns)
     centre3, images = np.empty(3), np.empty((count, 3))

@@ -178,11 +178,13 @@ def duration_of(question: Question, kind: str, burn: int, last: float) -> float:
     """Length of a case's drift from the planned time of its burn, s: the horizon, after a burn that ends ``last`` s
     late, and at least until the next burn, which may be late."""
     times, late = [made.time for made in question.plan.burns], question.failures.late
+    length = question.horizon + last
     if kind == "start":
-        return max(question.horizon, late)
-    if kind == "made" and burn + 1 < len(times):
-        return max(question.horizon, times[burn + 1] - times[burn] + late)
-    return question.horizon + last
+        length = max(question.horizon, late)
+    elif kind == "made" and burn + 1 < len(times):
+        length = max(question.horizon, times[burn + 1] - times[burn] + late)
+    # Longer than the rounding of the sums.
+    return length * (1.0 + 1e-15)
 
 
 def longest_drift(question: Question, burn: int) -> float:

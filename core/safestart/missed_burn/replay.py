@@ -76,7 +76,8 @@ class Flown:
                 flight, _ = drifted(flight, 0.5 * span, STAGES, WEIGHTS)
             now += span * _PULSES
         flight, _ = drifted(flight, self.look - now, STAGES, WEIGHTS)
-        return seen(flight)
+        reached: Floats = seen(flight)
+        return reached
 
     def nonlinear_state(self, radius: float) -> Floats:
         """State (6,) at ``look`` about a point mass, the target on a circular orbit of ``radius`` m."""

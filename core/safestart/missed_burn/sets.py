@@ -52,24 +52,29 @@ class StateSet:
         self.labels: list[tuple[str, int]] = []
 
     def block(self, columns: list[Floats], label: str, number: int) -> None:
+        """Add a block."""
         self.columns += columns
         self.ends.append(len(self.columns))
         self.labels += [(label, number)] * len(columns)
 
     def box(self, half: Floats, label: str) -> None:
+        """Add a box of half-widths (6,), one segment for each axis."""
         for axis in np.flatnonzero(half > 0.0).tolist():
             self.block([half[axis] * np.eye(6)[axis]], label, axis)
 
     def moved(self, matrix: Floats) -> None:
+        """Replace the set by its image."""
         self.centre = matrix @ self.centre
         self.columns = [matrix @ column for column in self.columns]
 
     def copy(self) -> StateSet:
+        """A set that grows on its own."""
         other = StateSet(self.centre)
         other.columns, other.ends, other.labels = list(self.columns), list(self.ends), list(self.labels)
         return other
 
     def case(self, kind: str, burn: int, time: float, duration: float, piece: tuple[float, float]) -> Case:
+        """The set as a case."""
         columns = np.array(self.columns).reshape(-1, 6)
         ends = np.array(self.ends, dtype=np.int64)
         return Case(
@@ -107,7 +112,13 @@ def frame(vector: Floats) -> tuple[Floats, Floats, Floats]:
 
 
 def add_burn(
-    state: StateSet, burn: Burn, k: int, least: float, greatest: float, angle: float, after: Floats | None = None
+    state: StateSet,
+    burn: Burn,
+    k: int,
+    least: float,
+    greatest: float,
+    angle: float,
+    after: Floats | None = None,
 ) -> None:
     """Adds a burn with errors, moved by ``after`` (6, 6)."""
     lift = np.eye(6)[:, 3:] if after is None else after[:, 3:]

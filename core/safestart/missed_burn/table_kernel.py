@@ -1,7 +1,7 @@
 """The least distance of a drifting set, where the transition is known at equally spaced times only.
 
-The set is a path and, off from it, a centre and blocks. Each image y is y'' = G(t) y with |G| <= K (the path by the mean
-value of gravity's gradient between both bodies), so over [a, b] y differs from its chord by at most k sup |y|, where
+The set is a path and, off from it, a centre and blocks. Each image y has y'' = G(t) y with |G| <= K (the path by the
+mean of gravity's gradient between both bodies), so over [a, b] y differs from its chord by at most k sup |y|, where
 k = K (b - a)^2/8, and so sup |y| <= max(|y(a)|, |y(b)|) / (1 - k). For a unit vector d, inertial and fixed,
 
     distance >= min(f_d(a), f_d(b)) - k/(1 - k) sum of max(|y(a)|, |y(b)|) over path, centre, blocks,
@@ -79,7 +79,8 @@ def _bound(
     for j in range(sizes.shape[1]):
         spread += max(sizes[begin, j], sizes[end, j])
     low: float = min(_value(images[begin], ends, d), _value(images[end], ends, d))
-    return low - (k / (1.0 - k) + ROUNDING * 1e3) * spread - strays[(end - 1) // per_part]
+    low -= (k / (1.0 - k) + ROUNDING * 1e3) * spread + strays[(end - 1) // per_part]
+    return low
 
 
 @compiled()
@@ -136,7 +137,9 @@ def least_between(
         middle = (begin + end) // 2
         if not sharp[worst]:
             sharp[worst] = True
-            distance = nearest(tables[middle], centre, path[middle], columns, ends, cells[worst, 2:], d, member)
+            distance = nearest(
+                tables[middle], centre, path[middle], columns, ends, cells[worst, 2:], d, member
+            )
             if distance < upper:
                 upper, when = distance, middle
                 best[:] = member

@@ -72,7 +72,7 @@ class Complete(ABC):
             )
 
     def duration(self, event: Event) -> fmpq:
-        """Duration of a drift: the horizon, after a burn that ends late, and the wait for the next one, which may be."""
+        """Duration of a drift: the horizon, after a burn that ends late, and the wait for the next, late one."""
         asked, k = self.asked, event.burn
         if event.kind == "start":
             return max(asked.horizon, asked.late)

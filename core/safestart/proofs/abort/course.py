@@ -82,7 +82,9 @@ class Course:
             raise ProofRejected("target: the course cannot be enclosed over so long a time")
         self.eta = arb(0, 1) * arb(eta.abs_upper())
         # |G|, 1/s^2.
-        self.stiffness = (2 * self.mu / self.lowest**3 + 12 * self.bulge / self.lowest**5) * arb(self.rate) ** 2
+        self.stiffness = (2 * self.mu / self.lowest**3 + 12 * self.bulge / self.lowest**5) * arb(
+            self.rate
+        ) ** 2
 
     def _step(self, time: arb) -> Step:
         """The step that holds the ball of a scaled time; a ball over an end of a step belongs to the earlier one."""

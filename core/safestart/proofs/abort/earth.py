@@ -1,7 +1,8 @@
 """The checker about the true Earth: sets at a burn off from a reference, cells, trial radii.
 
 The reference is the flight of the planned state, enclosed like the target's course; the rest of a set moves linearly
-near it, but for what the trial radii bound. For a cell [a, b] with direction d, K a bound on |G| and k = K (b - a)^2/8 < 1,
+near it, but for what the trial radii bound. For a cell [a, b] with direction d, a bound K on |G| and
+k = K (b - a)^2/8 < 1,
 
     |d| distance >= min(f(a), f(b)) - k/(1 - k) |d| sum of max(|y(a)|, |y(b)|) - |d| stray,
 
@@ -80,7 +81,7 @@ class EarthChecker(Complete):
         out = asked.horizon + max(asked.late, asked.stuck)
         if burn + 1 < len(asked.times):
             out = max(out, asked.times[burn + 1] - asked.times[burn] + asked.late)
-        return out
+        return out * (1 + fmpq(1, 2**30))
 
     def held(self, event: Event) -> None:
         """Check the cells of an event, after its trial radii."""
@@ -107,7 +108,9 @@ class EarthChecker(Complete):
             low = [_level(row * image, sizes) for image, _ in at]
             k = stiffness * arb((end - begin) ** 2) / 8
             if not k < 1:
-                raise ProofRejected(f"{event.kind}, burn {event.burn}: a cell of {float(end - begin):g} s is too long")
+                raise ProofRejected(
+                    f"{event.kind}, burn {event.burn}: a cell of {float(end - begin):g} s is too long"
+                )
             spread = sum((a.max(b) for a, b in zip(at[0][1], at[1][1], strict=True)), arb(0))
             # A cell that ends within a part gets the stray up to the end of that part.
             last = min(max(int((end / part).ceil()), 1), len(strays))
@@ -173,7 +176,9 @@ class EarthChecker(Complete):
         out = []
         detour = self._detour(event, burn, k)
         for j, radius in enumerate(event.radii):
-            reached = sum((a.max(b) for a, b in zip(nodes[j], nodes[j + 1], strict=True)), arb(0)) / (1 - curve)
+            reached = sum((a.max(b) for a, b in zip(nodes[j], nodes[j + 1], strict=True)), arb(0)) / (
+                1 - curve
+            )
             at, fast = arb(0), arb(0)
             for m, kick in enumerate(kicks, 1):
                 norms = _norms(reference, h, j, m)
@@ -182,7 +187,9 @@ class EarthChecker(Complete):
             push = self._remainder(arb(radius), reference.course.lowest)
             there = grown * at + slid * fast + pushed * push
             if not reached + detour + there < arb(radius):
-                raise ProofRejected(f"radii_m: part {j} does not hold the motion within {float(radius):.9g} m")
+                raise ProofRejected(
+                    f"radii_m: part {j} does not hold the motion within {float(radius):.9g} m"
+                )
             kicks.append(arb(push.abs_upper()))
             out.append(arb(there.abs_upper()))
         return out
@@ -191,7 +198,9 @@ class EarthChecker(Complete):
         """Bound on what the linear motion leaves out, up to the distance rho from a reference above ``lowest``."""
         r = lowest - rho
         if not r > lowest / 2:
-            raise ProofRejected(f"radii_m: required less than half the orbit's radius, received {float(rho):.9g}")
+            raise ProofRejected(
+                f"radii_m: required less than half the orbit's radius, received {float(rho):.9g}"
+            )
         return (3 * self.mu / r**4 + 30 * self.bulge / r**6) * rho * rho
 
 

@@ -76,9 +76,7 @@ class Pushes:
                 near[i + 3, j] = pull
         return self._back(at) * (near * whole)
 
-    def late(
-        self, before: Reached, impulse: list[arb], limits: Limits, first: fmpq, last: fmpq
-    ) -> Reached:
+    def late(self, before: Reached, impulse: list[arb], limits: Limits, first: fmpq, last: fmpq) -> Reached:
         """A burn that comes first to last s late."""
         along, one, two, size = axes(impulse)
         centre, half, across = shell(1 - limits[0], 1 + limits[0], limits[1])
@@ -91,7 +89,9 @@ class Pushes:
             [f * column([size * across * e for e in unit]) for unit in (one, two)],
             [reach * middle(tangent)],
         ]
-        out = Reached(before.centre + f * column([size * centre * e for e in along]), [*before.blocks, *blocks])
+        out = Reached(
+            before.centre + f * column([size * centre * e for e in along]), [*before.blocks, *blocks]
+        )
         return out.grown([reach * (_radius(tangent[k, 0]) + arb(wide[k, 0].abs_upper())) for k in range(6)])
 
     def stuck(
@@ -109,7 +109,9 @@ class Pushes:
             begun = width * j
             slope = self._slope(begun, begun + width) * push
             total = total + arb(width) * (self._f(begun + width / 2) * push)
-            total = total + column([_BALL * (_radius(slope[k, 0]) * arb(width * width / 4)) for k in range(6)])
+            total = total + column(
+                [_BALL * (_radius(slope[k, 0]) * arb(width * width / 4)) for k in range(6)]
+            )
         tangent = self._f(at) * push
         bent = self._slope(first, last) * push
         state = Reached(after.centre + total, [*after.blocks, [reach * tangent]])

@@ -107,6 +107,7 @@ def _cross(a: list[arb], b: list[arb]) -> list[arb]:
 
 
 def speeds(v: list[arb]) -> arb_mat:
+    """A velocity as a state."""
     return column([arb(0)] * 3 + v)
 
 

@@ -1,8 +1,8 @@
 """One step of the target's course and of the linear motion near it: a Taylor polynomial and a bound on its defect.
 
 In scaled time r'' = g(r), F'' = G(r) F with g the gravity of a point mass and J2. Rounded coefficients make exact
-polynomials p and F; their defects p'' - g(p) and F'' - G(p) F are bounded by their low coefficients, in ball arithmetic,
-and by Cauchy's estimate of all others on a disc of complex times, where |p . p| has a positive lower bound.
+polynomials p and F; their defects p'' - g(p) and F'' - G(p) F are bounded by their low coefficients, in ball
+arithmetic, and by Cauchy's estimate of all others on a disc of complex times, where |p . p| has a positive lower bound.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from safestart.proofs.strict import ProofRejected
 ORDER = 44
 _SHARE = 0.25
 """Length of a step over the disc's radius."""
+_BALLS = 16
 Series = list[arb]
 
 
@@ -34,7 +35,10 @@ class Field:
     def slope(self, size: arb, square: arb) -> arb:
         """The same for |G|."""
         q = size * size / square
-        return self.mu * (1 + 3 * q) / square.sqrt() ** 3 + self.bulge * (3 + 30 * q + 35 * q * q) / square.sqrt() ** 5
+        return (
+            self.mu * (1 + 3 * q) / square.sqrt() ** 3
+            + self.bulge * (3 + 30 * q + 35 * q * q) / square.sqrt() ** 5
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +108,7 @@ def step(field: Field, begin: arb, most: arb, start: tuple[arb_mat, arb_mat, arb
         _sum(loose_r, reach) + field.pull(size, square) * tail,
         _sum(loose_f, reach) + field.slope(size, square) * _sum(sizes_f, radius) * tail,
         (reached**2 + fast**2).sqrt(),
-        _least(sizes_r, series.square, reach),
+        _lowest(sizes_r, series.square, reach),
     )
 
 
@@ -122,6 +126,17 @@ def _least(sizes: Series, square: Series, radius: arb) -> arb:
     for k, s in enumerate(square[1:], 1):
         low = low - arb(abs(s).abs_upper()) * radius**k
     return low - _sum(sizes, 2 * radius) ** 2 / arb(2) ** (len(square) - 1)
+
+
+def _lowest(sizes: Series, square: Series, reach: arb) -> arb:
+    """Lower bound on p . p over the step's own, real times, by short balls of time."""
+    low, half = square[0], reach / (2 * _BALLS)
+    for j in range(_BALLS):
+        at, value = half * (2 * j + 1 + arb(0, 1)), arb(0)
+        for s in reversed(square):
+            value = value * at + s
+        low = low.min(arb(value.lower()))
+    return low - _sum(sizes, 2 * reach) ** 2 / arb(2) ** (len(square) - 1)
 
 
 def _disc(sizes: Series, square: Series) -> tuple[arb, arb]:
