@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import typer
+import sys
 
-from safestart_service.commands import serve
+from safestart.cli import main
 
 if __name__ == "__main__":
-    typer.run(serve)
+    sys.argv[1:1] = ["serve"]
+    main()

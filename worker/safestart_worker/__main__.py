@@ -4,16 +4,8 @@ from __future__ import annotations
 
 import sys
 
-import typer
-
-from safestart.errors import SafestartError
-from safestart_worker.commands import register
+from safestart.cli import main
 
 if __name__ == "__main__":
-    app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
-    register(app)
-    try:
-        app()
-    except SafestartError as error:
-        sys.stderr.write(f"safestart: {error.detail}\n")
-        sys.exit(2)
+    sys.argv[1:1] = ["worker"]
+    main()

@@ -26,7 +26,8 @@ export async function results(place, job, spec, call) {
   const document = await (await call(`/jobs/${job.jobID}/results`)).json();
   const result = known(spec, document.outputs, document.inputs, { artifacts: document.artifacts, job: job.jobID });
   const { head, parts: views, draws } = shown(result);
-  const parts = [...head, ...pictures(call, job.processID, document.artifacts), ...views, ...rest(result)];
+  const notes = (document.provenance?.notes ?? []).map((note) => el("p", { class: "note" }, note));
+  const parts = [...head, ...notes, ...pictures(call, job.processID, document.artifacts), ...views, ...rest(result)];
   parts.push(el("h2", { class: "on-screen" }, "Downloads"), el("ul", { class: "files" },
     el("li", {}, download(call, `${root}/jobs/${job.jobID}/results`, `${job.processID}-${job.jobID.slice(0, 8)}.json`, "result document")),
     ...document.artifacts.map((file) => el("li", {}, download(call, file.href, file.name, `${file.name} (${file.media_type}, ${Math.ceil(file.size / 1024)} KiB)`))),
