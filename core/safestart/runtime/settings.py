@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import ipaddress
 import os
+import re
 from collections.abc import Callable, Iterable
 from difflib import get_close_matches
 from errno import ENOENT
@@ -11,7 +13,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from platformdirs import user_config_path, user_data_path
-from pydantic import Field, ValidationError
+from pydantic import Field, ValidationError, field_validator
 from pydantic_settings import (
     BaseSettings,
     PydanticBaseSettingsSource,
@@ -23,9 +25,40 @@ from safestart.errors import InvalidInput, invalid
 from safestart.model.validation import refusal
 from safestart.runtime.secret_file import with_password
 
+Network = ipaddress.IPv4Network | ipaddress.IPv6Network
+
+LONGEST_PATH = 200
+PATH_RULE = (
+    f"empty, or /name/name of letters, digits, '-', '_', '.' and '~', at most {LONGEST_PATH} characters"
+)
+_PATH = re.compile(r"(?:/[A-Za-z0-9._~-]+)+")
+
 _PREFIX = "SAFESTART_"
 _OTHERS = ("SAFESTART_TEST_POSTGRESQL", "SAFESTART_CHROMIUM", "SAFESTART_SCREENSHOTS")
 """Variables of the test suite; the processes it starts inherit them."""
+
+
+def path_below(text: str) -> str:
+    """A path without its last slash; empty for the root. Raises ``ValueError`` with :data:`PATH_RULE`.
+
+    Nothing that it accepts leaves the host (``//evil``), climbs (``..``), or needs escaping in a link or a header.
+    """
+    path = text.removesuffix("/")
+    if path and (
+        len(path) > LONGEST_PATH
+        or not _PATH.fullmatch(path)
+        or any(part in (".", "..") for part in path.split("/"))
+    ):
+        raise ValueError(PATH_RULE)
+    return path
+
+
+def networks(text: str) -> tuple[Network, ...]:
+    """IP addresses and networks, separated by commas. Raises ``ValueError``."""
+    try:
+        return tuple(ipaddress.ip_network(part.strip()) for part in text.split(",") if part.strip())
+    except ValueError:
+        raise ValueError("IP addresses and networks such as 10.0.0.0/8, separated by commas") from None
 
 
 class Settings(BaseSettings):
@@ -69,6 +102,14 @@ class Settings(BaseSettings):
         "",
         description="Host names, separated by commas, that the service accepts besides localhost and IP addresses.",
     )
+    root_path: str = Field(
+        "", description="Path below which clients find the service, such as /safestart; empty: none."
+    )
+    trusted_proxies: str = Field(
+        "127.0.0.0/8, ::1",
+        description="Addresses and networks of proxies, separated by commas, whose X-Forwarded-For, -Proto, -Host and "
+        "-Prefix count; empty: none.",
+    )
     rate_per_s: float = Field(
         1000.0, gt=0, description="Requests per second of one API key; bursts of 10 s' worth."
     )
@@ -103,6 +144,17 @@ class Settings(BaseSettings):
         le=100_000,
         description="Most event streams and long polls at once; one API key may hold half of them.",
     )
+
+    @field_validator("root_path")
+    @classmethod
+    def _path(cls, value: str) -> str:
+        return path_below(value)
+
+    @field_validator("trusted_proxies")
+    @classmethod
+    def _networks(cls, value: str) -> str:
+        networks(value)
+        return value
 
     @classmethod
     def settings_customise_sources(

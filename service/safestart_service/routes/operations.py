@@ -18,7 +18,12 @@ router = APIRouter(tags=["operations"])
 log = logging.getLogger("safestart.service")
 
 
-@router.get("/healthz", summary="Alive", responses={200: answer(Health, "The process lives."), **refusals()})
+@router.get(
+    "/healthz",
+    operation_id="getHealth",
+    summary="Alive",
+    responses={200: answer(Health, "The process lives."), **refusals()},
+)
 async def healthz(request: Request) -> Response:
     """The process lives and its event loop turns."""
     return Json({"status": "ok", "version": request.app.version})
@@ -26,6 +31,7 @@ async def healthz(request: Request) -> Response:
 
 @router.get(
     "/readyz",
+    operation_id="getReadiness",
     summary="Ready",
     responses={200: answer(Readiness, "The database and a cluster answer."), **refusals(503)},
 )
@@ -62,6 +68,7 @@ def readyz(request: Request) -> Response:
 
 @router.get(
     "/metrics",
+    operation_id="getMetrics",
     summary="Prometheus metrics",
     responses={200: content("text/plain", {"type": "string"}, "Exposition format."), **refusals()},
 )

@@ -154,7 +154,7 @@ class CloudOutput(WireModel):
     high: list[float]
 
 
-class FlownOutput(WireModel):
+class FlownVariantOutput(WireModel):
     """Noisy flights from the boundary of ``chance_open_loop``; the start that succeeded least."""
 
     starts: int
@@ -171,7 +171,7 @@ class SystemOutput(WireModel):
     name: str
     variants: list[VariantOutput]
     cloud: CloudOutput | None
-    flown: FlownOutput | None
+    flown: FlownVariantOutput | None
 
 
 class RatioOutput(WireModel):

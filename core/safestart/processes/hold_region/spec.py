@@ -60,7 +60,7 @@ class PolyhedronOutput(WireModel):
     volume_ratio: float = Field(description="Over the ellipsoid's volume.")
 
 
-class FlownOutput(WireModel):
+class FlownHoldOutput(WireModel):
     """Flights from a set's boundary; from beyond_polyhedron, at 1.02 of its vertices, all must fail."""
 
     set: SetName
@@ -83,7 +83,7 @@ class HoldRegionOutputs(WireModel):
     reference_thrust_m_s2: float = Field(description="Largest thrust that the hold point itself asks for.")
     ellipsoid: EllipsoidOutput | None
     polyhedron: PolyhedronOutput | None
-    flown: list[FlownOutput]
+    flown: list[FlownHoldOutput]
 
 
 SPEC = ProcessSpec(

@@ -92,7 +92,7 @@ class ChainLink(WireModel):
     cells: int | None = Field(description="Cells in the inner set and out of the outer one.")
 
 
-class CounterExample(WireModel):
+class ChainCounterExample(WireModel):
     """The cell of the inner set that is farthest out of the outer one."""
 
     inner: SetName
@@ -147,7 +147,7 @@ class ChainOutputs(WireModel):
         description="[inner][outer]: share of the inner set's cells that are out of the outer set; null: empty or "
         "failed."
     )
-    counter_examples: list[CounterExample]
+    counter_examples: list[ChainCounterExample]
     horizon_contained_s: list[Containment]
     slivers: list[Sliver]
     notes: list[str]

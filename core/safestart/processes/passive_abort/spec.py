@@ -8,13 +8,13 @@ from pydantic import Field, model_validator
 
 from safestart.processes.base import ProcessSpec, WireModel
 from safestart.processes.passive_abort.wire import (
+    AbortStartInput,
     BurnInput,
     ErrorsInput,
     FailuresInput,
     KeepOut,
     Orbits,
     SemiMajorAxis,
-    StartInput,
 )
 from safestart.processes.views import Column, Facts, Findings, Rows
 
@@ -26,7 +26,7 @@ class PassiveAbortInputs(WireModel):
     """A plan, its errors, the failures, the keep-out sphere and the horizon."""
 
     semi_major_axis_m: SemiMajorAxis = 8.1e6
-    start: StartInput = Field(description="State right before the first burn, LVLH.")
+    start: AbortStartInput = Field(description="State right before the first burn, LVLH.")
     burns: list[BurnInput] = Field(min_length=1, max_length=200, description="The plan, in order.")
     keep_out_m: KeepOut = 50.0
     abort_orbits: Orbits = 2.0
@@ -65,7 +65,7 @@ class CaseOutput(WireModel):
     when_s: float | None = Field(description="When it does, s after the burn.")
 
 
-class FlownOutput(WireModel):
+class FlownAbortOutput(WireModel):
     """A flight to replay: from the state at ``begin_s`` the burns as they come, a push, then drift to ``look_s``."""
 
     burn: int
@@ -91,7 +91,7 @@ class PassiveAbortOutputs(WireModel):
         description="lambda: the greatest multiple of all errors for which every case is proved; null: not asked for."
     )
     cases: list[CaseOutput]
-    counter_example: FlownOutput | None
+    counter_example: FlownAbortOutput | None
     notes: list[str]
 
 

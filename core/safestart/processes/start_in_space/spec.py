@@ -42,6 +42,12 @@ class SpaceInputs(WireModel):
         le=60,
         description="Spin about LVLH z from the axes of LVLH on, deg/s; instead of attitude.",
     )
+    phase_deg: float | None = Field(
+        None,
+        ge=-36000,
+        le=36000,
+        description="With omega_t_deg_s: by how much the body is ahead at t = 0, deg. Absent: 0.",
+    )
     a_max_m_s2: float | None = Field(
         None,
         ge=MIN_ACCELERATION,
