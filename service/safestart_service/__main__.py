@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import sys
 
-from safestart.cli import main
+import typer
+
+from safestart.runtime.own_process import exit_code, own_configuration
+from safestart_service.commands import serve
 
 if __name__ == "__main__":
-    sys.argv[1:1] = ["serve"]
-    main()
+    own_configuration()
+    sys.exit(exit_code(lambda: typer.run(serve)))

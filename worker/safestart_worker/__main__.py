@@ -4,8 +4,13 @@ from __future__ import annotations
 
 import sys
 
-from safestart.cli import main
+import typer
+
+from safestart.runtime.own_process import exit_code, own_configuration
+from safestart_worker.commands import register
 
 if __name__ == "__main__":
-    sys.argv[1:1] = ["worker"]
-    main()
+    own_configuration()
+    app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+    register(app)
+    sys.exit(exit_code(app))

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import errno
 import os
-from collections.abc import MutableMapping
+import sys
+from collections.abc import Callable, MutableMapping
 
 from safestart.errors import InvalidInput, SafestartError
 
@@ -40,6 +41,21 @@ def own_configuration(environment: MutableMapping[str, str] = os.environ) -> Non
         if name.startswith(_READ_BY_LIBRARIES) and name not in _PLACES:
             del environment[name]
     environment.update(_OURS)
+
+
+def exit_code(run: Callable[[], object]) -> int:
+    """Run a command to its exit code; our own errors and faults of a place are one sentence and exit code 2."""
+    try:
+        run()
+    except (SafestartError, OSError) as error:
+        refusal = place_fault(error) if isinstance(error, OSError) else error
+        if refusal is None:
+            raise
+        sys.stderr.write(f"safestart: {refusal.detail}\n")
+        return 2
+    except SystemExit as ended:
+        return ended.code if isinstance(ended.code, int) else int(ended.code is not None)
+    return 0
 
 
 def place_fault(error: OSError) -> SafestartError | None:

@@ -20,7 +20,7 @@ from safestart.processes.output import Undrawn
 from safestart.processes.plotting import drawn_as, figure
 from safestart.public.client import Client
 from safestart.records.artifact import Artifact
-from safestart.runtime.own_process import own_configuration, place_fault
+from safestart.runtime.own_process import exit_code, own_configuration, place_fault
 from safestart.runtime.settings import settings
 
 ASKED = {
@@ -133,7 +133,7 @@ def test_no_data_directory_is_one_sentence(
     monkeypatch.delenv("SAFESTART_DATABASE_URL", raising=False)
     monkeypatch.setattr(sys, "argv", ["safestart", *command])
     monkeypatch.chdir(tmp_path)
-    assert cli._run() == 2
+    assert exit_code(cli.build()) == 2
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) == 1
     assert lines[0].startswith("safestart")
@@ -150,7 +150,7 @@ def test_an_account_without_a_home_gets_no_folder_named_tilde(
     monkeypatch.setattr(os.path, "expanduser", lambda path: path)
     monkeypatch.delenv("SAFESTART_DATABASE_URL", raising=False)
     monkeypatch.setattr(sys, "argv", ["safestart", "keys", "list"])
-    assert cli._run() == 2
+    assert exit_code(cli.build()) == 2
     assert "received this account has no home directory" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
 
