@@ -40,6 +40,12 @@ def proof_of(question: Question, state: Floats, answer: Answer) -> dict[str, Any
         # A margin below the stand-back gets a smaller claim above 0 that the checker can still prove.
         document["margin_m"] = max(answer.lower - GO_STAND_BACK_M, 0.5 * answer.lower)
         document["thrust_m_s2"] = answer.thrust.tolist()
+        if answer.arrival is not None:
+            margin = answer.arrival.margin
+            document["arrival"] = {
+                "stop_s": answer.arrival.stop,
+                "margin_m": max(margin - GO_STAND_BACK_M, 0.5 * margin),
+            }
     elif answer.verdict is Verdict.NO_GO:
         document["margin_m"] = min(answer.upper + NO_GO_STAND_BACK_M, 0.5 * answer.upper)
         latest = question.latest

@@ -8,6 +8,7 @@ the highest bound first. A few programs refute a hundred ends.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache
 from itertools import groupby
@@ -15,6 +16,7 @@ from itertools import groupby
 import numpy as np
 
 from safestart.exact.answer import GUARD, Answer, Evidence, Part, Verdict
+from safestart.exact.arrival import arrival_of
 from safestart.exact.limits import AT_END
 from safestart.exact.norm_rows import end_blocks
 from safestart.exact.question import Question
@@ -40,7 +42,16 @@ def synchronize(watch: Watch, state: Floats, tolerance: float, *, verdict_only: 
         ends.note(steps, search)
         if ends.lower > GUARD:
             break
-    return ends.answer(reason)
+    answer = ends.answer(reason)
+    if answer.verdict is not Verdict.GO or answer.thrust is None:
+        return answer
+    question, end = watch.question, len(answer.thrust)
+    last = watch.until(end).prediction.flight(state, answer.thrust)[-1, -1]
+    arrival = arrival_of(question, last, end * question.dt)
+    if arrival is None and verdict_only:
+        # The flight that proves the verdict first may end by a face; the best one ends well inside.
+        return synchronize(watch, state, tolerance)
+    return replace(answer, arrival=arrival)
 
 
 @lru_cache(maxsize=4)

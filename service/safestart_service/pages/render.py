@@ -52,16 +52,26 @@ def _environment() -> Environment:
     )
 
 
-def page(template: str, **values: Any) -> HTMLResponse:
+def page(template: str, *, status: int = 200, **values: Any) -> HTMLResponse:
     """A page; ``here`` is its path, ``root`` the mount path, ``script`` its module, ``plots`` whether it draws."""
     text = _environment().get_template(template).render(**values)
-    return HTMLResponse(text, headers={"Cache-Control": "no-store", "Content-Security-Policy": CSP})
+    return HTMLResponse(text, status, headers={"Cache-Control": "no-store", "Content-Security-Policy": CSP})
 
 
 def docs(description: dict[str, Any], root: str) -> Response:
     """The API description as an HTML page."""
     groups = api_operations(description)
     return page("docs.html", root=root, here="/docs", info=description["info"], groups=groups)
+
+
+def wanted(request: Request) -> bool:
+    """Whether a browser asks for a page, not a program for a document."""
+    return request.method in ("GET", "HEAD") and "text/html" in request.headers.get("accept", "")
+
+
+def missing(request: Request, root: str) -> HTMLResponse:
+    """The page for a browser at a path where nothing is."""
+    return page("missing.html", status=404, root=root, here="", path=request.scope["path"])
 
 
 @cache

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from safestart.errors import InvalidInput, invalid
 from safestart.exact.answer import Answer, Verdict
 from safestart.exact.question import SPEED_SCALE, Goal, Question
@@ -9,6 +11,7 @@ from safestart.processes.go_no_go.spec import GoNoGoInputs
 from safestart.processes.wire import DT_S
 
 _WIRE = {"keep_out": "keep_out_m", "hold": "hold_x_m, hold_y_m, hold_z_m", "speed_limit": "speed_limit_m_s"}
+_NO_STAY = "a thrust history arrives at rest, but nothing proves that the chaser can stay there"
 
 
 def question_of(inputs: GoNoGoInputs, dimensions: int) -> Question:
@@ -26,6 +29,18 @@ def question_of(inputs: GoNoGoInputs, dimensions: int) -> Question:
     except InvalidInput as error:
         field = str(error.field)
         raise invalid(_WIRE.get(field, field), str(error.required), error.received) from None
+
+
+def with_arrival(question: Question, answers: list[Answer]) -> list[Answer]:
+    """GOs of `synchronize` of which nothing proves that the chaser stays after its end become UNDECIDED."""
+    if question.goal is None:
+        return answers
+    return [
+        replace(answer, verdict=Verdict.UNDECIDED, reason=_NO_STAY)
+        if answer.verdict is Verdict.GO and answer.arrival is None
+        else answer
+        for answer in answers
+    ]
 
 
 def sentence(question: Question, answer: Answer) -> str:
@@ -50,6 +65,14 @@ def _told(question: Question, answer: Answer) -> str:
     if answer.verdict is Verdict.GO and answer.thrust is not None:
         flown = len(answer.thrust) * question.dt
         done = "is at rest in the hold ball after" if question.goal is not None else "stays for"
-        return f"a thrust history{fast} {done} {flown:g} s, with {spare} to spare{scales}"
+        told = f"a thrust history{fast} {done} {flown:g} s, with {spare} to spare{scales}"
+        if question.goal is None:
+            return told
+        if answer.arrival is None:
+            return f"{told}; that it can stay there is not proved"
+        return (
+            f"{told}; then it stops in {answer.arrival.stop:.2g} s and stands for ever, at least "
+            f"{answer.arrival.margin:.2f} m from every face"
+        )
     asked = "is at rest in the hold ball within" if question.goal is not None else "stays for"
     return f"no thrust history{fast} {asked} {span:g} s: each misses a limit by at least {short}{scales}"

@@ -9,13 +9,13 @@ from pydantic import Field, model_validator
 from safestart.model.orbit import EARTH_RADIUS
 from safestart.processes.base import ProcessSpec, WireModel
 from safestart.processes.passive_abort.wire import (
+    AbortStartInput,
     BurnInput,
     ErrorsInput,
     FailuresInput,
     KeepOut,
     Orbits,
     SemiMajorAxis,
-    StartInput,
 )
 from safestart.processes.views import Column, Facts, Findings, Rows
 
@@ -40,7 +40,7 @@ class PassiveAbortInputs(WireModel):
         le=360,
         description="Where the target is at the first burn, from perigee, deg (model earth).",
     )
-    start: StartInput = Field(description="State right before the first burn, LVLH.")
+    start: AbortStartInput = Field(description="State right before the first burn, LVLH.")
     burns: list[BurnInput] = Field(min_length=1, max_length=200, description="The plan, in order.")
     keep_out_m: KeepOut = 50.0
     abort_orbits: Orbits = 2.0
@@ -52,7 +52,7 @@ class PassiveAbortInputs(WireModel):
         "what CWH leaves out is bounded by Lagrange's remainder, drifts of many kilometres are out of its reach; "
         "earth: both bodies about the Earth with J2, any eccentricity, near the plan as it is flown there.",
     )
-    states: list[StartInput] | None = Field(
+    states: list[AbortStartInput] | None = Field(
         None,
         max_length=200,
         description="Model earth: states before each burn, around which the box of errors lies, as burns are planned "
@@ -98,7 +98,7 @@ class CaseOutput(WireModel):
     when_s: float | None = Field(description="When it does, s after the burn.")
 
 
-class FlownOutput(WireModel):
+class FlownAbortOutput(WireModel):
     """A flight to replay: from the state at ``begin_s`` the burns as they come, a push, then drift to ``look_s``."""
 
     burn: int
@@ -124,7 +124,7 @@ class PassiveAbortOutputs(WireModel):
         description="lambda: the greatest multiple of all errors for which every case is proved; null: not asked for."
     )
     cases: list[CaseOutput]
-    counter_example: FlownOutput | None
+    counter_example: FlownAbortOutput | None
     notes: list[str]
 
 

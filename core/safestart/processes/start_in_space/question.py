@@ -56,6 +56,8 @@ def question_of(inputs: SpaceInputs) -> SpaceQuestion:
         neither = getattr(inputs, name) is None and getattr(inputs, short) is None and name != "orbit"
         if both or neither:
             raise invalid(name, f"either {name} or {short}", "both" if both else "neither")
+    if inputs.phase_deg is not None and inputs.omega_t_deg_s is None:
+        raise invalid("phase_deg", "omega_t_deg_s beside it; an attitude holds its own", inputs.phase_deg)
     with _named("orbit", _ORBIT):
         orbit = _orbit(inputs)
     with _named("attitude", _ATTITUDE):
@@ -110,7 +112,8 @@ def _orbit(inputs: SpaceInputs) -> KeplerOrbit:
 def _attitude(inputs: SpaceInputs, orbit: KeplerOrbit) -> SmoothAttitude:
     said = inputs.attitude
     if said is None:
-        return Spin(math.radians(inputs.omega_t_deg_s or 0.0))
+        phase = math.radians(inputs.phase_deg or 0.0)
+        return Spin(math.radians(inputs.omega_t_deg_s or 0.0), phase=phase)
     made: SmoothAttitude
     if isinstance(said, SpinAttitude):
         made = Spin(math.radians(said.rate_deg_s), _three(said.axis), math.radians(said.phase_deg))

@@ -17,7 +17,7 @@ from safestart.processes.start_in_space.parts import (
     SpaceStart,
     ThrustInput,
 )
-from safestart.processes.views import Column, Facts, Findings
+from safestart.processes.views import Column, Facts, Findings, Layer, Picture
 from safestart.processes.wire import Horizon
 
 MOST_STARTS = 1000
@@ -41,6 +41,12 @@ class SpaceInputs(WireModel):
         ge=-60,
         le=60,
         description="Spin about LVLH z from the axes of LVLH on, deg/s; instead of attitude.",
+    )
+    phase_deg: float | None = Field(
+        None,
+        ge=-36000,
+        le=36000,
+        description="With omega_t_deg_s: by how much the body is ahead at t = 0, deg. Absent: 0.",
     )
     a_max_m_s2: float | None = Field(
         None,
@@ -124,6 +130,23 @@ SPEC = ProcessSpec(
             ),
         ),
         Facts((Column("Method", "method"), Column("Question", "question"), Column("Faces", "faces"))),
+        Picture(
+            "Starts",
+            "x [m], in the start's frame",
+            "y [m], in the start's frame",
+            (
+                Layer(
+                    "start",
+                    "points",
+                    "starts",
+                    "starts.position_m.0",
+                    "starts.position_m.1",
+                    value="verdict",
+                    beside="starts",
+                ),
+            ),
+            equal=True,
+        ),
     ),
     keywords=("certificate", "go/no-go", "torque-free", "elliptic orbit"),
     example={

@@ -6,7 +6,7 @@ import { figure } from "./words.js";
 export const FIELDS = {
   omega_t_deg_s: { first: "3", title: "Tumble rate", unit: "deg/s" },
   a_max_m_s2: { first: "0.1", title: "Thrust acceleration", unit: "m/s²" },
-  horizon_s: { first: "60", title: "Stay for", unit: "s" },
+  horizon_s: { first: "60", title: "Time in corridor", unit: "s" },
   y_max_m: { first: "150", title: "Show up to", unit: "m" },
   question: { first: "stay", title: "Requirement", words: ["stay", "synchronize"] },
   within_s: { first: "200", title: "within", unit: "s" },

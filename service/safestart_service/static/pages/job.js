@@ -103,8 +103,9 @@ async function partial(signal) {
     const { shards, outputs } = await get(`/jobs/${id}/partial`, { signal });
     const spec = await description(job.processID);
     if (signal.aborted || !outputs) return;
-    const { head, parts } = shown(known(spec, outputs, job.inputs));
-    $("results").replaceChildren(el("h2", {}, `So far: ${shards.done} of ${shards.total} parts`), ...head, ...parts);
+    const { head, pictures, parts, draws } = shown(known(spec, outputs, job.inputs));
+    $("results").replaceChildren(el("h2", {}, `So far: ${shards.done} of ${shards.total} parts`), ...head, ...pictures, ...parts);
+    for (const drawn of draws) await drawn();
   } catch {
     // Nothing yet, or the service is unavailable, which the stream reports.
   }
