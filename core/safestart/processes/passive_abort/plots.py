@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from matplotlib.ticker import MaxNLocator
 
@@ -11,8 +12,7 @@ from safestart.dynamics.cwh import transition_matrix
 from safestart.missed_burn.cases import Case
 from safestart.missed_burn.prove import Finding, Proof, Verdict
 from safestart.model.scenario import Floats
-from safestart.processes.base import Artifact
-from safestart.processes.plotting import figure, png
+from safestart.processes.plotting import drawn_as, figure
 
 COLOURS = {"PROVED": "#1B7F3B", "VIOLATED": "#C0392B", "UNKNOWN": "#B7791F"}
 _MARKS = {"start": "o", "made": "o", "partial": "s", "misdirected": "^", "late": "D", "stuck": "v"}
@@ -21,7 +21,8 @@ _SAMPLES = 240
 _MEMBERS = 12
 
 
-def picture(proof: Proof) -> Artifact:
+@drawn_as("aborts.png")
+def picture(proof: Proof) -> Figure:
     """Left: free drifts after every burn, some members of each set, coloured by the proof. Right: distances."""
     drawing = figure(12.0, 5.2)
     plane, bars = drawing.subplots(1, 2, width_ratios=(1.25, 1.0))
@@ -35,7 +36,7 @@ def picture(proof: Proof) -> Artifact:
         Verdict.UNKNOWN: f"unknown: {proof.gap:.2f} m of {keep_out:g} m are not proved",
     }[proof.verdict]
     drawing.suptitle(f"Burns that fail, {motion} motion; {verdict}", fontsize=11)
-    return png("aborts.png", drawing)
+    return drawing
 
 
 def draw_drifts(axes: Axes, proof: Proof, which: range) -> None:
