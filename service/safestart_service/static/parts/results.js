@@ -24,7 +24,7 @@ export function verdictBadge({ spec, tables }) {
 
 /** What the first screen of a result holds: the head of its views and its inputs beside the first of its pictures. */
 export function firstScreen(result, head, picture) {
-  const inputs = keyInputs(result.spec, result.inputs), short = !head.some((node) => node.matches(".findings, .scroll"));
+  const inputs = keyInputs(result.spec, result.inputs), short = !head.some((node) => node.matches(".findings, .scroll, .two"));
   const told = el("section", { class: "key-inputs", "aria-label": "Key inputs" }, el("h2", {}, "Asked with"), el("dl", {}, ...inputs.map(([path, value]) => definition(inputTitle(path), value))));
   return el("div", { class: "first" }, el("div", { class: "said" }, ...head, ...(short ? [told] : [])), el("div", { class: "beside" }, ...(picture ? [picture] : []), ...(short ? [] : [told])));
 }
@@ -34,7 +34,8 @@ export async function results(place, job, spec, call) {
   const document = await (await call(`/jobs/${job.jobID}/results`)).json();
   const result = known(spec, document.outputs, document.inputs, { artifacts: document.artifacts, job: job.jobID });
   const { head, pictures, parts: views, draws } = shown(result), [first, ...more] = [...pictures, ...images(call, job.processID, document.artifacts)];
-  const parts = [firstScreen(result, head, first), ...(more.length ? [el("div", { class: "two pictures" }, ...more)] : []), ...views, ...rest(result)];
+  const notes = (document.provenance?.notes ?? []).map((note) => el("p", { class: "note" }, note));
+  const parts = [firstScreen(result, head, first), ...notes, ...(more.length ? [el("div", { class: "two pictures" }, ...more)] : []), ...views, ...rest(result)];
   parts.push(el("h2", { class: "on-screen" }, "Downloads"), el("ul", { class: "files" },
     el("li", {}, download(call, `/jobs/${job.jobID}/results`, `${job.processID}-${job.jobID.slice(0, 8)}.json`, "result document")),
     ...document.artifacts.map((file) => el("li", {}, download(call, file.href, file.name, `${file.name} (${file.media_type}, ${Math.ceil(file.size / 1024)} KiB)`))),
