@@ -135,9 +135,6 @@ class Comparison:
     logarithmic: tuple[str, ...] = ()
 
 
-<<<<<<< HEAD
-View = Findings | Facts | Rows | Matrices | Overlay | Flights | Scene | Comparison
-=======
 @dataclass(frozen=True, slots=True)
 class Layer:
     """Rows of a table as one layer of a picture: columns ``x`` and ``y``, and for some ``value``.
@@ -170,8 +167,7 @@ class Picture:
     logarithmic: bool = False
 
 
-View = Findings | Facts | Rows | Matrices | Overlay | Flights | Comparison | Picture
->>>>>>> main
+View = Findings | Facts | Rows | Matrices | Overlay | Flights | Scene | Comparison | Picture
 
 
 def kinds(views: Iterable[View]) -> list[str]:

@@ -113,6 +113,8 @@ def test_refusals(wrong, field):
         ({"corridor": {"faces": [{"name": "a", "normal": [0, -1, 0], "offset_m": 0}]}}, "corridor"),
         ({"thrust": {"kind": "box", "a_max_m_s2": [0.1, 0, 0.1]}}, "thrust"),
         ({"method": "auto", "tracking": {}}, "tracking"),
+        ({"question": "synchronize"}, "question"),
+        ({"position_half_width_m": 0.1}, "position_half_width_m"),
     ],
 )
 def test_refusals_in_space(wrong, field):

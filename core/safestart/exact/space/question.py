@@ -159,7 +159,6 @@ def five_faces(shape: CorridorShape, axis: Vector = (0.0, 1.0, 0.0)) -> tuple[Fa
     return tuple(out)
 
 
-<<<<<<< HEAD
 def turned_from_y(axis: Vector) -> Floats:
     """The shortest rotation (3, 3) that turns +y into ``axis``; raises ``InvalidInput`` for an axis of length 0."""
     length = math.hypot(*axis)
@@ -177,8 +176,6 @@ def turned_from_y(axis: Vector) -> Floats:
     return np.asarray(turn)
 
 
-def _check_faces(faces: Sequence[Face]) -> None:
-=======
 def _check_goal(goal: Goal, faces: Sequence[Face], steps: int) -> None:
     number("earliest", goal.earliest, 1, steps)
     hold = goal.hold
@@ -193,7 +190,6 @@ def _check_goal(goal: Goal, faces: Sequence[Face], steps: int) -> None:
 
 @lru_cache(maxsize=64)
 def _check_faces(faces: tuple[Face, ...]) -> None:
->>>>>>> main
     if not 1 <= len(faces) <= MOST_FACES:
         raise invalid("faces", f"1 to {MOST_FACES} faces", len(faces))
     names = [face.name for face in faces]

@@ -13,12 +13,8 @@ from safestart.processes.go_no_go.cost import cost
 from safestart.processes.go_no_go.method_registry import UNPROVED, MethodName
 from safestart.processes.go_no_go.question_fields import QuestionFields, QuestionKind
 from safestart.processes.go_no_go.uncertainty import Member
-<<<<<<< HEAD
 from safestart.processes.tracking_mpc.controller_input import TrackingAnswer
-from safestart.processes.views import Column, Facts, Findings
-=======
 from safestart.processes.views import Column, Facts, Findings, Layer, Picture
->>>>>>> main
 from safestart.processes.wire import ScenarioInput
 
 MAX_STATES = 100_000

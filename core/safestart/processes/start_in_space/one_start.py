@@ -22,11 +22,7 @@ PARAMETERS: dict[str, Parameter] = _WHOLE.parameters | _FIVE.parameters
 """Flat names; the five faces come as their own parameters or, like any others, as the JSON of ``corridor``."""
 _ARRAYS = (
     *("verdict", "margin_m", "model_error_m", "violated_faces", "position_m", "velocity_m_s"),
-<<<<<<< HEAD
-    *("reason", "tracking", "proof"),
-=======
-    *("reason", "end_s", "proof"),
->>>>>>> main
+    *("reason", "end_s", "tracking", "proof"),
 )
 
 
@@ -41,26 +37,18 @@ class SpaceAnswer(WireModel):
     position_m: list[float] = Field(description="The start, LVLH, m.")
     velocity_m_s: list[float] = Field(description="The start, LVLH, m/s.")
     faces: list[str] = Field(description="Names of the faces.")
-<<<<<<< HEAD
+    end_s: float | None = Field(description="When the flight of a GO ends (synchronize), s.")
     tracking: TrackingAnswer | None = Field(
         None, description="Method tracking: the controller's flight, beside the exact answer."
     )
-=======
-    end_s: float | None = Field(description="When the flight of a GO ends (synchronize), s.")
->>>>>>> main
     proof: dict[str, Any] | None = Field(
         None, description="Proof document for `safestart verify`, if requested."
     )
     proof_url: str | None = Field(
         None, description="Where a service gives the proof document alone; null for UNDECIDED."
     )
-<<<<<<< HEAD
     method: Method
-    question: Literal["stay"]
-=======
-    method: Literal["exact", "auto"]
     question: QuestionKind
->>>>>>> main
 
 
 def parse(values: Mapping[str, Any]) -> SpaceInputs:

@@ -34,17 +34,11 @@ def run(inputs: SpaceInputs, context: Context) -> ProcessOutput:
     flown = _by_tracking(inputs, question) if inputs.method == "tracking" else None
     answers, tracking = [], []
     for k, state in enumerate(states):
-<<<<<<< HEAD
-        answer = decide_in_space(question, state)
+        answer = decide_in_space(question, state) if half is None else decide_from_box(question, state, half)
         if flown is not None:
-            answer, said, told = flown(state, answer, _told(question, answer))
+            answer, said, told = flown(state, answer, _told(question, half, answer))
             tracking.append((said, told))
         answers.append(answer)
-=======
-        answers.append(
-            decide_in_space(question, state) if half is None else decide_from_box(question, state, half)
-        )
->>>>>>> main
         context.step(k + 1, len(states), "starts")
     errors = [model_error(question, state) for state in states]
     distances = (watch.offsets - states[:, :3] @ watch.normals.T).tolist()
@@ -69,23 +63,16 @@ def run(inputs: SpaceInputs, context: Context) -> ProcessOutput:
             "position_m": states[:, :3].tolist(),
             "velocity_m_s": states[:, 3:].tolist(),
             "reason": [
-<<<<<<< HEAD
-                _sentence(answer, error, tracking[k][1] if tracking else _told(question, answer))
+                _sentence(answer, error, tracking[k][1] if tracking else _told(question, half, answer))
                 for k, (answer, error) in enumerate(zip(answers, errors, strict=True))
             ],
-            "tracking": [said for said, _ in tracking] or None,
-=======
-                _sentence(question, half, answer, error)
-                for answer, error in zip(answers, errors, strict=True)
-            ],
             "end_s": [_end(question, answer) for answer in answers] if question.goal else None,
->>>>>>> main
+            "tracking": [said for said, _ in tracking] or None,
             "proof": proof,
         }
     )
 
 
-<<<<<<< HEAD
 def _by_tracking(inputs: SpaceInputs, question: SpaceQuestion) -> Any:
     """The flights of method tracking; imported here, as no other method needs a compiler."""
     from safestart.processes.start_in_space.tracking import flights
@@ -93,21 +80,21 @@ def _by_tracking(inputs: SpaceInputs, question: SpaceQuestion) -> Any:
     return flights(inputs, question)
 
 
-def _sentence(answer: Answer, error: float, told: str) -> str:
-=======
 def _end(question: SpaceQuestion, answer: Answer) -> float | None:
     if answer.verdict is not Verdict.GO or answer.thrust is None:
         return None
     return len(answer.thrust) * question.dt
 
 
-def _sentence(question: SpaceQuestion, half: Floats | None, answer: Answer, error: float) -> str:
->>>>>>> main
+def _sentence(answer: Answer, error: float, told: str) -> str:
     """The verdict in words, with a warning where the linear model's own error may be larger than the margin."""
-    told = asked.told(question, answer) if half is None else _from_box(question, answer)
     if abs(answer.margin_m) < error:
         return f"{told}; the linear model itself may be off by about {error:.2g} m"
     return told
+
+
+def _told(question: SpaceQuestion, half: Floats | None, answer: Answer) -> str:
+    return asked.told(question, answer) if half is None else _from_box(question, answer)
 
 
 def _from_box(question: SpaceQuestion, answer: Answer) -> str:

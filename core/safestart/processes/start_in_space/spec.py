@@ -20,12 +20,8 @@ from safestart.processes.start_in_space.parts import (
     ThrustInput,
     Vector,
 )
-<<<<<<< HEAD
 from safestart.processes.tracking_mpc.controller_input import TrackingAnswer
-from safestart.processes.views import Column, Facts, Findings
-=======
 from safestart.processes.views import Column, Facts, Findings, Layer, Picture
->>>>>>> main
 from safestart.processes.wire import Horizon
 
 MOST_STARTS = 1000
@@ -75,9 +71,6 @@ class SpaceInputs(WireModel):
     tracking: TrackingSettings | None = Field(
         None, description="Settings of the tracking MPC (method tracking); absent: their defaults."
     )
-    within_s: Horizon = Field(
-        200.0, description="Latest arrival of the tracking MPC at the port (method tracking), s."
-    )
     question: QuestionKind = Field(
         "stay",
         description="stay: inside all faces at all times of horizon_s. synchronize: in addition at rest against the "
@@ -85,7 +78,9 @@ class SpaceInputs(WireModel):
         "not asked.",
     )
     horizon_s: Horizon = Field(60.0, description="How long to stay, s.")
-    within_s: Horizon = Field(200.0, description="Latest end of synchronize, s.")
+    within_s: Horizon = Field(
+        200.0, description="Latest end of synchronize, and latest arrival of the tracking MPC, s."
+    )
     hold_m: Vector | None = Field(
         None,
         description="Hold point, body frame, m; absent: on the axis of the five faces, at the hold radius.",
@@ -124,13 +119,8 @@ class SpaceInputs(WireModel):
 class SpaceOutputs(WireModel):
     """Arrays over the starts, in their order; margins in metres."""
 
-<<<<<<< HEAD
     method: Method
-    question: Literal["stay"]
-=======
-    method: Literal["exact", "auto"]
     question: QuestionKind
->>>>>>> main
     faces: list[str] = Field(description="Names of the faces.")
     verdict: list[Literal["GO", "NO_GO", "UNDECIDED"]]
     margin_m: list[float | None] = Field(
@@ -145,35 +135,28 @@ class SpaceOutputs(WireModel):
     position_m: list[list[float]] = Field(description="Starts, LVLH, m.")
     velocity_m_s: list[list[float]] = Field(description="Starts, LVLH, m/s.")
     reason: list[str] = Field(description="The verdict in a sentence.")
-<<<<<<< HEAD
-    tracking: list[TrackingAnswer] | None = Field(
-        None, description="Method tracking: the controller's flight from each start, beside the exact answer."
-=======
     end_s: list[float | None] | None = Field(
         None,
         description="When the flight of a GO is at rest in the hold ball (synchronize), s; null for the others.",
->>>>>>> main
+    )
+    tracking: list[TrackingAnswer] | None = Field(
+        None, description="Method tracking: the controller's flight from each start, beside the exact answer."
     )
     proof: list[dict[str, Any] | None] | None = Field(
         None, description="Proof documents for `safestart verify`, when asked for; null for UNDECIDED."
     )
 
 
-<<<<<<< HEAD
 _FLIGHT_S = 1.0
 
 
-def _cost(inputs: SpaceInputs) -> float:
-    one = 3.0 * program_s(inputs.horizon_s) + (_FLIGHT_S if inputs.method == "tracking" else 0.0)
-    return FIRST_S + one * len(inputs.starts)
-=======
 def _cost(inputs: SpaceInputs) -> float:
     synchronize = inputs.question == "synchronize"
     one = 3.0 * program_s(inputs.within_s if synchronize else inputs.horizon_s)
     if inputs.position_half_width_m or inputs.velocity_half_width_m_s:
         one *= 10.0
-    return FIRST_S + (4.0 if synchronize else 1.0) * one * len(inputs.starts)
->>>>>>> main
+    flight = _FLIGHT_S if inputs.method == "tracking" else 0.0
+    return FIRST_S + ((4.0 if synchronize else 1.0) * one + flight) * len(inputs.starts)
 
 
 SPEC = ProcessSpec(
@@ -202,11 +185,8 @@ SPEC = ProcessSpec(
                 "velocity_m_s",
                 "violated_faces",
                 "reason",
-<<<<<<< HEAD
-                "tracking",
-=======
                 "end_s",
->>>>>>> main
+                "tracking",
             ),
         ),
     ),

@@ -24,7 +24,6 @@ from safestart.processes.tracking_mpc import flown_answer as flown
 from safestart.processes.wire import DT_S
 from safestart.tracking.take import Approach, take
 
-RADIUS_M, REST_M_S = 0.5, 0.05
 Flights = Callable[[Floats, Answer, str], tuple[Answer, dict[str, Any], str]]
 
 
@@ -35,6 +34,19 @@ def flights(inputs: SpaceInputs, question: SpaceQuestion) -> Flights:
     """
     if len(inputs.starts) > flown.MOST_STARTS:
         raise invalid("starts", f"at most {flown.MOST_STARTS} with method tracking", len(inputs.starts))
+    asks = {
+        "question": question.plain and inputs.question == "stay",
+        "hold_m": inputs.hold_m is None,
+        "position_half_width_m": inputs.position_half_width_m == 0.0,
+        "velocity_half_width_m_s": inputs.velocity_half_width_m_s == 0.0,
+    }
+    for name, known in asks.items():
+        if not known:
+            raise invalid(
+                name,
+                "stay for single starts, without a speed limit or hold point, with method tracking",
+                name,
+            )
     approach = _approach(inputs, question)
 
     def fly(state: Floats, exact: Answer, told: str) -> tuple[Answer, dict[str, Any], str]:
@@ -81,8 +93,8 @@ def _approach(inputs: SpaceInputs, question: SpaceQuestion) -> Approach:
         flown.tuning_of(inputs.tracking, min(thrust.a_max)),
         most=round(inputs.within_s / DT_S),
         least=question.steps,
-        radius=RADIUS_M,
-        rest=REST_M_S,
+        radius=inputs.ball_radius_m,
+        rest=inputs.rest_speed_m_s,
         turn=tuple(tuple(float(e) for e in row) for row in turned_from_y(axis).T),
     )
 
