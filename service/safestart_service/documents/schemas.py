@@ -239,6 +239,14 @@ class Readiness(BaseModel):
     jobs: dict[str, int]
 
 
+class CallerDocument(BaseModel):
+    """Who is asking."""
+
+    key_id: str | None = Field(description="Id of the key; null where no keys are in use.")
+    name: str = Field(description="Name of the key; local without one.")
+    role: Role = Field(description="What the caller may do: read; submit; admin.")
+
+
 class KeyDocument(BaseModel):
     """An API key without its secret."""
 
