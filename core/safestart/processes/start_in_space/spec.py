@@ -18,7 +18,7 @@ from safestart.processes.start_in_space.parts import (
     ThrustInput,
 )
 from safestart.processes.views import Column, Facts, Findings, Layer, Picture
-from safestart.processes.wire import Horizon
+from safestart.processes.wire import Horizon, Triple
 
 MOST_STARTS = 1000
 MOST_PROOFS = 100
@@ -81,8 +81,8 @@ class SpaceOutputs(WireModel):
         "margin, the reason says so."
     )
     violated_faces: list[list[str]] = Field(description="Faces that the start itself is outside of.")
-    position_m: list[list[float]] = Field(description="Starts, LVLH, m.")
-    velocity_m_s: list[list[float]] = Field(description="Starts, LVLH, m/s.")
+    position_m: list[Triple] = Field(description="Starts, LVLH, m.")
+    velocity_m_s: list[Triple] = Field(description="Starts, LVLH, m/s.")
     reason: list[str] = Field(description="The verdict in a sentence.")
     proof: list[dict[str, Any] | None] | None = Field(
         None, description="Proof documents for `safestart verify`, when asked for; null for UNDECIDED."
