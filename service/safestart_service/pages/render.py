@@ -7,6 +7,7 @@ required.
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -21,6 +22,7 @@ from safestart_service.pages.openapi_operations import api_operations
 
 if TYPE_CHECKING:
     from jinja2 import Environment
+    from markupsafe import Markup
 
 _HERE = Path(__file__).parents[1]
 _TYPES = {".css": "text/css", ".svg": "image/svg+xml", ".js": "text/javascript"}
@@ -43,13 +45,24 @@ def _environment() -> Environment:
     # Imported with the first page, so that the API starts without it.
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-    return Environment(
+    found = Environment(
         loader=FileSystemLoader(_HERE / "templates"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    found.filters["coded"] = coded
+    return found
+
+
+def coded(text: str) -> Markup:
+    """A text of the API description, what stands between backticks as code."""
+    from markupsafe import Markup, escape
+
+    code = Markup("<code>{}</code>")
+    parts = re.split(r"`+([^`]+)`+", str(text))
+    return Markup("").join(code.format(part) if k % 2 else escape(part) for k, part in enumerate(parts))
 
 
 def page(template: str, *, status: int = 200, **values: Any) -> HTMLResponse:

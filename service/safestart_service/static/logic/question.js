@@ -84,6 +84,15 @@ export const flight = (values, start) => ({
   ...(values.question === "synchronize" ? { within_s: values.within_s } : {}), start,
 });
 
+/** The verdict's question as inputs of the process that answers it for many starts. */
+export const asProcess = (values, start) => ({
+  id: "go-no-go",
+  inputs: {
+    ...scenario(values), rest: values.rest, question: values.question, horizon_s: values.horizon_s,
+    ...(values.question === "synchronize" ? { within_s: values.within_s } : {}), ...spreads(values), states: [start],
+  },
+});
+
 const said = (name, value) => `${FIELDS[name].title[0].toLowerCase()}${FIELDS[name].title.slice(1)} ${value}${FIELDS[name].unit ? ` ${FIELDS[name].unit}` : ""}`;
 /** Orbit and corridor values that differ from the usual ones. */
 const unusual = (values) => ["mean_motion_rad_s", ...SHAPE].filter((name) => values[name] !== Number(FIELDS[name].first)).map((name) => said(name, values[name]));

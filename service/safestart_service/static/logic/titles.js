@@ -6,7 +6,7 @@ const UNITS = Object.entries({
 });
 /** Names that are symbols; all others are words. */
 const WORDS = {
-  omega_t: "Tumble rate", a_max: "Thrust acceleration", mean_motion: "Mean motion", horizon: "Time in corridor", c_x: "Slope of the sides in x", c_z: "Slope of the sides in z",
+  omega_t: "Tumble rate", a_max: "Thrust acceleration", mean_motion: "Mean motion", c_x: "Slope of the sides in x", c_z: "Slope of the sides in z",
   x0: "Port half-width in x", z0: "Port half-width in z", r_h: "Hold radius", nx: "Nodes in x", ny: "Nodes in y", y_max: "Corridor cut at", rest: "Starts at rest in",
   omega_t_half_width: "Tumble rate ±", a_max_half_width: "Thrust ±", position_half_width: "Start position ±", velocity_half_width: "Start velocity ±", question: "Requirement",
   x: "x", y: "y", z: "z", n_c: "Steps of the controller", rho: "Share of the distance left (rho)",

@@ -1,14 +1,17 @@
 // Explore: the operating point, the regions, one start, its flight. Store and address hold the text of every field.
 
-import { FIELDS, certificate, flight as flightOf, flightWords, fromAddress, mapLacks, mapWords, paper, proven, read, region as regionOf, start as startOf, toAddress } from "../logic/question.js";
 import { nearest, within } from "../logic/geometry.js";
+import { PRESETS } from "../logic/presets.js";
+import { FIELDS, asProcess, certificate, flight as flightOf, flightWords, fromAddress, mapLacks, mapWords, paper, proven, read, region as regionOf, start as startOf, toAddress } from "../logic/question.js";
 import { Store } from "../logic/store.js";
-import { figure } from "../logic/words.js";
+import { rowsOf } from "../logic/tables.js";
+import { csv, figure } from "../logic/words.js";
 import { execute, get, post } from "../parts/api.js";
 import { saveButtons } from "../parts/chart.js";
+import { copies } from "../parts/copies.js";
 import { Flight } from "../parts/flight.js";
 import { drawMap, pointAt } from "../parts/map.js";
-import { $, el, fail } from "../parts/page.js";
+import { $, el, fail, save } from "../parts/page.js";
 import { listStored, storedInputs, storedNote, storedSets } from "../parts/stored.js";
 import { verdict as verdictCards } from "../parts/verdict.js";
 
@@ -231,6 +234,16 @@ map.addEventListener("mousemove", (event) => {
 $("frame").addEventListener("change", redraw);
 $("stored").addEventListener("change", ({ target }) => change({ job: target.value, ...storedInputs(target.value) }));
 map.after(saveButtons(map, "safe-start-region", el));
+$("verdict").after(copies(() => { const asked = started(store.inputs); return asked && asProcess(asked.values, asked.start); }));
+$("flight-tools").append(el("button", { type: "button", class: "plain", onclick: () => save("flight.csv", csv(rowsOf(flight.data))) }, "Flight as CSV"));
+$("preset").append(...PRESETS.map(({ title }, k) => el("option", { value: String(k) }, title)));
+$("preset").addEventListener("change", ({ target }) => {
+  const chosen = PRESETS[target.value];
+  $("preset-note").textContent = chosen ? `${chosen.from}. The other fields keep what they hold.` : "";
+  if (!chosen) return;
+  change(chosen.texts);
+  store.hasten();
+});
 if (unknown.length) $("address").textContent = `The address has settings that this page does not know: ${unknown.join(", ")}.`;
 for (const details of document.querySelectorAll("#controls details")) {
   details.open = [...details.querySelectorAll("input[name]")].some(({ name }) => store.inputs[name] !== FIELDS[name].first);

@@ -74,6 +74,9 @@ function rows(jobs) {
   if (focused && !focused.isConnected) nodes.find((node) => node.dataset.job === focused.dataset.job)?.querySelector(`[data-control="${control}"], [data-control]`)?.focus();
 }
 
+/** How long an ended job ran. */
+const took = ({ started, finished }) => (started && finished ? el("span", { class: "took" }, `ran ${duration((Date.parse(finished) - Date.parse(started)) / 1000)}`) : null);
+
 function row(job) {
   const name = el("a", { "data-control": "open", href: `${root}/dashboard/jobs/${job.jobID}` }, job.processID);
   const box = el("input", { type: "checkbox", "data-control": "choose", "aria-label": `choose ${job.processID} ${job.jobID.slice(0, 8)}` });
@@ -83,7 +86,7 @@ function row(job) {
     $("compare").disabled = chosen.size < 2;
   });
   const line = el("div", { class: "line" }, job.status === "successful" ? box : el("span", { class: "no-box" }),
-    name, el("code", {}, job.jobID.slice(0, 8)), status(job), el("time", {}, moment(job.created)));
+    name, el("code", {}, job.jobID.slice(0, 8)), status(job), took(job), el("time", {}, moment(job.created)));
   const below = [];
   if (job.status === "running") {
     below.push(el("div", { class: "line" }, el("progress", { max: 100, value: job.progress, "aria-label": "progress" }),

@@ -2,6 +2,7 @@
 
 import { Store } from "../logic/store.js";
 import { call, execute, get, root } from "../parts/api.js";
+import { copies } from "../parts/copies.js";
 import { field, mark } from "../parts/form.js";
 import { $, el, fail, loading } from "../parts/page.js";
 import { description } from "../parts/process.js";
@@ -46,7 +47,7 @@ function showForm({ state, answer, error }) {
   entry = field(schema, schema, "", "", given);
   $("form").replaceChildren(entry.node, el("div", { class: "tools" },
     el("button", { type: "submit" }, light ? "Run now" : "Submit"),
-    light ? el("button", { type: "button", class: "plain", onclick: queue }, "Queue it") : null));
+    light ? el("button", { type: "button", class: "plain", onclick: queue }, "Queue it") : null), copies(() => ({ id: spec.id, inputs: entry.value() })));
 }
 
 /** One schema of all inputs, from the description's separate schemas. */

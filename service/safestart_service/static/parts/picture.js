@@ -3,6 +3,7 @@
 import { corridor } from "../logic/geometry.js";
 import { shapeOf } from "../logic/layers.js";
 import { sense } from "../logic/outcome.js";
+import { roundTicks } from "../logic/words.js";
 import { draw, saveButtons, theme } from "./chart.js";
 import { el } from "./page.js";
 
@@ -30,6 +31,11 @@ const DRAWN = {
 
 const points = ({ rows }) => ({ x: rows.map(({ x }) => x), y: rows.map(({ y }) => y) });
 
+function logarithmic(layers) {
+  const values = layers.flatMap(({ rows }) => rows.map(({ y }) => y)).filter((y) => y > 0), ticks = roundTicks(Math.min(...values), Math.max(...values));
+  return { type: "log", ...(ticks.length > 1 ? { tickvals: ticks, ticktext: ticks.map(String) } : {}) };
+}
+
 /** Draw the layers of a view, in the inputs' corridor if it has one. */
 export async function drawPicture({ view, result, chart, layers }) {
   const shades = theme(), traces = [], shape = view.equal ? shapeOf(result.inputs) : null;
@@ -50,7 +56,7 @@ export async function drawPicture({ view, result, chart, layers }) {
   const equal = view.equal ? { scaleanchor: "x", constrain: "domain" } : {};
   await draw(chart, traces, {
     title: { text: view.title }, xaxis: { title: { text: view.x }, ...(view.equal ? { constrain: "domain" } : {}) },
-    yaxis: { title: { text: view.y }, ...equal, ...(view.logarithmic ? { type: "log", dtick: "D2" } : {}) },
+    yaxis: { title: { text: view.y }, ...equal, ...(view.logarithmic ? logarithmic(layers) : {}) },
   });
   chart.after(saveButtons(chart, view.title.toLowerCase().replaceAll(/[^a-z]+/g, "-"), el));
 }
