@@ -81,7 +81,7 @@ def columns_of(spec: ProcessSpec) -> dict[str, TableColumns]:
 
 def output_columns(spec: ProcessSpec) -> dict[str, tuple[Kind, bool, bool]]:
     """Outputs that are numbers or arrays of them: type, whether numbers may be missing, whether it is an array."""
-    found = {}
+    found: dict[str, tuple[Kind, bool, bool]] = {}
     for name, field in spec.outputs.model_fields.items():
         kind, nullable = _plain(field.annotation)
         deep = get_origin(kind) is list
