@@ -40,6 +40,8 @@ def register(app: typer.Typer) -> None:
         with target("--output", output_file) as file:
             with reporting(process_id) as context:
                 result = execute(process_id, inputs, context)
+            for note in result.document["provenance"].get("notes", ()):
+                err.print(note, soft_wrap=True, markup=False)
             if file is not None:
                 _write(file, result)
         if as_json or output_file is None:

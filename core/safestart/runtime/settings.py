@@ -5,8 +5,9 @@ from __future__ import annotations
 import ipaddress
 import os
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from difflib import get_close_matches
+from errno import ENOENT
 from functools import cache
 from pathlib import Path
 from typing import Any, Literal
@@ -171,21 +172,42 @@ class Settings(BaseSettings):
         """The database URL with its password; creates the default directory if it is missing."""
         if self.database_url:
             return with_password(self.database_url, self.database_password_file)
-        folder = user_data_path("safestart")
-        folder.mkdir(parents=True, exist_ok=True)
+        folder = _place(user_data_path)
+        try:
+            if folder is None:
+                raise FileNotFoundError(ENOENT, "this account has no home directory")
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            required = "a setting SAFESTART_DATABASE_URL, or a data directory that can be made"
+            received = error.strerror if folder is None else f"{folder} ({error.strerror})"
+            raise InvalidInput(
+                f"database_url: required {required}, received {received}",
+                field="database_url",
+                required=required,
+                received=received,
+            ) from None
         return f"sqlite:///{folder / 'safestart.sqlite3'}"
 
 
 def _file(kind: type[BaseSettings]) -> TomlConfigSettingsSource:
     """Read the settings file; raises ``InvalidInput`` when a named file is missing or is not TOML."""
     named = os.environ.get("SAFESTART_CONFIG")
-    path = Path(named) if named else user_config_path("safestart") / "safestart.toml"
-    if named and not path.is_file():
+    folder = _place(user_config_path)
+    path = Path(named) if named else folder / "safestart.toml" if folder else None
+    if named and path is not None and not path.is_file():
         raise invalid("SAFESTART_CONFIG", "the path of a TOML file", named)
     try:
-        return TomlConfigSettingsSource(kind, toml_file=path)
+        return TomlConfigSettingsSource(kind, toml_file=path or ())
     except (OSError, ValueError) as error:  # invalid TOML or UTF-8 is a ValueError
         raise invalid(str(path), "a readable TOML file in UTF-8", str(error)) from None
+
+
+def _place(of_user: Callable[[str], Path]) -> Path | None:
+    """A folder of the user's; None for an account without a home directory."""
+    try:
+        return of_user("safestart")
+    except RuntimeError:
+        return None
 
 
 @cache

@@ -18,6 +18,7 @@ from starlette.exceptions import HTTPException
 
 from safestart.errors import SafestartError
 from safestart.model.validation import refusal
+from safestart_service.pages import render as pages
 
 MEDIA_TYPE = "application/problem+json"
 OGC_PREFIX = "http://www.opengis.net/def/exceptions/ogcapi-processes-1/1.0/"
@@ -169,6 +170,8 @@ async def _on_http(request: Request, error: Exception) -> Response:
     required = received = None
     headers = dict(error.headers or {})
     root = request.scope.get("root_path", "")
+    if status is HTTPStatus.NOT_FOUND and pages.wanted(request):
+        return pages.missing(request, root)
     if status is HTTPStatus.NOT_FOUND and detail == status.phrase:
         detail = f"nothing is at {request.scope['path']}; {root}/openapi.json lists all paths"
     elif status is HTTPStatus.METHOD_NOT_ALLOWED:

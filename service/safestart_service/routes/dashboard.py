@@ -49,7 +49,7 @@ async def trade(request: Request) -> Response:
 async def submit(request: Request) -> Response:
     """A form for each process, made from its schema."""
     return pages.page(
-        "submit.html", root=root_path(request), here="/dashboard/submit", script="submit.js", plots=False
+        "submit.html", root=root_path(request), here="/dashboard/submit", script="submit.js", plots=True
     )
 
 

@@ -9,8 +9,9 @@ from fastapi.responses import Response
 from prometheus_client.exposition import CONTENT_TYPE_LATEST
 
 from safestart.errors import Unavailable
+from safestart_service.access.gate import caller
 from safestart_service.documents.openapi import answer, content, refusals
-from safestart_service.documents.schemas import Health, Readiness
+from safestart_service.documents.schemas import CallerDocument, Health, Readiness
 from safestart_service.http.answers import Json
 from safestart_service.state import services
 
@@ -63,6 +64,19 @@ def readyz(request: Request) -> Response:
             "places_taken": crew.busy,
             "jobs": counts,
         }
+    )
+
+
+@router.get(
+    "/caller",
+    summary="Who is asking",
+    responses={200: answer(CallerDocument, "The caller, as the audit log names it."), **refusals(503)},
+)
+async def who(request: Request) -> Response:
+    """The key of this request by its id and name, and what it may do."""
+    by = caller(request)
+    return Json(
+        {"key_id": by.key_id, "name": by.name, "role": by.role.value}, headers={"Cache-Control": "no-store"}
     )
 
 

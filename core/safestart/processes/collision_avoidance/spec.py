@@ -207,7 +207,7 @@ SPEC = ProcessSpec(
     id="collision-avoidance",
     title="Collision avoidance between two satellites",
     description=(
-        "The game of paper 001: the states from which separation cannot be kept (proved, and by a level set whose "
+        "The game of Hui et al.: the states from which separation cannot be kept (proved, and by a level set whose "
         "error is measured), the capture set of the recovery slot, the escape modes, and closed-loop encounters "
         "with breach probabilities for every pilot and adversary."
     ),

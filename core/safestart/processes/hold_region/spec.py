@@ -90,9 +90,9 @@ SPEC = ProcessSpec(
     id="hold-region",
     title="Region that the hold keeps",
     description=(
-        "Station keeping at the hold point of a turning target by LQR (paper 000, section 8.3): the largest ellipsoid "
-        "of errors that stays within corridor and thrust limit at all times and every angle of the body, and the "
-        "largest set at all from which the loop meets no limit, a polyhedron; both flown from their boundary."
+        "Station keeping at the hold point of a turning target by LQR (Iskender et al., section 8.3): the largest "
+        "ellipsoid of errors that stays within corridor and thrust limit at all times and every angle of the body, and "
+        "the largest set at all from which the loop meets no limit, a polyhedron; both flown from their boundary."
     ),
     inputs=HoldRegionInputs,
     outputs=HoldRegionOutputs,

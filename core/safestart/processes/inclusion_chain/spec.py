@@ -157,7 +157,7 @@ SPEC = ProcessSpec(
     id="inclusion-chain",
     title="Inclusion chain of the safe-start sets",
     description=(
-        "Computes S_tube, S_ana, S_sync and S_HJpos (paper 000, eq. 12) at one horizon on one grid, the sound "
+        "Computes S_tube, S_ana, S_sync and S_HJpos (Iskender et al., eq. 12) at one horizon on one grid, the sound "
         "certificate in the place of S_ana and S_ana, which is not sound, beside it, with the velocity-aware HJ "
         "target. For every pair: which share of the one lies outside the other, with a counter-example and, where "
         "there is one, its proof; and the horizon at which the certified set is contained."

@@ -130,7 +130,7 @@ SPEC = ProcessSpec(
     id="passive-safety",
     title="Passive safety of the switched rendezvous, proved",
     description=(
-        "Reach tubes of the switched LQR rendezvous of paper 003 (linear or nonlinear dynamics, published or own "
+        "Reach tubes of the switched LQR rendezvous of Chan and Mitra (linear or nonlinear dynamics, published or own "
         "gains, octagon or circle as guard): thrust, line of sight, speed, and separation after an engine failure at "
         "any time of a window. SAFE is proved, UNSAFE comes with a flight to replay, UNKNOWN with a reason. Brackets "
         "the critical abort time."

@@ -156,9 +156,9 @@ SPEC = ProcessSpec(
     id="tracking-mpc",
     title="MPC for tracking a tumbling target",
     description=(
-        "Paper 002, corrected: a chaser docks with a target that tumbles freely about three axes. One flight with its "
-        "certificate, the starts that the controller can take beside those that any impulse history can, and a Monte "
-        "Carlo study over navigation, input, spin and inertia errors. Pictures; the study in shards."
+        "Rebollo et al., corrected: a chaser docks with a target that tumbles freely about three axes. One flight with "
+        "its certificate, the starts that the controller can take beside those that any impulse history can, and a "
+        "Monte Carlo study over navigation, input, spin and inertia errors. Pictures; the study in parts."
     ),
     inputs=TrackingMpcInputs,
     outputs=TrackingMpcOutputs,
