@@ -10,9 +10,10 @@ from fastapi.responses import Response
 from starlette.types import Scope
 
 from safestart.errors import NotFound
+from safestart.processes import door
+from safestart.processes.door import OneStart
 from safestart.processes.flat import described
-from safestart.processes.go_no_go import door, run
-from safestart.processes.go_no_go.door import OneStart
+from safestart.processes.go_no_go import run
 from safestart.processes.go_no_go.method_registry import RENAMED
 from safestart.processes.go_no_go.one_start import GoNoGoAnswer
 from safestart.processes.go_no_go.spec import SPEC, GoNoGoInputs, GoNoGoOutputs

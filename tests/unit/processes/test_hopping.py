@@ -107,6 +107,23 @@ def test_passive_abort_shows_a_flight_that_enters() -> None:
     assert done.document["outputs"]["model"] == "nonlinear"
 
 
+def test_passive_abort_speaks_about_the_true_earth() -> None:
+    orbit = {
+        "eccentricity": 0.002,
+        "inclination_deg": 98,
+        "argument_of_perigee_deg": 30,
+        "true_anomaly_deg": 10,
+    }
+    done = execute("passive-abort", _plan(model="earth", error_level=False, keep_out_m=30, **orbit))
+    outputs = done.document["outputs"]
+    assert (outputs["verdict"], outputs["model"]) == ("PROVED", "earth")
+    assert "J2" in outputs["notes"][0]
+    states = [{"position_m": [0, y, 0], "velocity_m_s": [0, 0, 0]} for y in (182.06, 20.0)]
+    near = execute("passive-abort", _plan(model="earth", error_level=False, keep_out_m=30, states=states))
+    assert near.document["outputs"]["verdict"] == "VIOLATED"
+    assert near.document["outputs"]["counter_example"]["distance_m"] < 30
+
+
 @pytest.mark.parametrize(
     ("more", "said"),
     [
@@ -120,6 +137,10 @@ def test_passive_abort_shows_a_flight_that_enters() -> None:
         ({"failures": {"late_s": 5000}}, "late_s"),
         ({"model": "nonlinear", "errors": {"at_each_burn": False}}, "at_each_burn"),
         ({"semi_major_axis_m": 6e6}, "semi_major_axis_m"),
+        ({"model": "earth", "errors": {"at_each_burn": False}}, "at_each_burn"),
+        ({"model": "earth", "eccentricity": 0.3}, "perigee"),
+        ({"model": "earth", "states": []}, "states"),
+        ({"eccentricity": 0.01}, "model: earth"),
     ],
 )
 def test_bad_plans_are_named(more, said: str) -> None:
