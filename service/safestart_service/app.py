@@ -15,6 +15,7 @@ from fastapi.routing import APIRoute
 from safestart.errors import Unavailable
 from safestart.runtime.settings import Settings
 from safestart.runtime.settings import settings as process_settings
+from safestart_service.access.proxies import Proxies
 from safestart_service.documents import deprecation, openapi, problems
 from safestart_service.http.limits import Limits
 from safestart_service.metrics import MetricsMiddleware
@@ -28,6 +29,7 @@ from safestart_service.routes import (
     landing,
     operations,
     processes,
+    provenance,
     results,
 )
 from safestart_service.state import Services, attach
@@ -75,6 +77,7 @@ def create_app(
         title=TITLE,
         version=version("safestart-service"),
         description=DESCRIPTION,
+        license_info={"name": "Apache-2.0", "url": "https://www.apache.org/licenses/LICENSE-2.0"},
         lifespan=lifespan,
         openapi_url=None,
         docs_url=None,
@@ -84,17 +87,6 @@ def create_app(
     attach(app, found)
     problems.install(app)
     openapi.install(app)
-    if deprecation.NOTICES:  # it would slow every answer down
-        app.add_middleware(deprecation.Deprecation)
-    app.add_middleware(MetricsMiddleware, metrics=found.metrics)
-    app.add_middleware(
-        Limits,
-        max_body_bytes=found.settings.max_body_bytes,
-        access=found.access,
-        timeout_s=found.settings.request_timeout_s,
-        max_bodies_bytes=found.settings.max_bodies_bytes,
-        refused=found.metrics.refused,
-    )
     # Routes are tried in order and an included router costs more than a route, so the instant verdict comes first.
     app.router.routes.extend(go_no_go.one.routes)
     groups = (
@@ -104,6 +96,7 @@ def create_app(
         processes.router,
         jobs.router,
         results.router,
+        provenance.router,
         events.router,
         landing.router,
         operations.router,
@@ -116,6 +109,18 @@ def create_app(
         route for group in (go_no_go.one, *groups) for route in group.routes if isinstance(route, APIRoute)
     ]
     app.state.route_table = [(route.path_regex, route.methods) for route in routes]
+    if deprecation.NOTICES:  # it would slow every answer down
+        app.add_middleware(deprecation.Deprecation)
+    app.add_middleware(MetricsMiddleware, metrics=found.metrics)
+    app.add_middleware(
+        Limits,
+        max_body_bytes=found.settings.max_body_bytes,
+        access=found.access,
+        timeout_s=found.settings.request_timeout_s,
+        max_bodies_bytes=found.settings.max_bodies_bytes,
+        refused=found.metrics.refused,
+        proxies=Proxies(found.settings, found.access.hosts, {route.path.split("/")[1] for route in routes}),
+    )
     return app
 
 

@@ -84,6 +84,7 @@ def _serve(overrides: dict[str, object]) -> None:
             log_config=None,
             log_level="error",  # our own messages about a peer's mistakes are enough
             server_header=False,
+            proxy_headers=False,  # access/proxies.py reads them
             timeout_graceful_shutdown=3,  # event streams do not end by themselves
         )
         server = uvicorn.Server(config)
@@ -91,7 +92,7 @@ def _serve(overrides: dict[str, object]) -> None:
         gc.collect()
         gc.freeze()
         shown = f"[{chosen.host}]" if ":" in chosen.host else chosen.host
-        base = f"http://{shown}:{listener.getsockname()[1]}"
+        base = f"http://{shown}:{listener.getsockname()[1]}{chosen.root_path}"
         # The socket listens already: new connections are answered as soon as the loop runs.
         typer.echo(f"safestart: {base} (dashboard {base}/dashboard, calls {base}/docs)")
         if not is_loopback(address):

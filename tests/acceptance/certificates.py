@@ -1,7 +1,8 @@
-"""An authority and a certificate that it signed, as an operator would make them for a Dask cluster."""
+"""An authority and a certificate that it signed, as an operator would make them for a Dask cluster or a proxy."""
 
 from __future__ import annotations
 
+import ipaddress
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
@@ -12,14 +13,14 @@ from cryptography.x509.oid import NameOID
 
 
 class Authority:
-    """Makes its files in ``folder``: ``ca.pem``, ``cert.pem``, ``key.pem``."""
+    """Makes its files in ``folder``: ``ca.pem``, ``cert.pem``, ``key.pem``; the certificate is for ``host``."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, host: str = "dask") -> None:
         folder.mkdir()
         self.ca, self.certificate, self.key = (folder / f"{name}.pem" for name in ("ca", "cert", "key"))
         signer, key = (ec.generate_private_key(ec.SECP256R1()) for _ in range(2))
         self.ca.write_bytes(_signed("authority", signer.public_key(), signer, ca=True))
-        self.certificate.write_bytes(_signed("dask", key.public_key(), signer, ca=False))
+        self.certificate.write_bytes(_signed(host, key.public_key(), signer, ca=False))
         pem, form = serialization.Encoding.PEM, serialization.PrivateFormat.PKCS8
         self.key.write_bytes(key.private_bytes(pem, form, serialization.NoEncryption()))
 
@@ -49,6 +50,7 @@ def _signed(
         x509.Name([x509.NameAttribute(NameOID.COMMON_NAME, who)]) for who in (name, "authority")
     )
     now = datetime.now(UTC)
+    names = [x509.DNSName(name), x509.IPAddress(ipaddress.ip_address("127.0.0.1"))]
     return (
         x509.CertificateBuilder()
         .subject_name(subject)
@@ -58,6 +60,7 @@ def _signed(
         .not_valid_before(now - timedelta(days=1))
         .not_valid_after(now + timedelta(days=1))
         .add_extension(x509.BasicConstraints(ca=ca, path_length=None), critical=True)
+        .add_extension(x509.SubjectAlternativeName(names), critical=False)
         .sign(signer, hashes.SHA256())
         .public_bytes(serialization.Encoding.PEM)
     )

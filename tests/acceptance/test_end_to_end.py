@@ -85,6 +85,7 @@ def test_survives_kill_of_the_whole_worker(running: Running, undisturbed: dict[s
 def test_a_standard_client_lists_describes_executes_follows_and_reads(running: Running) -> None:
     """OWSLib knows OGC API - Processes 1.0 and nothing of us."""
     client = Processes(str(running.client.base_url))
+    assert client.api()["openapi"].startswith("3.0"), "it looks for a description of this version"
     assert "benchmark" in {entry["id"] for entry in client.processes()}
     described = client.process("benchmark")
     assert "async-execute" in described["jobControlOptions"]

@@ -10,9 +10,11 @@ from playwright.sync_api import Page, expect
 
 from safestart.processes.registry import PROCESS_IDS, process
 from safestart.processes.tables import tables_of
+from safestart.processes.views import Facts
 from tests.acceptance.running import Running
 from tests.browser.conftest import Visit
 from tests.browser.explored import FAULTS, edit
+from tests.browser.first_screen import check_first_screen
 
 SWEEP = {"controllers": ["filter"], "cases_per_cell": 3, "omega_t_deg_s": [1, 3], "a_max_m_s2": [0.1]}
 SMALL = {
@@ -122,8 +124,7 @@ def test_every_process_has_a_result_page(visit: Visit, up: Running, jobs: dict[s
     kinds = {view.kind for view in process(name).views}
     if "findings" in kinds:
         expect(page.locator("h1 .badge.verdict")).to_be_visible()
-    first = page.locator("#results > *").first
-    assert (first.evaluate("(node) => node.tagName"), bool(kinds)) != ("H2", False)
+    check_first_screen(page)
     tables = tables_of(up.get(f"/jobs/{jobs[name]}/results")["outputs"], process(name).tables)
     for view in process(name).views:
         if view.kind in ("rows", "findings") and tables.get(view.table):
@@ -169,6 +170,22 @@ def test_a_list_belongs_to_its_filter(visit: Visit, jobs: dict[str, str]) -> Non
     expect(page.locator(".jobs li a")).to_have_text(["flight"])
     page.wait_for_timeout(2500)
     expect(page.locator(".jobs li a")).to_have_text(["flight"])
+
+
+@pytest.mark.parametrize("name", ["go-no-go", "hop-time", "passive-safety"])
+def test_any_two_runs_of_a_process_are_compared(
+    visit: Visit, up: Running, jobs: dict[str, str], name: str
+) -> None:
+    page = visit.go(f"/dashboard/compare?jobs={jobs[name]},{jobs[name]}")
+    table = page.locator("#compare table").first
+    expect(table.locator("thead th")).to_have_count(3)
+    expect(table).to_contain_text("run [s]")
+    spec = process(name)
+    if any(view.kind == "findings" for view in spec.views):
+        expect(table).to_contain_text("verdict")
+    for view in spec.views:
+        if isinstance(view, Facts):
+            expect(table).to_contain_text(view.columns[0].title)
 
 
 def test_runs_of_different_processes_are_not_compared(visit: Visit, jobs: dict[str, str]) -> None:

@@ -149,6 +149,7 @@ def test_a_benchmark_from_form_to_result(visit: Visit) -> None:
     page.fill("#in-omega_t_deg_s", "3")
     for name in ("nx", "ny"):
         page.locator(f'[id="in-grid.{name}"]').fill("21")
+    page.locator(".rare").evaluate_all("(all) => all.forEach((one) => { one.open = true; })")
     page.select_option('[id="in-hamilton_jacobi.accuracy"]', "low")
     page.locator('[data-path="engines"] label', has_text="forward").locator("input").uncheck()
     page.click("button[type=submit]")
@@ -206,11 +207,14 @@ def test_cancel_then_try_again(visit: Visit, up: Running) -> None:
     job = up.submit(LONG, "coverage")
     page = visit.go(f"/dashboard/jobs/{job}")
     page.click("text=Cancel")
-    expect(page.locator("h1 .status")).to_have_text("dismissed")
+    expect(page.locator("h1 .status")).to_have_text("cancelled")
+    expect(page.locator("#course .log p").first).to_be_visible()
+    page.reload()
+    expect(page.locator("#course .log")).to_contain_text("dismissed")
     page.click("text=Try again")
     page.wait_for_url(lambda url: not url.endswith(job))
     page.click("text=Cancel")
-    expect(page.locator("h1 .status")).to_have_text("dismissed")
+    expect(page.locator("h1 .status")).to_have_text("cancelled")
 
 
 def test_a_worker_killed_in_mid_job(visit: Visit, up: Running) -> None:
@@ -268,7 +272,7 @@ def test_jobs_list_and_comparison(visit: Visit, benchmarks: list[str]) -> None:
         page.locator(f'input[aria-label="choose benchmark {job[:8]}"]').check()
     page.click("#compare")
     expect(page.locator("#state")).to_contain_text("omega_t_deg_s")
-    expect(page.locator("#compare table")).to_have_count(5)
+    expect(page.locator("#compare table")).to_have_count(6)
     visit.shot("compare")
 
 
@@ -307,7 +311,7 @@ def test_no_serious_finding_of_axe(
     ready = {
         f"/dashboard?{SLIVER}": ".answer",
         "/dashboard/trade": "#table tbody tr",
-        "/dashboard/submit?process=benchmark": "#in-seed",
+        "/dashboard/submit?process=benchmark": "#in-omega_t_deg_s",
         "/dashboard/jobs": ".jobs li",
         f"/dashboard/jobs/{benchmarks[0]}": ".matrix",
         f"/dashboard/compare?jobs={','.join(benchmarks)}": "table",

@@ -26,6 +26,7 @@ from safestart.proofs.checker import check
 from safestart.proofs.statement import digest_of
 from safestart.proofs.strict import ProofRejected
 from safestart.runtime.plain_json import loads
+from tests.fuzzing.arrived import truth_after
 from tests.fuzzing.decided import truth
 from tests.fuzzing.disturbed import truth_against
 from tests.fuzzing.mutants import known_fields, mutants, paths
@@ -69,6 +70,14 @@ MAKERS: dict[str, Callable[[], Document]] = {
     ),
     "synchronize-go": lambda: _one(
         Question(_scenario(0.05, 0.3), 2.0, 4, 2, GOAL, 1.5, 0.5), 0.3, 2.0, 0.0, -0.1
+    ),
+    # One step, too short to come to rest: the stop afterwards takes time.
+    "synchronize-go-moving": lambda: _one(
+        Question(_scenario(0.05, 0.02), 2.0, 1, 2, Goal(0.5, 0.05, (0.0, 1.5)), 1.5, 0.5),
+        0.1,
+        1.5,
+        -0.075,
+        0.065,
     ),
     "synchronize-no-go": lambda: _one(
         Question(_scenario(0.05, 0.05), 2.0, 4, 2, GOAL, 1.5, 0.5), 0.5, 3.0, 0.3, 0.0
@@ -189,6 +198,8 @@ def _outcome(mutant: Any, known: dict[tuple[str, tuple[str, ...]], float], rng: 
             )
     claim = printed(found.verdict, found.margin_m, found.statement)
     answer = truth_against(claim, mutant, rng) if claim.who == "against" else truth(claim, rng)
+    if claim.stop is not None and answer != "false":
+        answer = "false" if truth_after(claim, mutant) == "false" else answer
     if answer == "true" and key not in known:
         known[key] = found.margin_m
     return f"accepted: {answer}"

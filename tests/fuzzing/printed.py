@@ -20,6 +20,9 @@ _LINES = (
     rf"(?P<last>\d+) of (?P<dt>{_NUMBER}) s{_BRACKET}",
     rf"at the end: within (?P<radius>{_NUMBER}) m of (?P<hold>{_VECTOR}) m in the body frame, at most "
     rf"(?P<rest>{_NUMBER}) m/s against it",
+    rf"after that end for ever: it stops against the body frame in (?P<stop>{_NUMBER}) s and stands there, at least "
+    rf"(?P<after>{_NUMBER}) m from every face, within the limits, by thrust that follows the turn of the body "
+    r"\(not held over steps\)",
     r"thrust held over each step, motion in (?P<space>the orbit plane|space)",
     rf"corridor in the body frame, m: y >= (?P<plane>{_NUMBER}), "
     rf"\|x\| <= (?P<x0>{_NUMBER}) \+ (?P<c_x>{_NUMBER}) \(y - (?P=plane)\)"
@@ -77,6 +80,8 @@ class Printed:
     speed: float | None = None
     scale: float = 0.0
     keep_out: float = 0.0
+    stop: float | None = None
+    after: float = 0.0
     push: float = 0.0
     away: float = 0.0
     fast: float = 0.0
@@ -122,6 +127,10 @@ def printed(verdict: str, margin: float, lines: tuple[str, ...]) -> Printed:
         (scale,) = re.findall(rf"({_NUMBER}) s times the speed left to the limit", found["margin"])
         out |= {"speed": float(found["speed"]), "scale": float(scale)}
         terms.append(f"{scale} s times the speed left to the limit")
+    if "stop" in found:
+        assert who == "one", lines
+        assert (said, "hold" in found) == ("GO", True), lines
+        out |= {"stop": float(found["stop"]), "after": float(found["after"])}
     if "hold" in found:
         assert "first" in found, lines
         out |= {

@@ -11,6 +11,8 @@ import pytest
 
 from safestart.proofs import refute, statement, weights
 from safestart.proofs.checker import check
+from safestart.proofs.single import Witness
+from tests.fuzzing.arrived import truth_after
 from tests.fuzzing.decided import truth
 from tests.fuzzing.disturbed import truth_against
 from tests.fuzzing.documents import KINDS, original, run
@@ -51,6 +53,20 @@ def test_the_decision_is_one(kind: str) -> None:
         truth(replace(said, margin=said.margin + (more if said.verdict == "GO" else -more)), rng) == "false"
     )
     assert truth(replace(said, margin=-said.margin), rng) == "false"
+
+
+@pytest.mark.parametrize(
+    "change", [{"stop": 0.2}, {"stop": 2000.0}, {"after": 1.5}, {"thrusts": (0.005, 0.005)}, {"speed": 0.05}]
+)
+def test_the_decision_about_the_time_after_the_end_is_one(change: dict[str, Any]) -> None:
+    said, document = claim("synchronize-go-moving"), json.loads(original("synchronize-go-moving"))
+    assert truth_after(said, document) == "true"
+    assert truth_after(replace(said, **change), document) == "false"
+
+
+def test_a_checker_that_does_not_look_after_the_end_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Witness, "_after", lambda *_: None)
+    assert run("synchronize-go-moving", 400, 3).false
 
 
 @pytest.mark.parametrize("kind", ["disturbed-go", "disturbed-go-space"])

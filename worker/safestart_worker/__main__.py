@@ -6,14 +6,11 @@ import sys
 
 import typer
 
-from safestart.errors import SafestartError
+from safestart.runtime.own_process import exit_code, own_configuration
 from safestart_worker.commands import register
 
 if __name__ == "__main__":
+    own_configuration()
     app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
     register(app)
-    try:
-        app()
-    except SafestartError as error:
-        sys.stderr.write(f"safestart: {error.detail}\n")
-        sys.exit(2)
+    sys.exit(exit_code(app))

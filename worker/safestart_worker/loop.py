@@ -158,9 +158,11 @@ async def work(options: Options) -> int:
     async with open_cluster(options.scheduler, options.processes, options.max_attempts, owner) as cluster:
         where = options.scheduler or f"{options.processes} task processes"
         log.info("%s on %s, cluster ready in %.1f s", owner, where, time.monotonic() - start)
-        await _warm(cluster, stopping)
+        warm = await _warm(cluster, stopping)
         announcing.cancel()
-        if not stopping.is_set():
+        if not warm:
+            lost = True
+        elif not stopping.is_set():
             log.info("takes jobs from %s", database.shown)
             purging = asyncio.create_task(_purge(Retention(database), options.keep_s))
             await Worker(options, jobs, cluster, owner).run(stopping)
@@ -209,7 +211,8 @@ async def _announce(jobs: JobRepository, owner: str) -> None:
         await asyncio.sleep(HEARTBEAT_S)
 
 
-async def _warm(cluster: Cluster, stopping: asyncio.Event) -> None:
+async def _warm(cluster: Cluster, stopping: asyncio.Event) -> bool:
+    """Warm the task processes up; False when it failed: jobs would fail, too, and a new worker may do better."""
     print("warming up kernels ... ", end="", flush=True)
     start = time.monotonic()
     warming = asyncio.create_task(cluster.warm_up(lambda part: print(part, end=", ", flush=True)))
@@ -220,13 +223,15 @@ async def _warm(cluster: Cluster, stopping: asyncio.Event) -> None:
     if not warming.done():
         warming.cancel()
         print("interrupted" if stopping.is_set() else f"not done in {patience:g} s, goes on", flush=True)
-        return
+        return True
     try:
         warming.result()
     except Exception:
-        # Jobs that need the broken part will fail with their own reasons; the others can run.
-        log.exception("warming up failed")
+        print("failed", flush=True)
+        log.exception("warming up failed: this worker takes no jobs and ends")
+        return False
     print(f"done in {time.monotonic() - start:.1f} s", flush=True)
+    return True
 
 
 async def _say_goodbye(jobs: JobRepository, owner: str) -> None:

@@ -12,7 +12,7 @@ from safestart.cli.aboard import export_c
 from safestart.cli.field import convert, timeline
 from safestart.cli.reproduce import command as reproduce
 from safestart.cli.streams import patient_streams
-from safestart.errors import SafestartError
+from safestart.runtime.own_process import exit_code, own_configuration
 
 COMMAND_GROUP = "safestart.commands"
 
@@ -48,19 +48,8 @@ def build() -> typer.Typer:
 
 
 def main() -> None:
-    """Run the command line; our own errors end it with one line and exit code 2."""
+    """Run the command line; our own errors, and missing or full places, end it with one line and exit code 2."""
+    own_configuration()
     with patient_streams() as streams:
-        code = streams.code(_run())
+        code = streams.code(exit_code(lambda: build()()))
     sys.exit(code)
-
-
-def _run() -> int:
-    """Run the command; the exit code it asks for."""
-    try:
-        build()()
-    except SafestartError as error:
-        sys.stderr.write(f"safestart: {error.detail}\n")
-        return 2
-    except SystemExit as ended:
-        return ended.code if isinstance(ended.code, int) else int(ended.code is not None)
-    return 0

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import json
 import os
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from stat import S_ISREG
 from typing import Any, BinaryIO
 
-from safestart.errors import invalid
+from safestart.errors import InvalidInput, invalid
+from safestart.runtime.plain_json import NameTwice, loads
 
 
 @contextmanager
@@ -25,6 +27,21 @@ def writable(option: str, path: Path) -> Iterator[None]:
     """Raise ``InvalidInput`` for ``option`` when the block cannot write ``path``."""
     with _refused(option, "a writable path", path):
         yield
+
+
+def read_json(option: str, source: str) -> Any:
+    """The JSON of a file, or of standard input for ``-``; raises ``InvalidInput`` for ``option``."""
+    try:
+        with readable(option, source):
+            text = sys.stdin.read() if source == "-" else Path(source).read_text(encoding="utf-8")
+    except UnicodeDecodeError:
+        raise invalid(option, "UTF-8 text", source) from None
+    try:
+        return loads(text)
+    except NameTwice as error:
+        raise invalid(option, "JSON with every name once in an object", str(error)) from None
+    except (ValueError, RecursionError) as error:
+        raise InvalidInput(f"{option}: required JSON, received text that is not ({error})") from None
 
 
 class Target:

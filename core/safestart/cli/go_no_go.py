@@ -6,13 +6,16 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from rich.markup import escape
 
 from safestart.cli.console import Json, out, print_json
-from safestart.cli.files import target
+from safestart.cli.files import read_json, target
 from safestart.cli.options import takes
 from safestart.errors import invalid
-from safestart.processes.go_no_go.one_start import ONE_START
-from safestart.processes.go_no_go.run import answer
+from safestart.processes.door import PARAMETERS, document_of_one, parse
+from safestart.processes.execute import execute
+from safestart.processes.registry import process
+from safestart.processes.start_in_space.spec import SpaceInputs
 from safestart.runtime.progress import Context
 
 _BY = {
@@ -29,9 +32,17 @@ def register(app: typer.Typer) -> None:
     """Add the command."""
 
     @app.command("go-no-go")
-    @takes(ONE_START, without=("proofs",))
+    @takes(PARAMETERS, without=("proofs",))
     def go_no_go(
         *,
+        input_file: Annotated[
+            str,
+            typer.Option(
+                "--input",
+                help="JSON file with these inputs, or with those of a POST (states, starts); '-' reads stdin. Options "
+                "stand over it.",
+            ),
+        ] = "",
         proof: Annotated[
             Path | None,
             typer.Option(help="Where to write the proof (method exact, auto), for `safestart verify`."),
@@ -39,20 +50,58 @@ def register(app: typer.Typer) -> None:
         as_json: Json = False,
         **asked: Any,
     ) -> None:
-        """May a chaser at rest at this point start its approach? No GO without a proof, but by method paper."""
+        """May a chaser that is at rest here, or arrives like this, start its approach? No GO without a proof, but by
+        method paper."""
         given = {name: value for name, value in asked.items() if value is not None}
-        inputs = ONE_START.parse(given | {"proofs": proof is not None})
+        if input_file:
+            given = _read(input_file) | given
+        for name, process_id in (("states", "go-no-go"), ("starts", "start-in-space")):
+            if name in given:
+                _many(process_id, given, proof, as_json=as_json)
+                return
+        inputs = parse(given | ({"proofs": True} if proof is not None else {}))
         with target("--proof", proof) as file:
-            document = answer(inputs, Context()).document_of_one()
+            document = document_of_one(inputs, Context())
             if file is not None:
                 file.write_json(_proved(document["proof"]))
-        print_json(document) if as_json else _show(document)
+        if as_json:
+            print_json(document)
+        elif isinstance(inputs, SpaceInputs):
+            _say(document["verdict"], document["reason"])
+        else:
+            _show(document)
+
+
+def _read(source: str) -> dict[str, Any]:
+    given = read_json("--input", source)
+    if not isinstance(given, dict):
+        raise invalid("--input", "a JSON object of inputs", type(given).__name__)
+    return given
+
+
+def _many(process_id: str, given: dict[str, Any], proof: Path | None, *, as_json: bool) -> None:
+    """Answer a body of several starts, as POST does: one line for each."""
+    inputs = process(process_id).parse(given | ({"proofs": True} if proof is not None else {}))
+    with target("--proof", proof) as file:
+        document = execute(process_id, inputs.model_dump(mode="json"), Context()).document["outputs"]
+        if file is not None:
+            if len(document["proof"]) != 1:
+                raise invalid("--proof", "one start", len(document["proof"]))
+            file.write_json(_proved(document["proof"][0]))
+    if as_json:
+        print_json(document)
+        return
+    for verdict, reason in zip(document["verdict"], document["reason"], strict=True):
+        _say(verdict, reason)
+
+
+def _say(verdict: str, reason: str) -> None:
+    out.print(f"[bold {'green' if verdict == 'GO' else 'red'}]{verdict}[/]: {escape(reason)}", soft_wrap=True)
 
 
 def _show(document: dict[str, Any]) -> None:
     """Print the verdict on the one start, why, what decided, and what the paper's conditions say of it."""
-    verdict = document["verdict"]
-    out.print(f"[bold {'green' if verdict == 'GO' else 'red'}]{verdict}[/]: {document['reason']}")
+    _say(document["verdict"], document["reason"])
     for member in document["examples"] or ():
         out.print(f"  {_told(member)}", soft_wrap=True)
     if document["decided_by"] is not None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container
+from collections.abc import Callable, Container, Mapping
 from enum import Enum
 from inspect import Parameter, Signature, signature
 from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin
@@ -14,12 +14,14 @@ from safestart.processes import flat
 Command = TypeVar("Command", bound=Callable[..., None])
 
 
-def takes(inputs: flat.Flat[Any], *, without: Container[str] = ()) -> Callable[[Command], Command]:
+def takes(
+    parameters: Mapping[str, flat.Parameter], *, without: Container[str] = ()
+) -> Callable[[Command], Command]:
     """Give a command an option for each parameter; it receives them as keyword arguments, beside its own.
 
-    Texts pass unchecked: the model validates them.
+    An option that is not given is None. Texts pass unchecked: the model validates them.
     """
-    options = [_option(name, one) for name, one in inputs.parameters.items() if name not in without]
+    options = [_option(name, one) for name, one in parameters.items() if name not in without]
     options.sort(key=lambda option: option.default is not Parameter.empty)  # required ones first
 
     def decorate(command: Command) -> Command:
@@ -37,15 +39,19 @@ def _option(name: str, parameter: flat.Parameter) -> Parameter:
     kinds = [kind for kind in get_args(field.annotation) or (field.annotation,) if kind is not type(None)]
     kind = kinds[0] if len(kinds) == 1 and kinds[0] in (bool, int, float) else str
     words = _words(field.annotation)
-    told = typer.Option(help=parameter.text, metavar=f"[{'|'.join(words)}]" if words else None)
     default = None if field.is_required() else field.default
     if isinstance(default, Enum):
         default = default.value
+    told = typer.Option(
+        help=parameter.text,
+        metavar=f"[{'|'.join(words)}]" if words else None,
+        show_default=False if default is None else str(default),
+    )
     return Parameter(
         name,
         Parameter.KEYWORD_ONLY,
-        default=Parameter.empty if parameter.required else default,
-        annotation=Annotated[kind if parameter.required or default is not None else kind | None, told],
+        default=Parameter.empty if parameter.required else None,
+        annotation=Annotated[kind if parameter.required else kind | None, told],
     )
 
 

@@ -174,5 +174,9 @@ def _database(url: str, *, new: bool = False) -> Iterator[Database]:
 
 
 def _bytes(path: Path) -> bytes:
+    from safestart.records.bundle import MOST_BYTES
+
     with readable("file", path):
+        if path.stat().st_size > MOST_BYTES:
+            raise invalid("file", f"a bundle of at most {MOST_BYTES} bytes", path.stat().st_size)
         return path.read_bytes()

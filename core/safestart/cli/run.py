@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
 from safestart.cli.console import Json, err, print_json, reporting
-from safestart.cli.files import Target, readable, target, writable
-from safestart.errors import InvalidInput, invalid
+from safestart.cli.files import Target, read_json, target, writable
 from safestart.processes.execute import Execution, execute
 from safestart.processes.registry import PROCESS_IDS, process
-from safestart.runtime.plain_json import NameTwice, loads
 
 
 def register(app: typer.Typer) -> None:
@@ -38,31 +35,17 @@ def register(app: typer.Typer) -> None:
     ) -> None:
         """Run a process here and write {"inputs", "outputs", "provenance"}, with its pictures beside it."""
         spec = process(process_id)
-        inputs = _read(input_file)
+        inputs = {} if not input_file else read_json("--input", input_file)
         spec.parse(inputs)
         with target("--output", output_file) as file:
             with reporting(process_id) as context:
                 result = execute(process_id, inputs, context)
+            for note in result.document["provenance"].get("notes", ()):
+                err.print(note, soft_wrap=True, markup=False)
             if file is not None:
                 _write(file, result)
         if as_json or output_file is None:
             print_json(result.document)
-
-
-def _read(source: str) -> Any:
-    if not source:
-        return {}
-    try:
-        with readable("--input", source):
-            text = sys.stdin.read() if source == "-" else Path(source).read_text(encoding="utf-8")
-    except UnicodeDecodeError:
-        raise invalid("--input", "UTF-8 text", source) from None
-    try:
-        return loads(text)
-    except NameTwice as error:
-        raise invalid("--input", "JSON with every name once in an object", str(error)) from None
-    except (ValueError, RecursionError) as error:
-        raise InvalidInput(f"--input: required JSON, received text that is not ({error})") from None
 
 
 def _write(file: Target, result: Execution) -> None:

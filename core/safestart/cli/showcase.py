@@ -52,7 +52,7 @@ def _running() -> Iterator[httpx.Client]:
     command = [sys.executable, "-m", "safestart", "up", "--host", host, "--port", str(port)]
     child = subprocess.Popen(command, stdout=sys.stderr, stderr=sys.stderr)
     try:
-        with httpx.Client(base_url=f"http://{host}:{port}", timeout=30.0) as client:
+        with client_of(f"http://{host}:{port}") as client:
             _await_ready(client, child)
             yield client
     finally:
@@ -61,6 +61,11 @@ def _running() -> Iterator[httpx.Client]:
             child.wait(timeout=30.0)
         except subprocess.TimeoutExpired:
             child.kill()
+
+
+def client_of(url: str) -> httpx.Client:
+    """A client of a service on this machine; the environment's proxies cannot reach it and are not asked."""
+    return httpx.Client(base_url=url, timeout=30.0, trust_env=False)
 
 
 def _free_port(wanted: int) -> int:

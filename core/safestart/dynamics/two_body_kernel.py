@@ -33,6 +33,26 @@ def target_at(semi_major_axis: float, eccentricity: float, inclination: float) -
     return np.array([radius, 0.0, 0.0, 0.0, speed * c, speed * s])
 
 
+def target_with(
+    semi_major_axis: float, eccentricity: float, inclination: float, perigee: float, anomaly: float
+) -> Floats:
+    """Inertial state (6,) from osculating elements, m and rad; the ascending node lies on the x axis."""
+    parameter = semi_major_axis * (1.0 - eccentricity * eccentricity)
+    speed, radius = math.sqrt(MU / parameter), parameter / (1.0 + eccentricity * math.cos(anomaly))
+    u = perigee + anomaly
+    c, s = math.cos(inclination), math.sin(inclination)
+    cross, along = (
+        -math.sin(u) - eccentricity * math.sin(perigee),
+        math.cos(u) + eccentricity * math.cos(perigee),
+    )
+    return np.array(
+        [
+            *(radius * math.cos(u), radius * math.sin(u) * c, radius * math.sin(u) * s),
+            *(speed * cross, speed * along * c, speed * along * s),
+        ]
+    )
+
+
 @compiled()
 def _pull(x: float, y: float, z: float, out: Floats) -> None:
     r2 = x * x + y * y + z * z

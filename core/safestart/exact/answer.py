@@ -48,6 +48,15 @@ class Part:
 
 
 @dataclass(frozen=True, slots=True)
+class Arrival:
+    """After the end of `synchronize`: a ``stop`` of so many seconds against the body frame, then standing for ever, at
+    least ``margin`` m from every face (:mod:`safestart.exact.arrival`)."""
+
+    stop: float
+    margin: float
+
+
+@dataclass(frozen=True, slots=True)
 class Answer:
     """Verdict and bracket of the signed margin m in metres (all face distances >= m at all times, at best).
 
@@ -57,7 +66,8 @@ class Answer:
     thrust. ``reason`` says why an answer is UNDECIDED, else it is empty.
 
     For `synchronize` m is the best over T, ``thrust`` ends at the T it was found for, and ``parts`` stand for
-    ``multipliers``. The loop ends with the verdict, so the bracket may be wide.
+    ``multipliers``. The loop ends with the verdict, so the bracket may be wide. ``arrival`` says how a GO goes on for
+    ever; None where that is not proved.
     """
 
     verdict: Verdict
@@ -69,6 +79,7 @@ class Answer:
     iterations: int
     reason: str = ""
     parts: tuple[Part, ...] = ()
+    arrival: Arrival | None = None
 
     @property
     def gap(self) -> float:

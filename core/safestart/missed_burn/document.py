@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from safestart.dynamics.two_body import J2
 from safestart.errors import Conflict
 from safestart.missed_burn.plan import Question
 from safestart.missed_burn.prove import Proof, Verdict
+from safestart.model.orbit import EARTH_RADIUS, MU
 from safestart.proofs.statement import digest_of
 
 SCHEMA = "safestart-abort-proof/1"
@@ -28,7 +30,7 @@ def document_of(proof: Proof) -> dict[str, Any]:
                 "first_s": finding.case.first,
                 "last_s": finding.case.last,
                 "cells": finding.cells.tolist(),
-                **({"radii_m": finding.trials.tolist()} if proof.question.radius is not None else {}),
+                **({"radii_m": finding.trials.tolist()} if len(finding.trials) else {}),
             }
             for finding in proof.findings
         ],
@@ -41,8 +43,7 @@ def asked(question: Question) -> dict[str, Any]:
     """The question in the document's form."""
     plan, errors, failures = question.plan, question.errors, question.failures
     return {
-        "model": "linear" if question.radius is None else "nonlinear",
-        **({} if question.radius is None else {"semi_major_axis_m": question.radius}),
+        **_model(question),
         "mean_motion_rad_s": plan.mean_motion,
         "start": {"position_m": list(plan.start[:3]), "velocity_m_s": list(plan.start[3:])},
         "burns": [{"time_s": burn.time, "impulse_m_s": list(burn.impulse)} for burn in plan.burns],
@@ -63,3 +64,25 @@ def asked(question: Question) -> dict[str, Any]:
             "misdirected_rad": failures.misdirected,
         },
     }
+
+
+def _model(question: Question) -> dict[str, Any]:
+    if question.earth is not None:
+        target = question.earth.target
+        return {
+            "model": "earth",
+            "target": {
+                "position_m": list(target[:3]),
+                "velocity_m_s": list(target[3:]),
+                "mu_m3_s2": MU,
+                "j2": J2,
+                "earth_radius_m": EARTH_RADIUS,
+            },
+            "before": [
+                {"position_m": list(state[:3]), "velocity_m_s": list(state[3:])}
+                for state in question.earth.before
+            ],
+        }
+    if question.radius is not None:
+        return {"model": "nonlinear", "semi_major_axis_m": question.radius}
+    return {"model": "linear"}

@@ -138,13 +138,14 @@ def least_distance(
     cells = np.empty((most, 5))
     bounds = np.empty(most)
     sharp = np.zeros(most, dtype=np.bool_)
-    rows, q, p = np.empty((3, 6)), np.empty(6), np.empty(6)
+    rows, q, p, still = np.empty((3, 6)), np.empty(6), np.empty(6), np.zeros(3)
     d, member, best = np.empty(3), np.empty(len(columns)), np.zeros(len(columns))
     loss = ROUNDING * _magnitude(n, horizon, centre, columns)
     # ``goal``: the best possible bound, given how far the true motion may stray.
     count, upper, goal, when = 0, np.inf, np.inf, 0.0
     for k in range(_FIRST):
         cells[k, 0], cells[k, 1] = horizon * k / _FIRST, horizon * (k + 1) / _FIRST
+    cells[_FIRST - 1, 1] = horizon
     count = _FIRST
     fresh = 0
     while True:
@@ -171,7 +172,7 @@ def least_distance(
             sharp[worst] = True
             middle = 0.5 * (cells[worst, 0] + cells[worst, 1])
             position_rows(n, middle, rows)
-            distance = nearest(rows, centre, columns, ends, cells[worst, 2:], d, member)
+            distance = nearest(rows, centre, still, columns, ends, cells[worst, 2:], d, member)
             if distance < upper:
                 upper, when = distance, middle
                 best[:] = member

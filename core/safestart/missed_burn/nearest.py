@@ -22,6 +22,7 @@ _SUBSETS = 15
 def nearest(
     rows: Floats,
     centre: Floats,
+    offset: Floats,
     columns: Floats,
     ends: NDArray[np.int64],
     guess: Floats,
@@ -30,13 +31,14 @@ def nearest(
 ) -> float:
     """Distance of the nearest member found.
 
-    ``rows`` (3, 6), ``columns`` (C, 6), ``ends`` (K,), ``guess`` (3,): a first direction. Writes the ``direction`` (3,)
-    with the greatest lower bound seen and the coordinates (C,) of the nearest ``member`` in the columns.
+    ``rows`` (3, 6), ``offset`` (3,) of all positions, ``columns`` (C, 6), ``ends`` (K,), ``guess`` (3,): a first
+    direction. Writes the ``direction`` (3,) with the greatest lower bound seen and the coordinates (C,) of the nearest
+    ``member`` in the columns.
     """
     count = len(columns)
     centre3, images = np.empty(3), np.empty((count, 3))
     for i in range(3):
-        centre3[i] = _dot6(rows[i], centre)
+        centre3[i] = offset[i] + _dot6(rows[i], centre)
         for j in range(count):
             images[j, i] = _dot6(rows[i], columns[j])
     points, coordinates = np.empty((4, 3)), np.empty((4, count))

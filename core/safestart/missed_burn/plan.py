@@ -5,12 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from safestart.dynamics.cwh import transition_matrix
 from safestart.errors import invalid
 from safestart.model.scenario import MAX_MEAN_MOTION, Floats, number
+
+if TYPE_CHECKING:
+    from safestart.missed_burn.earth import Earth
 
 MOST_BURNS = 200
 LONGEST_PHASE = 0.5
@@ -134,7 +138,7 @@ class Question:
     """``keep_out`` m around the target must stay empty for ``horizon`` s after the last completed burn.
 
     ``radius`` of the circular orbit, m, for an answer about the nonlinear motion (two point masses, mu = n^2 radius^3);
-    None: about the linear one.
+    None: about the linear one. ``earth``: for an answer about two bodies with J2 on any orbit.
     """
 
     plan: Plan
@@ -143,8 +147,11 @@ class Question:
     errors: Errors = field(default_factory=Errors)
     failures: Failures = field(default_factory=Failures)
     radius: float | None = None
+    earth: Earth | None = None
 
     def __post_init__(self) -> None:
+        if self.earth is not None and (self.radius is not None or not self.errors.at_each_burn):
+            raise invalid("errors.at_each_burn", "true where model is earth, which has no other one", False)
         if self.radius is not None:
             number("semi_major_axis_m", self.radius, 1e3, 1e9)
             if not self.errors.at_each_burn:
@@ -161,3 +168,27 @@ class Question:
                 raise invalid(
                     f"failures.{name}", f"at most {longest:.6g} s, {LONGEST_PHASE} rad of the orbit", value
                 )
+
+    def before(self) -> Floats:
+        """LVLH states (K, 6) before each burn, without errors and failures."""
+        return self.plan.before() if self.earth is None else np.array(self.earth.before)
+
+
+def duration_of(question: Question, kind: str, burn: int, last: float) -> float:
+    """Length of a case's drift from the planned time of its burn, s: the horizon, after a burn that ends ``last`` s
+    late, and at least until the next burn, which may be late."""
+    times, late = [made.time for made in question.plan.burns], question.failures.late
+    length = question.horizon + last
+    if kind == "start":
+        length = max(question.horizon, late)
+    elif kind == "made" and burn + 1 < len(times):
+        length = max(question.horizon, times[burn + 1] - times[burn] + late)
+    # Longer than the rounding of the sums.
+    return length * (1.0 + 1e-15)
+
+
+def longest_drift(question: Question, burn: int) -> float:
+    """The longest drift of all cases of a burn, s."""
+    failures = question.failures
+    lasting = duration_of(question, "late", burn, max(failures.late, failures.stuck))
+    return max(duration_of(question, "made", burn, 0.0), lasting)

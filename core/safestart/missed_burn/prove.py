@@ -8,15 +8,19 @@ from enum import StrEnum
 
 import numpy as np
 
-from safestart.missed_burn.cases import Case, cases_of
+from safestart.missed_burn.cases import cases_of
 from safestart.missed_burn.drift_kernel import least_distance
+from safestart.missed_burn.earth_bound import earth_bound
 from safestart.missed_burn.plan import Question
 from safestart.missed_burn.replay import Flown, flown_of
+from safestart.missed_burn.sets import Case
 from safestart.missed_burn.strays import strays_of
 from safestart.model.scenario import Floats
 
 SLACK = 1e-6
 """Metres subtracted from every claim, which cover the rounding of the sets."""
+EARTH_SLACK = 1e-3
+"""The same about the true Earth, where the integration of the course has its own error."""
 _TOLERANCE = 0.02
 _MOST_CELLS = 2048
 _TOUCHES = 0.1
@@ -76,7 +80,7 @@ def prove(question: Question, *, tick: Callable[[int, int], None] | None = None,
     cases = cases_of(question)
     findings = []
     for number, case in enumerate(cases):
-        findings.append(bound(case, question, np.inf if sharp else question.keep_out + SLACK))
+        findings.append(bound(case, question, np.inf if sharp else question.keep_out + slack_of(question)))
         if tick is not None:
             tick(number + 1, len(cases))
     least = min(finding.least for finding in findings)
@@ -91,11 +95,21 @@ def prove(question: Question, *, tick: Callable[[int, int], None] | None = None,
     return Proof(question, Verdict.UNKNOWN, least, tuple(findings), None)
 
 
+def slack_of(question: Question) -> float:
+    """What is subtracted from every claim, m."""
+    return SLACK if question.earth is None else EARTH_SLACK
+
+
 def bound(case: Case, question: Question, enough: float) -> Finding:
     """Bounds on one case; stops at ``enough`` m."""
     n = question.plan.mean_motion
     start = float(np.linalg.norm(case.centre[:3]))
     tolerance = max(_TOLERANCE, 1e-3 * min(start, 100.0))
+    if question.earth is not None:
+        least, nearest, when, member, cells, trials = earth_bound(
+            case, question, enough, _TOUCHES, tolerance, _MOST_CELLS
+        )
+        return Finding(case, max(least - EARTH_SLACK, 0.0), nearest, when, cells, member, trials)
     strays, trials = _NO_STRAYS, np.zeros(0)
     if question.radius is not None:
         strays, trials = strays_of(case, question, question.radius)
@@ -123,7 +137,7 @@ def greatest_scale(question: Question, *, most: float = 100.0, accuracy: float =
 
     def holds(scale: float) -> bool:
         scaled = replace(question, errors=question.errors.scaled(scale))
-        enough = question.keep_out + SLACK
+        enough = question.keep_out + slack_of(question)
         return all(bound(case, scaled, enough).least >= question.keep_out for case in cases_of(scaled))
 
     errors = question.errors

@@ -9,15 +9,20 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from safestart.dynamics.cwh import input_matrix, transition_matrix
-from safestart.missed_burn.cases import Case, frame, shell
+from safestart.dynamics.two_body_kernel import STAGES, WEIGHTS, drifted, placed, pushed, seen
+from safestart.missed_burn.earth import target_before
 from safestart.missed_burn.plan import Question
+from safestart.missed_burn.sets import Case, frame, shell
 from safestart.model.scenario import Floats
+
+_PULSES = 256
 
 
 @dataclass(frozen=True, slots=True)
 class Flown:
     """From ``start`` (6,) at ``begin`` s: the ``impulses`` (K, 3) at ``times`` (K,), then the ``push`` (3,), m/s^2,
     held for ``push_for`` s after the last of them, then drift; looked at ``look`` s. LVLH, times of the plan.
+    ``target`` (6,): its inertial state at ``begin``, for a flight about the true Earth.
     """
 
     mean_motion: float
@@ -30,6 +35,7 @@ class Flown:
     push: Floats
     push_for: float
     look: float
+    target: Floats | None = None
 
     def state(self) -> Floats:
         """State (6,) at ``look``, in CWH motion."""
@@ -47,8 +53,31 @@ class Flown:
 
     def distance(self, radius: float | None = None) -> float:
         """Distance to the target at ``look``, m; with the ``radius`` (m) of the orbit in the nonlinear motion."""
-        state = self.state() if radius is None else self.nonlinear_state(radius)
+        if self.target is not None:
+            state = self.earth_state()
+        else:
+            state = self.state() if radius is None else self.nonlinear_state(radius)
         return float(np.linalg.norm(state[:3]))
+
+    def earth_state(self) -> Floats:
+        """State (6,) at ``look``, both bodies about the Earth with J2."""
+        assert self.target is not None
+        flight, now = placed(self.target, self.start), self.begin
+        for time, impulse in zip(self.times.tolist(), self.impulses, strict=True):
+            flight, _ = drifted(flight, time - now, STAGES, WEIGHTS)
+            pushed(flight, impulse)
+            now = time
+        if self.push_for > 0.0:
+            # The thrust as many small impulses, each in the middle of its time.
+            span = min(self.push_for, self.look - now) / _PULSES
+            for _ in range(_PULSES):
+                flight, _ = drifted(flight, 0.5 * span, STAGES, WEIGHTS)
+                pushed(flight, span * self.push)
+                flight, _ = drifted(flight, 0.5 * span, STAGES, WEIGHTS)
+            now += span * _PULSES
+        flight, _ = drifted(flight, self.look - now, STAGES, WEIGHTS)
+        reached: Floats = seen(flight)
+        return reached
 
     def nonlinear_state(self, radius: float) -> Floats:
         """State (6,) at ``look`` about a point mass, the target on a circular orbit of ``radius`` m."""
@@ -95,7 +124,7 @@ def flown_of(question: Question, case: Case, member: Floats, when: float) -> Flo
     plan, errors, failures = question.plan, question.errors, question.failures
     base = case.burn if errors.at_each_burn else 0
     base = max(base, 0)
-    start, part = plan.before()[base].copy(), 0.0
+    start, part = question.before()[base].copy(), 0.0
     chosen: dict[int, list[tuple[str, float]]] = {}
     for (label, number), value in zip(case.labels, member.tolist(), strict=True):
         if label == "navigation":
@@ -129,6 +158,7 @@ def flown_of(question: Question, case: Case, member: Floats, when: float) -> Flo
         push=push,
         push_for=push_for,
         look=max(case.time + when, times[-1] if times else 0.0),
+        target=None if question.earth is None else target_before(question, base),
     )
 
 

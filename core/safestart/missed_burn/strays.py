@@ -15,9 +15,9 @@ import math
 
 import numpy as np
 
-from safestart.missed_burn.cases import Case
 from safestart.missed_burn.drift_kernel import position_rows
 from safestart.missed_burn.plan import Question
+from safestart.missed_burn.sets import Case
 from safestart.model.scenario import Floats
 
 PARTS = 96

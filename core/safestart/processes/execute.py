@@ -60,6 +60,7 @@ def _finished(spec: ProcessSpec, parsed: WireModel, started: datetime, output: P
             "started": started.isoformat(),
             "finished": datetime.now(UTC).isoformat(),
             "artifacts": {artifact.name: artifact.sha256 for artifact in output.artifacts},
+            **({"notes": output.notes} if output.notes else {}),
             **versions(),
         },
     }

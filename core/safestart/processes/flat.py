@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from copy import copy
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar, get_args, get_origin
 
-from pydantic import BaseModel, TypeAdapter, ValidationError, create_model
+from pydantic import BaseModel, Field, TypeAdapter, ValidationError, create_model
 from pydantic.fields import FieldInfo
 
 from safestart.errors import invalid
 from safestart.model.validation import refusal
 from safestart.processes.base import WireModel
+from safestart.runtime.plain_json import loads
 
 M = TypeVar("M", bound=WireModel)
 
@@ -96,17 +96,6 @@ class Flat(Generic[M]):
                 report["loc"] = self._flat(report["loc"])
             raise refusal(reports) from None
 
-    def query(self, name: str, doc: str) -> type[BaseModel]:
-        """A model that describes the parameters; :meth:`parse` validates."""
-        fields: dict[str, Any] = {}
-        for key, parameter in self.parameters.items():
-            field = copy(parameter.field)
-            field.description = parameter.text
-            if field.is_required() and not parameter.required:
-                field.default = None
-            fields[key] = (str if parameter.json_text else field.annotation, field)
-        return create_model(name, __base__=WireModel, __doc__=doc, **fields)
-
     def _text(self, name: str, item: FieldInfo) -> str:
         text = item.description or ""
         if name not in self._opened or name in self._listed:
@@ -116,7 +105,24 @@ class Flat(Generic[M]):
     def _flat(self, place: tuple[int | str, ...]) -> tuple[int | str, ...]:
         if not place or place[0] not in self._opened:
             return place
-        return place[2:] if place[0] in self._listed else place[1:]
+        inside = place[2:] if place[0] in self._listed else place[1:]
+        # The tag of one type of several stands before the name.
+        return inside[1:] if len(inside) > 1 and inside[0] not in self.parameters else inside
+
+
+def described(parameters: Mapping[str, Parameter], name: str, doc: str) -> type[BaseModel]:
+    """A model that describes parameters; :meth:`Flat.parse` validates."""
+    fields: dict[str, Any] = {}
+    for key, parameter in parameters.items():
+        if parameter.json_text:
+            fields[key] = (str, Field(... if parameter.required else None, description=parameter.text))
+            continue
+        field = copy(parameter.field)
+        field.description = parameter.text
+        if field.is_required() and not parameter.required:
+            field.default = None
+        fields[key] = (field.annotation, field)
+    return create_model(name, __base__=WireModel, __doc__=doc, **fields)
 
 
 def _holds_objects(annotation: Any) -> bool:
@@ -129,6 +135,6 @@ def _holds_objects(annotation: Any) -> bool:
 
 def _from_json(name: str, text: str) -> Any:
     try:
-        return json.loads(text)
+        return loads(text)
     except (ValueError, RecursionError):
         raise invalid(name, "JSON", text) from None

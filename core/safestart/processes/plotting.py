@@ -1,24 +1,33 @@
 """Shared by all pictures: headless figures, the corridor, PNG and NPZ bytes.
 
-No figure goes through pyplot, so that nothing needs a screen and a notebook keeps its own backend.
+No figure goes through pyplot, so that nothing needs a screen and a notebook keeps its own backend. Pictures have
+Matplotlib's own style, whatever style the user has configured.
 """
 
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping
-from typing import Any
+import logging
+from collections.abc import Callable, Mapping
+from functools import wraps
+from typing import Any, ParamSpec
 
+import matplotlib.style
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
+from safestart.errors import SafestartError
 from safestart.model.scenario import CorridorShape
 from safestart.processes.base import Artifact
+from safestart.processes.output import Undrawn
 
+log = logging.getLogger("safestart.pictures")
+Inputs = ParamSpec("Inputs")
 NPZ = "application/x-npz"
+_LONGEST_REASON = 200
 
 
 def figure(width: float, height: float) -> Figure:
@@ -39,6 +48,29 @@ def draw_corridor(axes: Axes, shape: CorridorShape, y_max: float) -> Polygon:
     axes.set_xlabel("x body [m]")
     axes.set_ylabel("y body [m]")
     return outline
+
+
+def drawn_as(name: str) -> Callable[[Callable[Inputs, Figure]], Callable[Inputs, Artifact | Undrawn]]:
+    """Decorator: the figure that a function draws, as the PNG artifact ``name``.
+
+    A picture that cannot be drawn is an :class:`Undrawn`: the numbers of the result do not depend on it.
+    """
+
+    def decorate(draw: Callable[Inputs, Figure]) -> Callable[Inputs, Artifact | Undrawn]:
+        @wraps(draw)
+        def drawn(*args: Inputs.args, **options: Inputs.kwargs) -> Artifact | Undrawn:
+            try:
+                with matplotlib.style.context("default"):
+                    return png(name, draw(*args, **options))
+            except SafestartError:  # such as the end of a dismissed job
+                raise
+            except Exception as error:  # a drawing library can raise anything: fonts, memory, disk
+                log.warning("%s could not be drawn", name, exc_info=error)
+                return Undrawn(name, f"{type(error).__name__}: {error}"[:_LONGEST_REASON])
+
+        return drawn
+
+    return decorate
 
 
 def png(name: str, drawing: Figure, dpi: int = 130) -> Artifact:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +122,39 @@ class Comparison:
     logarithmic: tuple[str, ...] = ()
 
 
-View = Findings | Facts | Rows | Matrices | Overlay | Flights | Comparison
+@dataclass(frozen=True, slots=True)
+class Layer:
+    """Rows of a table as one layer of a picture: columns ``x`` and ``y``, and for some ``value``.
+
+    ``drawn``: a line, the area within a closed line, points (``value``: their verdicts), the set where ``value`` is
+    positive, or a heat map of ``value``. ``beside`` names the list among the inputs whose entries belong to the rows; a
+    column ``beside.NAME`` is theirs. ``colour`` is a name of the pages' palette.
+    """
+
+    title: str
+    drawn: Literal["line", "area", "points", "positive", "heat"]
+    table: str
+    x: str
+    y: str
+    value: str = ""
+    beside: str = ""
+    colour: Literal["certified", "exact", "limit", "lost", "ink", "soft"] = "ink"
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """Layers over two axes. ``equal``: one scale for both, and the inputs' corridor is drawn; ``logarithmic``: y."""
+
+    kind: ClassVar[str] = "picture"
+    title: str
+    x: str
+    y: str
+    layers: tuple[Layer, ...]
+    equal: bool = False
+    logarithmic: bool = False
+
+
+View = Findings | Facts | Rows | Matrices | Overlay | Flights | Comparison | Picture
 
 
 def kinds(views: Iterable[View]) -> list[str]:

@@ -53,8 +53,8 @@ DISTINCT = AfterValidator(_distinct)
 Certificate = Annotated[
     ClosedForm,
     Field(
-        description="certified: explicit manoeuvres with a proof, GO is for ever. paper: the conditions of paper 000, "
-        "NOT SOUND, a GO may be impossible to fly."
+        description="certified: explicit manoeuvres with a proof, GO is for ever. paper: the conditions of Iskender et "
+        "al., NOT SOUND, a GO may be impossible to fly."
     ),
 ]
 Seed = Annotated[int, Field(ge=0, le=2**63 - 1, description="Seed of every random draw.")]

@@ -106,6 +106,36 @@ class Witness:
                     f"margin of {name} >= margin_m at the end, t = {float(time):.9g} s: it is "
                     f"{float(radius - used):.9g} m, the claim {float(self.claim):.9g} m"
                 )
+        if self.stated.arrival is not None:
+            self._after(at, speed, *map(arb, self.stated.arrival))
+
+    def _after(self, at: list[arb], speed: list[arb], stop: arb, margin: arb) -> None:
+        """Check thrust, distances and speed of a stop in ``stop`` s from body position ``at``, and of standing then.
+
+        The chaser goes on straight along ``speed`` v and slows down evenly to p + v stop / 2; docs/theory/exact.md.
+        """
+        fast, spin = _square(speed).sqrt(), self.motion.w + self.motion.n
+        far = _square(at).sqrt() + fast * stop / 2
+        needed = fast / stop + 2 * spin * fast + (spin * spin + 2 * self.motion.n * self.motion.n) * far
+        if not needed <= arb(self.stated.a_max):
+            raise ProofRejected(
+                f"arrival.stop_s: the stop may take {float(needed):.9g} m/s^2, "
+                f"a_max is {float(arb(self.stated.a_max)):.9g}"
+            )
+        if self.limits.most is not None and not fast + self.motion.w * far <= arb(self.limits.most):
+            raise ProofRejected(
+                f"arrival: the speed may reach {float(fast + self.motion.w * far):.9g} m/s in LVLH"
+            )
+        for name, (normal, room) in self.faces.items():
+            for share in (arb(0), stop / 2):
+                left = room - sum(
+                    (e * (p + share * v) for e, p, v in zip(normal, at, speed, strict=True)), arb(0)
+                )
+                if not left >= margin:
+                    raise ProofRejected(
+                        f"arrival.margin_m: the distance to {name} comes down to {float(left):.9g} m, the claim is "
+                        f"{float(margin):.9g} m"
+                    )
 
     def _piece(self, state: arb_mat, u: arb_mat, k: int, centre: fmpq, half: fmpq) -> bool:
         """Whether the claim is proved on [centre - half, centre + half] of interval k; raise if it is false."""

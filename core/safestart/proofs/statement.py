@@ -42,7 +42,8 @@ class Stated:
 
     ``shape`` holds the corridor's numbers, ``faces`` maps a name to (normal, offset). The end is any of the steps
     ``earliest`` .. ``steps``; both are equal if it is fixed. ``thrust`` (k, d) for GO; for NO_GO ``parts`` (first,
-    last, weights), each against the ends first .. last, together against all ends in question.
+    last, weights), each against the ends first .. last, together against all ends in question. ``arrival`` (stop in
+    s, margin in m) claims that a `synchronize` GO goes on for ever.
     """
 
     verdict: str
@@ -60,6 +61,7 @@ class Stated:
     claim: fmpq
     thrust: list[list[fmpq]]
     parts: list[tuple[int, int, list[Weight]]]
+    arrival: tuple[fmpq, fmpq] | None = None
 
 
 def digest_of(document: Mapping[str, Any]) -> str:
@@ -90,7 +92,7 @@ def read(document: Any) -> Stated:
         raise ProofRejected("kind, verdict: required stay or synchronize, and GO or NO_GO")
     go, free = verdict == "GO", kind == "synchronize"
     proved_by = "thrust_m_s2" if go else "parts" if free else "multipliers"
-    fields(document, "document", (*DOCUMENT, proved_by))
+    fields(document, "document", (*DOCUMENT, proved_by), ("arrival",) if go and free else ())
     ends = ("earliest_step", "goal") if free else ()
     fields(question, f"question ({kind})", (*_QUESTION, *ends), ("speed_limit", "keep_out_m"))
     d, steps = part(question, "dimensions", int), part(question, "steps", int)
@@ -120,8 +122,18 @@ def read(document: Any) -> Stated:
         start=_start(start, d),
         claim=_claim(document, go),
         thrust=_thrust(evidence, earliest, steps, d) if go else [],
-        parts=[] if go else parts_of(parts, (earliest, steps), faces, limits, dt * steps),
+        parts=[] if go else parts_of(parts, (earliest, steps), faces, limits, dt * steps, d),
+        arrival=_arrival(document["arrival"]) if "arrival" in document else None,
     )
+
+
+def _arrival(claim: Any) -> tuple[fmpq, fmpq]:
+    """Seconds to stop and the least distance to a face afterwards, both above 0."""
+    fields(claim, "arrival", ("stop_s", "margin_m"))
+    stop, margin = number(claim, "stop_s", 1e-6, 1e6), number(claim, "margin_m", 0.0)
+    if not margin > 0:
+        raise ProofRejected(f"arrival.margin_m: required > 0, received {shown(claim['margin_m'])}")
+    return stop, margin
 
 
 def _claim(document: Any, go: bool) -> fmpq:

@@ -30,11 +30,22 @@ def lines(stated: Stated) -> tuple[str, ...]:
     return (
         f"{found} the margin, {_margin(stated)}",
         *_asked(stated),
+        *_arrival(stated),
         f"tumble rate about the orbit normal, from the axes of LVLH on: {_rate(stated.w, stated.w)}",
         f"mean motion: {_value(stated.n, stated.n)} rad/s",
         f"thrust: at most {_value(stated.a_max, stated.a_max)} m/s^2, no disturbance",
         *_start(stated, None),
     )
+
+
+def _arrival(stated: Stated) -> list[str]:
+    if stated.arrival is None:
+        return []
+    stop, margin = map(_number, stated.arrival)
+    return [
+        f"after that end for ever: it stops against the body frame in {stop} s and stands there, at least {margin} m "
+        "from every face, within the limits, by thrust that follows the turn of the body (not held over steps)"
+    ]
 
 
 def lines_for_all(stated: StatedForAll) -> tuple[str, ...]:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import io
 import json
-import lzma
 import zipfile
 import zlib
 from collections.abc import Mapping
@@ -24,7 +23,19 @@ from safestart.records.comparable import canonical, digest
 from safestart.runtime.plain_json import NameTwice, loads
 
 FORMAT, VERSION = "safestart-bundle", 1
-MOST_BYTES = 2 * 1024**3
+MOST_BYTES = 1024**3
+"""A bundle, packed or not."""
+MOST_MEMBERS = 1000
+# Zeros pack a thousandfold, results and pictures do not; a small bundle may.
+_MOST_GROWTH, _SMALL = 30, 64 * 1024**2
+# Commas, colons and opening brackets: a bound on what a parser would build. The largest results have 100 000 starts.
+_MOST_VALUES = {
+    "job.json": 1_000_000,
+    "events.json": 400_000,
+    "result.json": 4_000_000,
+    "manifest.json": 100_000,
+}
+_LONGEST_DOCUMENT = 128 * 1024**2
 MANIFEST = "manifest.json"
 _FOLDER = "artifacts/"
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # no packing time: the same job gives the same bytes
@@ -116,15 +127,20 @@ def _read(data: bytes) -> dict[str, bytes]:
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             infos = archive.infolist()
-            if sum(info.file_size for info in infos) > MOST_BYTES:
-                raise _refused(f"it unpacks to more than {MOST_BYTES} bytes")
+            most = min(MOST_BYTES, max(_SMALL, _MOST_GROWTH * len(data)))
+            if sum(info.file_size for info in infos) > most:
+                raise _refused(f"it unpacks to more than {most} bytes")
+            if len(infos) > MOST_MEMBERS:
+                raise _refused(f"it holds more than {MOST_MEMBERS} files")
             if len({info.filename for info in infos}) != len(infos):
                 raise _refused("a name occurs twice")
+            # Others, such as LZMA, may ask for any memory to unpack with.
+            if any(info.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED) for info in infos):
+                raise _refused("a file is packed in another way than stored or deflated")
             return {info.filename: archive.read(info) for info in infos}
     except (
         zipfile.BadZipFile,
         zlib.error,
-        lzma.LZMAError,
         OSError,
         ValueError,
         EOFError,
@@ -200,8 +216,13 @@ def _unlike(asked: Any, used: Any, path: str = "inputs") -> list[str]:
 
 
 def _json(files: Mapping[str, bytes], name: str) -> Any:
+    data = files[name]
+    if len(data) > _LONGEST_DOCUMENT:
+        raise _refused(f"{name} is longer than {_LONGEST_DOCUMENT} bytes")
+    if sum(data.count(mark) for mark in (b",", b":", b"{", b"[")) > _MOST_VALUES[name]:
+        raise _refused(f"{name} holds more than {_MOST_VALUES[name]} values and names")
     try:
-        return loads(files[name])
+        return loads(data)
     except NameTwice as error:
         raise _refused(f"{name} holds {error}") from None
     except (ValueError, RecursionError):

@@ -151,10 +151,11 @@ def _records(argument: Any) -> Iterator[tuple[str, tuple[str, ...]]]:
             yield from _records(member)
 
 
+_said: set[str] = set()
+
+
 def _say(what: str, error: Exception) -> None:
-    _say_once(f"{what}: {type(error).__name__}: {error}")
-
-
-@cache
-def _say_once(line: str) -> None:
-    log.warning(line)
+    """One line of log for all kernels of this process: a place that fails one of them fails them all."""
+    if what not in _said:
+        _said.add(what)
+        log.warning("%s: %s: %s", what, type(error).__name__, error)

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import ipaddress
 import os
-from collections.abc import Iterable
+import re
+from collections.abc import Callable, Iterable
 from difflib import get_close_matches
+from errno import ENOENT
 from functools import cache
 from pathlib import Path
 from typing import Any, Literal
 
 from platformdirs import user_config_path, user_data_path
-from pydantic import Field, ValidationError
+from pydantic import Field, ValidationError, field_validator
 from pydantic_settings import (
     BaseSettings,
     PydanticBaseSettingsSource,
@@ -22,9 +25,40 @@ from safestart.errors import InvalidInput, invalid
 from safestart.model.validation import refusal
 from safestart.runtime.secret_file import with_password
 
+Network = ipaddress.IPv4Network | ipaddress.IPv6Network
+
+LONGEST_PATH = 200
+PATH_RULE = (
+    f"empty, or /name/name of letters, digits, '-', '_', '.' and '~', at most {LONGEST_PATH} characters"
+)
+_PATH = re.compile(r"(?:/[A-Za-z0-9._~-]+)+")
+
 _PREFIX = "SAFESTART_"
 _OTHERS = ("SAFESTART_TEST_POSTGRESQL", "SAFESTART_CHROMIUM", "SAFESTART_SCREENSHOTS")
 """Variables of the test suite; the processes it starts inherit them."""
+
+
+def path_below(text: str) -> str:
+    """A path without its last slash; empty for the root. Raises ``ValueError`` with :data:`PATH_RULE`.
+
+    Nothing that it accepts leaves the host (``//evil``), climbs (``..``), or needs escaping in a link or a header.
+    """
+    path = text.removesuffix("/")
+    if path and (
+        len(path) > LONGEST_PATH
+        or not _PATH.fullmatch(path)
+        or any(part in (".", "..") for part in path.split("/"))
+    ):
+        raise ValueError(PATH_RULE)
+    return path
+
+
+def networks(text: str) -> tuple[Network, ...]:
+    """IP addresses and networks, separated by commas. Raises ``ValueError``."""
+    try:
+        return tuple(ipaddress.ip_network(part.strip()) for part in text.split(",") if part.strip())
+    except ValueError:
+        raise ValueError("IP addresses and networks such as 10.0.0.0/8, separated by commas") from None
 
 
 class Settings(BaseSettings):
@@ -68,6 +102,14 @@ class Settings(BaseSettings):
         "",
         description="Host names, separated by commas, that the service accepts besides localhost and IP addresses.",
     )
+    root_path: str = Field(
+        "", description="Path below which clients find the service, such as /safestart; empty: none."
+    )
+    trusted_proxies: str = Field(
+        "127.0.0.0/8, ::1",
+        description="Addresses and networks of proxies, separated by commas, whose X-Forwarded-For, -Proto, -Host and "
+        "-Prefix count; empty: none.",
+    )
     rate_per_s: float = Field(
         1000.0, gt=0, description="Requests per second of one API key; bursts of 10 s' worth."
     )
@@ -103,6 +145,17 @@ class Settings(BaseSettings):
         description="Most event streams and long polls at once; one API key may hold half of them.",
     )
 
+    @field_validator("root_path")
+    @classmethod
+    def _path(cls, value: str) -> str:
+        return path_below(value)
+
+    @field_validator("trusted_proxies")
+    @classmethod
+    def _networks(cls, value: str) -> str:
+        networks(value)
+        return value
+
     @classmethod
     def settings_customise_sources(
         cls,
@@ -119,21 +172,42 @@ class Settings(BaseSettings):
         """The database URL with its password; creates the default directory if it is missing."""
         if self.database_url:
             return with_password(self.database_url, self.database_password_file)
-        folder = user_data_path("safestart")
-        folder.mkdir(parents=True, exist_ok=True)
+        folder = _place(user_data_path)
+        try:
+            if folder is None:
+                raise FileNotFoundError(ENOENT, "this account has no home directory")
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            required = "a setting SAFESTART_DATABASE_URL, or a data directory that can be made"
+            received = error.strerror if folder is None else f"{folder} ({error.strerror})"
+            raise InvalidInput(
+                f"database_url: required {required}, received {received}",
+                field="database_url",
+                required=required,
+                received=received,
+            ) from None
         return f"sqlite:///{folder / 'safestart.sqlite3'}"
 
 
 def _file(kind: type[BaseSettings]) -> TomlConfigSettingsSource:
     """Read the settings file; raises ``InvalidInput`` when a named file is missing or is not TOML."""
     named = os.environ.get("SAFESTART_CONFIG")
-    path = Path(named) if named else user_config_path("safestart") / "safestart.toml"
-    if named and not path.is_file():
+    folder = _place(user_config_path)
+    path = Path(named) if named else folder / "safestart.toml" if folder else None
+    if named and path is not None and not path.is_file():
         raise invalid("SAFESTART_CONFIG", "the path of a TOML file", named)
     try:
-        return TomlConfigSettingsSource(kind, toml_file=path)
+        return TomlConfigSettingsSource(kind, toml_file=path or ())
     except (OSError, ValueError) as error:  # invalid TOML or UTF-8 is a ValueError
         raise invalid(str(path), "a readable TOML file in UTF-8", str(error)) from None
+
+
+def _place(of_user: Callable[[str], Path]) -> Path | None:
+    """A folder of the user's; None for an account without a home directory."""
+    try:
+        return of_user("safestart")
+    except RuntimeError:
+        return None
 
 
 @cache

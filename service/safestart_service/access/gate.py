@@ -5,9 +5,6 @@ Called once per request, before any other code, and without the database.
 
 from __future__ import annotations
 
-import ipaddress
-import re
-from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from fastapi import Request
@@ -17,10 +14,11 @@ from starlette.types import Scope
 from safestart.errors import SafestartError, Unavailable
 from safestart.runtime.access import LOCAL, Caller, Role
 from safestart.runtime.settings import Settings
+from safestart_service.access.hosts import Hosts, without_host
 from safestart_service.access.keyring import Keyring
 from safestart_service.access.nearness import from_this_machine
 from safestart_service.access.rates import Buckets
-from safestart_service.errors import Forbidden, MalformedRequest, Misdirected, RateLimited, Unauthorized
+from safestart_service.errors import Forbidden, RateLimited, Unauthorized
 
 if TYPE_CHECKING:
     from safestart.store.records import ApiKey
@@ -28,15 +26,15 @@ if TYPE_CHECKING:
 Presented = tuple[bytes | None, bytes | None, bytes | None]
 """Host, Authorization and X-API-Key of a request."""
 
-PUBLIC = frozenset({"/", "/conformance", "/dashboard", "/docs", "/healthz", "/openapi.json", "/readyz"})
+PUBLIC = frozenset(
+    {"/", "/conformance", "/dashboard", "/docs", "/healthz", "/openapi.json", "/openapi-3.0.json", "/readyz"}
+)
 """Answered without a key: what the service is, its health, and pages that hold no data and ask for the key."""
 INSTANT = frozenset({"/go-no-go", "/go-no-go/proof", "/certificates"})
 """Computed from the request alone: a POST to these paths changes nothing."""
 MOST_FAILURES_PER_S = 5.0
 _LONGEST_KEY = 512
-_LONGEST_HOST = 260
 _READING = ("GET", "HEAD", "OPTIONS")
-_HOST_PORT = re.compile(r"(\[[0-9a-f:.]+(?:%[^\]]*)?\]|[a-z0-9._~!$&'()*+;=%-]+)(?::(\d{0,5}))?")
 REMEDY = "a key made with `safestart keys create`, as Authorization: Bearer KEY or X-API-Key: KEY"
 
 
@@ -59,8 +57,7 @@ class Access:
 
     def __init__(self, settings: Settings, keyring: Keyring) -> None:
         self._keyring = keyring
-        names = {name.strip().lower() for name in settings.allowed_hosts.split(",")}
-        self._host_refusal = lru_cache(1024)(lambda host: _host_refusal(host, frozenset(names - {""})))
+        self.hosts = Hosts(settings.allowed_hosts)
         self._requests = Buckets(settings.rate_per_s)
         self._submissions = Buckets(settings.submit_rate_per_s)
         self._failures = Buckets(MOST_FAILURES_PER_S)
@@ -68,7 +65,7 @@ class Access:
     def refusal(self, scope: Scope, presented: Presented) -> SafestartError | None:
         """The reason to refuse this request, or None. Leaves the key in the scope for :func:`caller`."""
         host, authorization, api_key = presented
-        refused = _without_host(scope) if host is None else self._host_refusal(host[: 1 + _LONGEST_HOST])
+        refused = without_host(scope) if host is None else self.hosts.refusal(host)
         if refused is not None:
             return refused
         needed = needed_role(scope["method"], get_route_path(scope))
@@ -166,47 +163,6 @@ def require_own(by: Caller, submitter: str | None) -> None:
         "the job belongs to another key; required the key that submitted it, or one with role admin",
         field="jobID",
         required="the submitter's key, or role admin",
-    )
-
-
-def _host_refusal(host: bytes, names: frozenset[str]) -> SafestartError | None:
-    """A foreign name server cannot rebind addresses and localhost; other names must be configured."""
-    shown = host[:100].decode("latin-1")
-    match = _HOST_PORT.fullmatch(host.decode("latin-1").lower())
-    if match is None or len(host) > _LONGEST_HOST or int(match[2] or 0) > 65535:
-        return _malformed_host("a host and a port, once", shown)
-    name = match[1]
-    if name in names or name == "localhost" or name.endswith(".localhost"):
-        return None
-    bracketed = name.startswith("[")
-    try:
-        address = ipaddress.ip_address(name[1:-1] if bracketed else name)
-    except ValueError:
-        if bracketed:
-            return _malformed_host("an IPv6 address in brackets", shown)
-        required = "localhost, an IP address, or a name in the setting allowed_hosts"
-        return Misdirected(
-            f"Host: required {required}, received {shown!r}", field="Host", required=required, received=shown
-        )
-    if bracketed and address.version == 4:
-        return _malformed_host("an IPv6 address in brackets", shown)
-    return None
-
-
-def _without_host(scope: Scope) -> SafestartError | None:
-    """HTTP/1.0 has no Host header; from HTTP/1.1 on every request has one."""
-    if scope.get("http_version") == "1.0":
-        return None
-    return _malformed_host("one, as the request is not HTTP/1.0", None)
-
-
-def _malformed_host(required: str, received: str | None) -> MalformedRequest:
-    shown = "none" if received is None else repr(received)
-    return MalformedRequest(
-        f"Host: required {required} (RFC 9112), received {shown}",
-        field="Host",
-        required=required,
-        received=received,
     )
 
 

@@ -54,9 +54,9 @@ def is_local(address: str) -> bool:
 
 def _only_local(name: bytes, value: bytes) -> bool:
     if name in SPEAKS_FOR:
-        return all(is_local(_without_port(part)) for part in value.decode("latin-1").split(","))
+        return all(is_local(without_port(part)) for part in value.decode("latin-1").split(","))
     if name == FORWARDED:
-        return all(is_local(_without_port(node)) for node in _nodes(value.decode("latin-1")))
+        return all(is_local(without_port(node)) for node in _nodes(value.decode("latin-1")))
     return True
 
 
@@ -79,7 +79,8 @@ def _nodes(text: str) -> list[str]:
             return found
 
 
-def _without_port(node: str) -> str:
+def without_port(node: str) -> str:
+    """The address of a node of ``X-Forwarded-For`` or ``Forwarded``."""
     node = node.strip()
     match = _HOST_PORT.fullmatch(node)
     return node if match is None else match[1] or match[2] or ""

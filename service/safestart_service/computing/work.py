@@ -12,8 +12,7 @@ from uuid import uuid4
 import orjson
 
 from safestart.processes.base import ProcessSpec
-from safestart.processes.go_no_go import run
-from safestart.processes.go_no_go.spec import GoNoGoInputs
+from safestart.processes.door import OneStart, document_of_one
 from safestart.processes.registry import process
 from safestart.runtime.access import Caller, Role
 from safestart.runtime.progress import Context
@@ -71,10 +70,10 @@ class Made:
     """Where the body is instead."""
 
 
-def one_start(store: Store, context: Context, inputs: GoNoGoInputs) -> dict[str, Any]:
+def one_start(store: Store, context: Context, inputs: OneStart) -> dict[str, Any]:
     """The document of one start."""
     del store
-    return run.answer(inputs, context).document_of_one()
+    return document_of_one(inputs, context)
 
 
 def at_once(store: Store, context: Context, asked: Asked) -> Made | float:

@@ -17,7 +17,7 @@ class Notice:
     ``until`` on.
 
     With ``value`` only that value of the parameter is. Times are aware; ``link`` is the address of the page that names
-    the replacement.
+    the replacement, one of ours if it begins with a slash.
     """
 
     since: datetime
@@ -30,18 +30,19 @@ class Notice:
         if self.until <= self.since:
             raise ValueError(f"until: required after {self.since}, received {self.until}")
 
-    def headers(self) -> list[tuple[bytes, bytes]]:
-        """Header fields of every affected answer."""
+    def headers(self, root: str = "") -> list[tuple[bytes, bytes]]:
+        """Header fields of every affected answer of a service below the path ``root``."""
         sunset = format_datetime(self.until.astimezone(UTC), usegmt=True)
+        link = root + self.link if self.link.startswith("/") else self.link
         return [
             (b"deprecation", b"@%d" % int(self.since.timestamp())),
             (b"sunset", sunset.encode()),
-            (b"link", f'<{self.link}>; rel="deprecation"; type="text/html"'.encode()),
+            (b"link", f'<{link}>; rel="deprecation"; type="text/html"'.encode()),
         ]
 
-    def fields(self) -> dict[str, str]:
+    def fields(self, root: str = "") -> dict[str, str]:
         """The same by name."""
-        return {name.decode(): value.decode() for name, value in self.headers()}
+        return {name.decode(): value.decode() for name, value in self.headers(root)}
 
     def concerns(self, scope: Scope) -> bool:
         """True when this request uses the deprecated call or parameter."""
@@ -84,7 +85,7 @@ class Deprecation:
             if message["type"] == "http.response.start":
                 notice = NOTICES.get((scope["method"], getattr(scope.get("route"), "path", "")))
                 if notice is not None and notice.concerns(scope):
-                    message["headers"].extend(notice.headers())
+                    message["headers"].extend(notice.headers(scope.get("root_path", "")))
             await send(message)
 
         await self.app(scope, receive, telling if scope["type"] == "http" else send)

@@ -11,6 +11,7 @@ from pydantic.json_schema import models_json_schema
 
 from safestart.processes.go_no_go.one_start import GoNoGoAnswer
 from safestart.processes.registry import PROCESS_IDS, process
+from safestart.processes.start_in_space.one_start import SpaceAnswer
 from safestart.runtime.access import Role
 from safestart_service.access.gate import needed_role
 from safestart_service.documents import deprecation, schemas
@@ -22,6 +23,7 @@ TAG = "For If-None-Match."
 ANSWERS: tuple[type[BaseModel], ...] = (
     Problem,
     GoNoGoAnswer,
+    SpaceAnswer,
     schemas.Landing,
     schemas.Conformance,
     schemas.ProcessList,
@@ -30,6 +32,7 @@ ANSWERS: tuple[type[BaseModel], ...] = (
     schemas.JobDetail,
     schemas.Partial,
     schemas.Submitted,
+    schemas.JobInputs,
     schemas.ResultDocument,
     schemas.Partial,
     schemas.Health,
@@ -57,6 +60,20 @@ _WHY = {
     500: "An unexpected error.",
     503: "The database does not answer, or the service is full; Retry-After says when.",
     504: "The answer would take too long, or was not there in time; make a job of it.",
+}
+
+
+HERE = {"url": "http://127.0.0.1:8000", "description": "A service on this machine."}
+_TAGS = {
+    "instant answers": "Answered at once, without a job.",
+    "processes": "What can be run: descriptions and execution.",
+    "jobs": "Queued executions: status, events, dismissal.",
+    "results": "Results and files of jobs.",
+    "provenance": "How a result came about.",
+    "service": "The service itself and its description.",
+    "operations": "Health and metrics.",
+    "administration": "Keys and the audit log.",
+    "dashboard": "Pages.",
 }
 
 
@@ -149,9 +166,41 @@ def build(app: FastAPI) -> dict[str, Any]:
         for name, schema in found["$defs"].items():
             if components.setdefault(name, schema) != schema:
                 raise AssertionError(f"two different schemas are called {name}")
+    names = [name for name in components if "__" in name]
+    if names:
+        raise AssertionError(f"two models share a name: {', '.join(names)}")
+    _drop_foreign(document)
+    _close_tuples(document)
     _add_access(document)
     deprecation.mark(document)
+    document["servers"] = [HERE]
+    document["tags"] = [{"name": name, "description": text} for name, text in _TAGS.items()]
     return document
+
+
+def _drop_foreign(document: dict[str, Any]) -> None:
+    """Remove FastAPI's own 422, which this service never sends, and its models."""
+    for operations in document["paths"].values():
+        for operation in operations.values():
+            if "HTTPValidationError" in str(operation["responses"].get("422")):
+                del operation["responses"]["422"]
+    for name in ("HTTPValidationError", "ValidationError"):
+        document["components"]["schemas"].pop(name, None)
+
+
+def _close_tuples(node: Any) -> None:
+    """Give arrays of fixed length the member ``items``, without which many tools take no array."""
+    if isinstance(node, dict):
+        if "prefixItems" in node:
+            node.setdefault("items", node["prefixItems"][0])
+        node = list(node.values())
+    for item in node if isinstance(node, list) else ():
+        _close_tuples(item)
+
+
+def at(document: dict[str, Any], base: str) -> dict[str, Any]:
+    """The description of the service at this address."""
+    return document | {"servers": [{"url": base, "description": "this service"}]}
 
 
 def install(app: FastAPI) -> None:

@@ -13,10 +13,12 @@ from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import Response
 from pydantic import BaseModel, ConfigDict, Field
+from starlette._utils import get_route_path
 from starlette.exceptions import HTTPException
 
 from safestart.errors import SafestartError
 from safestart.model.validation import refusal
+from safestart_service.pages import render as pages
 
 MEDIA_TYPE = "application/problem+json"
 OGC_PREFIX = "http://www.opengis.net/def/exceptions/ogcapi-processes-1/1.0/"
@@ -153,7 +155,7 @@ def _methods_at(request: Request) -> str:
     """Methods allowed at this path: those of every route with this path, HEAD and OPTIONS."""
     methods: set[str] = set()
     for pattern, answered in request.app.state.route_table:
-        if pattern.fullmatch(request.scope["path"]):
+        if pattern.fullmatch(get_route_path(request.scope)):
             methods |= answered
     if "GET" in methods and not request.scope["path"].endswith("/events"):
         methods.add("HEAD")
@@ -167,8 +169,11 @@ async def _on_http(request: Request, error: Exception) -> Response:
     detail = str(error.detail)
     required = received = None
     headers = dict(error.headers or {})
+    root = request.scope.get("root_path", "")
+    if status is HTTPStatus.NOT_FOUND and pages.wanted(request):
+        return pages.missing(request, root)
     if status is HTTPStatus.NOT_FOUND and detail == status.phrase:
-        detail = f"nothing is at {request.scope['path']}; /openapi.json lists all paths"
+        detail = f"nothing is at {request.scope['path']}; {root}/openapi.json lists all paths"
     elif status is HTTPStatus.METHOD_NOT_ALLOWED:
         headers["Allow"] = required = _methods_at(request)
         if request.method == "OPTIONS":

@@ -166,6 +166,13 @@ class Submitted(JobDetail):
     certificate: dict[str, Any] | None = None
 
 
+class JobInputs(BaseModel):
+    """What a job computes, of OGC API - Processes Part 4."""
+
+    inputs: dict[str, Any]
+    outputs: dict[str, dict[str, Any]] = Field(description="The outputs that a result holds, by id.")
+
+
 class JobList(BaseModel):
     """A page of jobs, newest first."""
 
@@ -230,6 +237,14 @@ class Readiness(BaseModel):
     places: int = Field(description="Jobs that the workers can run at once.")
     places_taken: int
     jobs: dict[str, int]
+
+
+class CallerDocument(BaseModel):
+    """Who is asking."""
+
+    key_id: str | None = Field(description="Id of the key; null where no keys are in use.")
+    name: str = Field(description="Name of the key; local without one.")
+    role: Role = Field(description="What the caller may do: read; submit; admin.")
 
 
 class KeyDocument(BaseModel):

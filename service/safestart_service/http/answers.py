@@ -12,6 +12,8 @@ from fastapi.responses import Response
 from starlette._utils import get_route_path
 from starlette.types import Send
 
+from safestart_service.access.proxies import HOST
+
 _HOST = re.compile(r"[A-Za-z0-9._-]+(:\d{1,5})?|\[[0-9A-Fa-f:.]+\](:\d{1,5})?")
 
 
@@ -34,16 +36,22 @@ async def send_json(send: Send, document: Any) -> None:
 
 
 def base_url(request: Request) -> str:
-    """Scheme, host and mount path of this request, without a trailing slash.
+    """Scheme, host and mount path of this request as its client sees them, without a trailing slash.
 
-    The address of the socket replaces an invalid Host header.
+    A trusted proxy's word counts for the host; the address of the socket replaces an invalid Host header.
     """
     scope = request.scope
-    host = request.headers.get("host", "")
+    host = scope.get(HOST) or request.headers.get("host", "")
     if not _HOST.fullmatch(host):
         name, port = scope.get("server") or ("127.0.0.1", None)
         host = f"{name}:{port}" if port else name
     return f"{scope.get('scheme', 'http')}://{host}{scope.get('root_path', '')}"
+
+
+def root_path(request: Request) -> str:
+    """The mount path of this request, without a trailing slash."""
+    root: str = request.scope.get("root_path", "")
+    return root
 
 
 def this_url(request: Request) -> str:

@@ -53,12 +53,12 @@ def query_values(raw: bytes) -> dict[str, str]:
 def query_route(
     parse: Callable[[dict[str, str]], Query],
     answer: Callable[[Request, Query], Awaitable[Response]],
-    instant: Callable[[Query, bytes], Any] = lambda _, __: None,
+    instant: Callable[[Query, Scope], Any] = lambda _, __: None,
 ) -> type[APIRoute]:
     """An ``APIRoute`` class that serves ``answer(request, parse(parameters))``; the endpoint is only documentation.
 
     ``instant`` gives the document of a query that takes microseconds, sent at once, or None. Its second argument is
-    the query string.
+    the request's scope.
     """
 
     class QueryRoute(APIRoute):
@@ -70,7 +70,7 @@ def query_route(
                 await super().handle(scope, receive, send)  # refuses it
                 return
             query = parse(query_values(scope["query_string"]))
-            document = instant(query, scope["query_string"])
+            document = instant(query, scope)
             if document is None:
                 response = await answer(Request(scope, receive, send), query)
                 await response(scope, receive, send)

@@ -19,6 +19,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from safestart.errors import SafestartError
 from safestart.runtime.logs import about
 from safestart_service.access.gate import Access
+from safestart_service.access.proxies import FIELDS, Proxies
 from safestart_service.computing.budget import Budget, Share
 from safestart_service.documents import problems
 from safestart_service.errors import BodyTooLarge, Busy, MalformedRequest, QueryTooLong, RequestTimeout
@@ -42,7 +43,7 @@ _ONCE = {
         *("Idempotency-Key", "Last-Event-ID"),
     )
 }
-_READ = frozenset({*_ONCE, b"transfer-encoding", b"x-request-id"})
+_READ = frozenset({*_ONCE, *FIELDS, b"transfer-encoding", b"x-request-id"})
 _SAFE_ID = re.compile(rb"[A-Za-z0-9._-]{1,64}")
 
 log = logging.getLogger("safestart.service")
@@ -59,8 +60,10 @@ class Limits:
         timeout_s: float = 60.0,
         refused: Callable[[int], None] = lambda _: None,
         max_bodies_bytes: int = 96_000_000,
+        proxies: Proxies | None = None,
     ) -> None:
         self.app = app
+        self.proxies = proxies
         self.max_body_bytes = max_body_bytes
         self.access = access
         self.timeout_s = timeout_s
@@ -92,7 +95,7 @@ class Limits:
                 message["headers"].extend(extra[1:] if own else extra)
             await send(message)
 
-        refusal = twice or self._refusal(scope, headers)
+        refusal = twice or self._misplaced(scope, headers) or self._refusal(scope, headers)
         if refusal is not None:
             self.refused(refusal.status)
             problem = problems.of_error(refusal, scope["path"], request_id.decode())
@@ -115,6 +118,11 @@ class Limits:
         finally:
             if share is not None:
                 share.end()
+
+    def _misplaced(self, scope: Scope, headers: dict[bytes, bytes]) -> SafestartError | None:
+        if self.proxies is None or not (self.proxies.root or not FIELDS.isdisjoint(headers)):
+            return None
+        return self.proxies.place(scope)
 
     def _refusal(self, scope: Scope, headers: dict[bytes, bytes]) -> SafestartError | None:
         length = headers.get(b"content-length")

@@ -7,6 +7,7 @@ required.
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -21,6 +22,7 @@ from safestart_service.pages.openapi_operations import api_operations
 
 if TYPE_CHECKING:
     from jinja2 import Environment
+    from markupsafe import Markup
 
 _HERE = Path(__file__).parents[1]
 _TYPES = {".css": "text/css", ".svg": "image/svg+xml", ".js": "text/javascript"}
@@ -43,25 +45,46 @@ def _environment() -> Environment:
     # Imported with the first page, so that the API starts without it.
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-    return Environment(
+    found = Environment(
         loader=FileSystemLoader(_HERE / "templates"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    found.filters["coded"] = coded
+    return found
 
 
-def page(template: str, **values: Any) -> HTMLResponse:
+def coded(text: str) -> Markup:
+    """A text of the API description, what stands between backticks as code."""
+    from markupsafe import Markup, escape
+
+    code = Markup("<code>{}</code>")
+    parts = re.split(r"`+([^`]+)`+", str(text))
+    return Markup("").join(code.format(part) if k % 2 else escape(part) for k, part in enumerate(parts))
+
+
+def page(template: str, *, status: int = 200, **values: Any) -> HTMLResponse:
     """A page; ``here`` is its path, ``root`` the mount path, ``script`` its module, ``plots`` whether it draws."""
     text = _environment().get_template(template).render(**values)
-    return HTMLResponse(text, headers={"Cache-Control": "no-store", "Content-Security-Policy": CSP})
+    return HTMLResponse(text, status, headers={"Cache-Control": "no-store", "Content-Security-Policy": CSP})
 
 
 def docs(description: dict[str, Any], root: str) -> Response:
     """The API description as an HTML page."""
     groups = api_operations(description)
     return page("docs.html", root=root, here="/docs", info=description["info"], groups=groups)
+
+
+def wanted(request: Request) -> bool:
+    """Whether a browser asks for a page, not a program for a document."""
+    return request.method in ("GET", "HEAD") and "text/html" in request.headers.get("accept", "")
+
+
+def missing(request: Request, root: str) -> HTMLResponse:
+    """The page for a browser at a path where nothing is."""
+    return page("missing.html", status=404, root=root, here="", path=request.scope["path"])
 
 
 @cache

@@ -38,7 +38,12 @@ class AuditQuery(BaseModel):
     limit: int = Field(100, ge=1, le=1000, description="Entries per page.")
 
 
-@router.get("/admin/keys", summary="Keys", responses={200: answer(KeyList, "All."), **refusals(503)})
+@router.get(
+    "/admin/keys",
+    operation_id="getKeys",
+    summary="Keys",
+    responses={200: answer(KeyList, "All."), **refusals(503)},
+)
 def keys(request: Request) -> Response:
     """All keys ever made, without their secrets."""
     return Json({"keys": [key_document(key) for key in services(request).keys.list()]}, headers=_NO_STORE)
@@ -46,7 +51,9 @@ def keys(request: Request) -> Response:
 
 @router.post(
     "/admin/keys",
+    operation_id="createKey",
     summary="Make a key",
+    status_code=201,
     openapi_extra=json_body({"key": KeyRequest}, {"key": {"name": "ground segment", "role": "submit"}}),
     responses={
         201: answer(NewKeyDocument, "The key, shown only once."),
@@ -68,6 +75,7 @@ async def create(request: Request) -> Response:
 
 @router.delete(
     "/admin/keys/{keyID}",
+    operation_id="revokeKey",
     summary="Revoke a key",
     responses={200: answer(KeyDocument, "The key, revoked."), **refusals(404, 409, 503)},
 )
@@ -88,6 +96,7 @@ def revoke(request: Request, keyID: KeyId) -> Response:
 
 @router.get(
     "/admin/audit",
+    operation_id="getAuditLog",
     summary="Audit log",
     responses={200: answer(AuditList, "A page of entries."), **refusals(422, 503)},
 )

@@ -14,6 +14,7 @@ router = APIRouter(tags=["instant answers"])
 
 @router.post(
     "/certificates",
+    operation_id="certify",
     summary="Closed-form certificate on a grid",
     openapi_extra=json_body({SPEC.id: CertificateInputs}, {SPEC.id: SPEC.example}),
     responses={

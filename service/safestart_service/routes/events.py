@@ -21,6 +21,7 @@ router = APIRouter(tags=["jobs"], route_class=OnceRoute)
 
 @router.get(
     "/jobs/{jobID}/events",
+    operation_id="getEvents",
     summary="Events of a job",
     responses={
         200: content("text/event-stream", {}, "status, progress and log events, with ids."),

@@ -2,55 +2,62 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any
 
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import Response
+from starlette.types import Scope
 
 from safestart.errors import NotFound
+from safestart.processes import door
+from safestart.processes.door import OneStart
+from safestart.processes.flat import described
 from safestart.processes.go_no_go import run
-from safestart.processes.go_no_go.method_registry import PROVING, RENAMED, method_of
-from safestart.processes.go_no_go.one_start import ONE_START, GoNoGoAnswer
+from safestart.processes.go_no_go.method_registry import RENAMED
+from safestart.processes.go_no_go.one_start import GoNoGoAnswer
 from safestart.processes.go_no_go.spec import SPEC, GoNoGoInputs, GoNoGoOutputs
+from safestart.processes.start_in_space.one_start import SpaceAnswer
 from safestart.processes.start_in_space.spec import SPEC as SPACE
 from safestart.processes.start_in_space.spec import SpaceInputs, SpaceOutputs
 from safestart.runtime.progress import Context
 from safestart_service.computing.dispatch import one_document, posted
 from safestart_service.documents.deprecation import RENAMED_METHOD
-from safestart_service.documents.openapi import REF, answer, content, json_body, refusals
-from safestart_service.http.answers import Json
+from safestart_service.documents.openapi import REF, content, json_body, refusals
+from safestart_service.http.answers import Json, root_path
 from safestart_service.http.body import read_body
 from safestart_service.http.lean import query_route
 
 if TYPE_CHECKING:
     from pydantic import BaseModel as GoNoGoQuery
 else:
-    GoNoGoQuery = ONE_START.query("GoNoGoQuery", "One operating point and one start, flat.")
+    GoNoGoQuery = described(door.PARAMETERS, "GoNoGoQuery", "One operating point and one start, flat.")
 _SILENT = Context()
 
 
-def _instant(inputs: GoNoGoInputs, query: bytes) -> dict[str, Any] | None:
+def _instant(inputs: OneStart, scope: Scope) -> dict[str, Any] | None:
     """The document of a question that takes microseconds, else None: a cone program would block other requests."""
+    if isinstance(inputs, SpaceInputs):
+        return None
     found = run.at_once(inputs, _SILENT)
-    return None if found is None else _linked(found.document_of_one(), inputs, query)
+    return None if found is None else _linked(found.document_of_one(), inputs, scope)
 
 
-async def _answer(request: Request, inputs: GoNoGoInputs) -> Response:
+async def _answer(request: Request, inputs: OneStart) -> Response:
     document = await one_document(request, inputs)
-    return Json(_linked(document, inputs, request.scope["query_string"]))
+    return Json(_linked(document, inputs, request.scope))
 
 
-def _linked(document: dict[str, Any], inputs: GoNoGoInputs, query: bytes) -> dict[str, Any]:
+def _linked(document: dict[str, Any], inputs: OneStart, scope: Scope) -> dict[str, Any]:
     """The answer with the address of a proof of the same question; none for what is undecided or not sound."""
-    if document["verdict"] != "UNDECIDED" and method_of(inputs.method).sound:
-        document["proof_url"] = f"/go-no-go/proof?{query.decode('latin-1')}"
+    if document["verdict"] != "UNDECIDED" and door.sound(inputs):
+        query = scope["query_string"].decode("latin-1")
+        document["proof_url"] = f"{scope.get('root_path', '')}/go-no-go/proof?{query}"
     return document
 
 
-async def _proof(request: Request, inputs: GoNoGoInputs) -> Response:
-    method = inputs.method if method_of(inputs.method).proves else PROVING
-    asked = inputs.model_copy(update={"method": method, "proofs": True})
-    document = await one_document(request, asked)
+async def _proof(request: Request, inputs: OneStart) -> Response:
+    document = await one_document(request, door.with_proof(inputs))
     if document["proof"] is None:
         raise NotFound(
             f"there is no proof: {document['reason']}",
@@ -65,31 +72,40 @@ def in_space(body: bytes) -> bool:
     return b'"starts"' in body
 
 
-one = APIRouter(tags=["instant answers"], route_class=query_route(ONE_START.parse, _answer, _instant))
-proof = APIRouter(tags=["instant answers"], route_class=query_route(ONE_START.parse, _proof))
+one = APIRouter(tags=["instant answers"], route_class=query_route(door.parse, _answer, _instant))
+proof = APIRouter(tags=["instant answers"], route_class=query_route(door.parse, _proof))
 many = APIRouter(tags=["instant answers"])
 
 
 @one.get(
     "/go-no-go",
+    operation_id="goNoGo",
     summary="Go/no-go for one start",
     responses={
-        200: answer(GoNoGoAnswer, "The verdict and every margin it rests on."),
+        200: content(
+            "application/json",
+            {"anyOf": [{"$ref": REF + GoNoGoAnswer.__name__}, {"$ref": REF + SpaceAnswer.__name__}]},
+            "The verdict and every margin it rests on.",
+        ),
         **refusals(422, 429, 503, 504),
     },
 )
 async def go_no_go_one(_query: Annotated[GoNoGoQuery, Query()]) -> Response:
-    """May a chaser at rest at this point start its approach?
+    """May a chaser at rest at this point start its approach? With ``position_m``: may one that arrives like this?
 
     No GO without a proof: a certificate in closed form says GO at once, for ever, or a cone program or an atlas
     decides; ``decided_by`` says which. ``method=paper`` asks the paper's conditions, which are not sound. A start
     outside the corridor is NO_GO; ``violated_faces`` says where.
+
+    With ``position_m`` in place of ``x_m`` and ``y_m`` it is the question of process ``start-in-space``: a velocity, a
+    spin of either sign and any phase; ``attitude``, ``orbit``, ``corridor`` and ``thrust`` as JSON objects.
     """
     raise AssertionError("its route class answers")
 
 
 @proof.get(
     "/go-no-go/proof",
+    operation_id="getGoNoGoProof",
     summary="Only the proof of a go/no-go",
     responses={
         200: content("application/json", {"type": "object"}, "The document that `safestart verify` checks."),
@@ -107,6 +123,7 @@ async def go_no_go_proof(_query: Annotated[GoNoGoQuery, Query()]) -> Response:
 
 @many.post(
     "/go-no-go",
+    operation_id="goNoGoMany",
     summary="Go/no-go for many starts",
     openapi_extra=json_body(
         {SPEC.id: GoNoGoInputs, SPACE.id: SpaceInputs}, {SPEC.id: SPEC.example, SPACE.id: SPACE.example}
@@ -128,9 +145,9 @@ async def go_no_go_many(request: Request) -> Response:
     """
     if in_space(await read_body(request)):
         return await posted(request, SPACE.id, bare=True)
-    return await posted(request, SPEC.id, bare=True, announced=_renamed)
+    return await posted(request, SPEC.id, bare=True, announced=partial(_renamed, root_path(request)))
 
 
-def _renamed(inputs: GoNoGoInputs) -> dict[str, str]:
+def _renamed(root: str, inputs: GoNoGoInputs) -> dict[str, str]:
     """Header fields for a deprecated name of a method."""
-    return RENAMED_METHOD.fields() if inputs.method in RENAMED else {}
+    return RENAMED_METHOD.fields(root) if inputs.method in RENAMED else {}

@@ -60,6 +60,7 @@ class JobQuery(BaseModel):
 
 @router.get(
     "/jobs",
+    operation_id="getJobs",
     summary="List of jobs",
     responses={200: answer(JobList, "A page of jobs.", ETag=TAG), **refusals(304, 422, 503)},
 )
@@ -93,6 +94,7 @@ def jobs(request: Request, query: Annotated[JobQuery, Query()]) -> Response:
 
 @router.get(
     "/jobs/{jobID}",
+    operation_id="getStatus",
     summary="Status of a job",
     responses={200: answer(JobDetail, "statusInfo.", ETag=TAG), **refusals(304, 404, 422, 503)},
 )
@@ -132,6 +134,7 @@ async def job(
 
 @router.get(
     "/jobs/{jobID}/partial",
+    operation_id="getPartialResult",
     summary="Partial result of a job",
     responses={200: answer(Partial, "Finished shards and their summary."), **refusals(404, 422, 503)},
 )
@@ -143,6 +146,7 @@ def partial(request: Request, jobID: JobId) -> Response:
 
 @router.delete(
     "/jobs/{jobID}",
+    operation_id="dismiss",
     summary="Dismiss a job",
     responses={200: answer(JobDetail, "statusInfo after the dismissal."), **refusals(404, 409, 422, 503)},
 )

@@ -9,8 +9,9 @@ from fastapi.responses import Response
 from prometheus_client.exposition import CONTENT_TYPE_LATEST
 
 from safestart.errors import Unavailable
+from safestart_service.access.gate import caller
 from safestart_service.documents.openapi import answer, content, refusals
-from safestart_service.documents.schemas import Health, Readiness
+from safestart_service.documents.schemas import CallerDocument, Health, Readiness
 from safestart_service.http.answers import Json
 from safestart_service.state import services
 
@@ -18,7 +19,12 @@ router = APIRouter(tags=["operations"])
 log = logging.getLogger("safestart.service")
 
 
-@router.get("/healthz", summary="Alive", responses={200: answer(Health, "The process lives."), **refusals()})
+@router.get(
+    "/healthz",
+    operation_id="getHealth",
+    summary="Alive",
+    responses={200: answer(Health, "The process lives."), **refusals()},
+)
 async def healthz(request: Request) -> Response:
     """The process lives and its event loop turns."""
     return Json({"status": "ok", "version": request.app.version})
@@ -26,6 +32,7 @@ async def healthz(request: Request) -> Response:
 
 @router.get(
     "/readyz",
+    operation_id="getReadiness",
     summary="Ready",
     responses={200: answer(Readiness, "The database and a cluster answer."), **refusals(503)},
 )
@@ -61,7 +68,22 @@ def readyz(request: Request) -> Response:
 
 
 @router.get(
+    "/caller",
+    operation_id="getCaller",
+    summary="Who is asking",
+    responses={200: answer(CallerDocument, "The caller, as the audit log names it."), **refusals(503)},
+)
+async def who(request: Request) -> Response:
+    """The key of this request by its id and name, and what it may do."""
+    by = caller(request)
+    return Json(
+        {"key_id": by.key_id, "name": by.name, "role": by.role.value}, headers={"Cache-Control": "no-store"}
+    )
+
+
+@router.get(
     "/metrics",
+    operation_id="getMetrics",
     summary="Prometheus metrics",
     responses={200: content("text/plain", {"type": "string"}, "Exposition format."), **refusals()},
 )

@@ -35,6 +35,7 @@ class ProcessQuery(BaseModel):
 
 @router.get(
     "/processes",
+    operation_id="getProcesses",
     summary="List of processes",
     responses={200: answer(ProcessList, "A page of processes.", ETag=TAG), **refusals(304, 422)},
 )
@@ -54,6 +55,7 @@ async def processes(request: Request, query: Annotated[ProcessQuery, Query()]) -
 
 @router.get(
     "/processes/{processID}",
+    operation_id="getProcessDescription",
     summary="Description of a process",
     responses={
         200: answer(ProcessDescription, "Inputs and outputs as JSON schemas.", ETag=TAG),
@@ -67,6 +69,7 @@ async def describe(request: Request, processID: ProcessId) -> Response:
 
 @router.post(
     "/processes/{processID}/execution",
+    operation_id="execute",
     summary="Execute a process",
     openapi_extra=json_body(
         {name: execute_model(name) for name in PROCESS_IDS},

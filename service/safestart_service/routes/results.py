@@ -43,6 +43,7 @@ _SHOWN = ("image/png", "image/jpeg", "application/json", "text/csv", "text/plain
 
 @router.get(
     "/jobs/{jobID}/results",
+    operation_id="getResult",
     summary="Result of a job",
     responses={
         200: {
@@ -87,6 +88,7 @@ def results(
 
 @router.get(
     "/jobs/{jobID}/artifacts/{name}",
+    operation_id="getArtifact",
     summary="File of a result",
     responses={
         200: content("*/*", {"type": "string", "format": "binary"}, "The file, in its own type.", ETag=_ETAG),
@@ -113,6 +115,7 @@ def artifact(
 
 @router.get(
     "/jobs/{jobID}/artifacts/{name}/arrays",
+    operation_id="getArtifactArrays",
     summary="Arrays of an NPZ file as JSON",
     responses={
         200: content("application/json", {"type": "object"}, "Arrays by name, nested lists.", ETag=_ETAG),

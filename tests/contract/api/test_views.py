@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import re
 import types
 import typing
@@ -15,7 +16,7 @@ import safestart_service
 from safestart.engines.registry import ENGINES
 from safestart.processes.base import ProcessSpec
 from safestart.processes.registry import PROCESS_IDS, process
-from safestart.processes.views import Comparison, Facts, Findings, Flights, Matrices, Overlay, Rows
+from safestart.processes.views import Comparison, Facts, Findings, Flights, Matrices, Overlay, Picture, Rows
 from tests.contract.api.service_client import service
 
 STATIC = Path(safestart_service.__file__).parent / "static"
@@ -43,6 +44,15 @@ def follow(kind: Any, path: str) -> Any:
     for part in path.split(".") if path else []:
         kind = step(kind, part)
     return inner(kind)
+
+
+def member(kind: Any, path: str) -> None:
+    """A member of an input's entry, which is a model or a dataclass."""
+    kind, (name, _, rest) = inner(kind), path.partition(".")
+    if dataclasses.is_dataclass(kind):
+        assert name in {field.name for field in dataclasses.fields(kind)}
+    else:
+        follow(step(kind, name), "*" if rest else "")
 
 
 def check_column(spec: ProcessSpec, table: str, path: str) -> None:
@@ -100,6 +110,16 @@ def test_every_view_shows_what_the_outputs_have(name: str) -> None:
                 case_model = follow(spec.outputs, f"{view.path}.*.*")
                 for column in view.columns:
                     follow(case_model, column.path)
+            case Picture():
+                for layer in view.layers:
+                    assert bool(layer.value) == (layer.drawn in ("points", "positive", "heat"))
+                    for path in filter(None, (layer.x, layer.y, layer.value)):
+                        own = layer.beside and path.startswith(f"{layer.beside}.")
+                        if own:  # of the input that belongs to the row
+                            entry = step(spec.inputs.model_fields[layer.beside].annotation, "*")
+                            member(entry, path.removeprefix(f"{layer.beside}."))
+                        else:
+                            check_column(spec, layer.table, path)
             case Comparison():
                 for path in (view.by, *(measure.path for measure in view.measures), *view.logarithmic):
                     check_column(spec, view.table, path)

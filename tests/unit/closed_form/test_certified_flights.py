@@ -7,12 +7,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from benchmarks.peers.manoeuvre_flight import distances, fly
 from safestart.closed_form.certified import ROUNDING, certify
 from safestart.closed_form.family import SPANS
 from safestart.closed_form.manoeuvre import manoeuvre_of
 from safestart.closed_form.members import BRAKE
 from safestart.model.scenario import Chaser, CorridorShape, Floats, Rest, Scenario, Target
-from tests.unit.closed_form.flying import distances, fly
 
 TURNS = 0.7
 """Turns of the corridor flown after the manoeuvre; where it hardly turns, minutes."""

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 from safestart.cli.options import takes
 from safestart.errors import InvalidInput
 from safestart.processes.base import WireModel
-from safestart.processes.flat import Flat
+from safestart.processes.flat import Flat, described
 from safestart.processes.go_no_go.one_start import ONE_START
 
 
@@ -98,7 +98,7 @@ def test_two_fields_of_one_name_are_refused() -> None:
 
 
 def test_the_description_is_the_model_s() -> None:
-    found = FLAT.query("Query", "Flat.").model_json_schema()
+    found = described(FLAT.parameters, "Query", "Flat.").model_json_schema()
     assert found["required"] == ["thrust"]
     assert found["properties"]["c_x"]["description"] == "Corridor: slope."
     assert found["properties"]["attitude"]["type"] == "string"
@@ -112,7 +112,7 @@ def test_an_object_that_may_be_left_out_takes_its_fields_with_it() -> None:
     flat = Flat(Either, {"state": State})
     assert flat.parse({}) == Either()
     assert flat.parse({"x_m": 1}) == Either(state=State(x_m=1))
-    assert "required" not in flat.query("Query", "Flat.").model_json_schema()
+    assert "required" not in described(flat.parameters, "Query", "Flat.").model_json_schema()
 
 
 def test_a_command_has_an_option_for_each_parameter() -> None:
@@ -120,7 +120,7 @@ def test_a_command_has_an_option_for_each_parameter() -> None:
     app = typer.Typer()
 
     @app.command()
-    @takes(FLAT, without=("states",))
+    @takes(FLAT.parameters, without=("states",))
     def command(*, loud: bool = False, **asked: Any) -> None:
         received.update(asked, loud=loud)
 
@@ -128,8 +128,8 @@ def test_a_command_has_an_option_for_each_parameter() -> None:
     assert CliRunner().invoke(app, line).exit_code == 0
     assert received == {
         "thrust": 2.0,
-        "mode": "a",
-        "c_x": 1.5,
+        "mode": None,
+        "c_x": None,
         "starts": None,
         "attitude": '{"kind": "free", "rate": 1}',
         "loud": True,

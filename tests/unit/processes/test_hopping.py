@@ -2,6 +2,7 @@
 
 import json
 
+import numpy as np
 import pytest
 
 from safestart.cli.reproduce.hopping import hopping_document
@@ -15,6 +16,16 @@ def test_hop_time() -> None:
     assert execute("hop-time", {"angle_deg": 0, "rho": 0.7}).document["outputs"]["orbits"] == 0.5
     with pytest.raises(InvalidInput, match=r"up to 147\.19 deg"):
         execute("hop-time", {"angle_deg": 150, "rho": 0.7})
+
+
+@pytest.mark.parametrize(("angle", "rho"), [(0.0, 0.7), (40.0, 0.7), (90.0, 0.3), (140.0, 0.7), (270.0, 0.0)])
+def test_the_path_of_a_hop_leaves_its_share_and_ends_across_its_line(angle: float, rho: float) -> None:
+    path = np.array(execute("hop-time", {"angle_deg": angle, "rho": rho}).document["outputs"]["path"])
+    ahead, below = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+    assert path[0] == pytest.approx([-below, ahead], abs=1e-12)
+    assert path[-1] == pytest.approx([-rho * below, rho * ahead], abs=1e-9)
+    last = (3 * path[-1] - 4 * path[-2] + path[-3]) / 2  # its velocity, to second order
+    assert abs(last @ path[0]) < 1e-3 * np.linalg.norm(last)
 
 
 @pytest.fixture(scope="module")
@@ -96,6 +107,23 @@ def test_passive_abort_shows_a_flight_that_enters() -> None:
     assert done.document["outputs"]["model"] == "nonlinear"
 
 
+def test_passive_abort_speaks_about_the_true_earth() -> None:
+    orbit = {
+        "eccentricity": 0.002,
+        "inclination_deg": 98,
+        "argument_of_perigee_deg": 30,
+        "true_anomaly_deg": 10,
+    }
+    done = execute("passive-abort", _plan(model="earth", error_level=False, keep_out_m=30, **orbit))
+    outputs = done.document["outputs"]
+    assert (outputs["verdict"], outputs["model"]) == ("PROVED", "earth")
+    assert "J2" in outputs["notes"][0]
+    states = [{"position_m": [0, y, 0], "velocity_m_s": [0, 0, 0]} for y in (182.06, 20.0)]
+    near = execute("passive-abort", _plan(model="earth", error_level=False, keep_out_m=30, states=states))
+    assert near.document["outputs"]["verdict"] == "VIOLATED"
+    assert near.document["outputs"]["counter_example"]["distance_m"] < 30
+
+
 @pytest.mark.parametrize(
     ("more", "said"),
     [
@@ -109,6 +137,10 @@ def test_passive_abort_shows_a_flight_that_enters() -> None:
         ({"failures": {"late_s": 5000}}, "late_s"),
         ({"model": "nonlinear", "errors": {"at_each_burn": False}}, "at_each_burn"),
         ({"semi_major_axis_m": 6e6}, "semi_major_axis_m"),
+        ({"model": "earth", "errors": {"at_each_burn": False}}, "at_each_burn"),
+        ({"model": "earth", "eccentricity": 0.3}, "perigee"),
+        ({"model": "earth", "states": []}, "states"),
+        ({"eccentricity": 0.01}, "model: earth"),
     ],
 )
 def test_bad_plans_are_named(more, said: str) -> None:

@@ -116,7 +116,7 @@ def test_a_disturbance_is_not_waved_through() -> None:
 @pytest.mark.parametrize("margin", [-0.5, 5.0])
 def test_no_parts_refute_no_end(margin: float) -> None:
     """A start that can fly was NO_GO by no evidence at all, even with five metres to spare."""
-    out = forged("synchronize GO", thrust_m_s2=None, parts=[], verdict="NO_GO", margin_m=margin)
+    out = forged("synchronize GO", thrust_m_s2=None, arrival=None, parts=[], verdict="NO_GO", margin_m=margin)
     refused(out, "parts: required all steps" if margin < 0.0 else "margin_m: required < 0")
     refused(forged("synchronize NO_GO", parts=[]), "parts: required all steps")
 
@@ -176,8 +176,8 @@ def test_every_object_is_closed(name: str) -> None:
                 found = check(out if field == "digest" else sealed(out))
             except ProofRejected:
                 continue
-            # A weaker demand is another question, and the statement shows it.
-            assert field in ("keep_out_m", "speed_limit")
+            # A weaker demand is another question, a claim left out another statement, and the statement shows it.
+            assert field in ("keep_out_m", "speed_limit", "arrival")
             assert found.statement != whole
 
 

@@ -12,6 +12,7 @@ from types import ModuleType
 from typing import Any
 
 import pytest
+from numba import config
 
 import safestart
 from safestart.runtime import kernels
@@ -121,26 +122,35 @@ def test_no_place_for_a_cache_is_one_line(
         raise RuntimeError("cannot cache function: no locator available")
 
     monkeypatch.setattr(KernelCache, "__init__", nowhere)
-    for _ in range(2):
-        assert compiled()(lambda x: x + 1.0)(1.0) == 2.0
+    monkeypatch.setattr(kernels, "_said", set())
+    for number in (1.0, 5.0):  # two kernels
+        assert compiled()(lambda x, number=number: x + number)(1.0) == 1.0 + number
     assert [record.message for record in caplog.records].count(
         "no place to keep compiled kernels: RuntimeError: cannot cache function: no locator available"
     ) == 1
 
 
-def test_a_full_disk_is_one_line(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
-    def full(*_: Any) -> None:
-        raise OSError(28, "No space left on device")
+def test_a_full_disk_is_one_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """One for all kernels, although each of them names another file."""
+    monkeypatch.setattr(config, "CACHE_DIR", str(tmp_path))
+    monkeypatch.setattr(kernels, "_said", set())
 
-    kernel = compiled()(lambda x: x + 2.0)
-    monkeypatch.setattr(kernel._cache._cache_file, "save", full)
-    assert (kernel(1.0), kernel(1)) == (3.0, 3)
+    def full(*_: Any) -> None:
+        raise OSError(28, "No space left on device", f"file {len(caplog.records)}")
+
+    for number in (2.0, 3.0):
+        kernel = compiled()(lambda x, number=number: x + number)
+        monkeypatch.setattr(kernel._cache._cache_file, "save", full)
+        assert (kernel(1.0), kernel(1)) == (1.0 + number, 1 + number)
     assert len([record for record in caplog.records if "No space left" in record.message]) == 1
 
 
 def test_every_kernel_is_keyed_by_what_its_text_names() -> None:
     """Read from the source: whatever one of our modules gives to a kernel stands among what its key covers."""
     found = 0
+    cached = type(compiled()(lambda x: x)._cache)  # another kind where no folder can be written to
     for module in modules():
         tree = ast.parse(Path(str(module.__file__)).read_text())
         given = {
@@ -156,7 +166,7 @@ def test_every_kernel_is_keyed_by_what_its_text_names() -> None:
                 continue
             found += 1
             kernel = getattr(module, node.name)
-            assert isinstance(kernel._cache, KernelCache), f"{module.__name__}.{node.name}"
+            assert type(kernel._cache) is cached, f"{module.__name__}.{node.name}"
             covered = lines_of(kernel)
             body = [name.id for part in node.body for name in ast.walk(part) if isinstance(name, ast.Name)]
             for name in set(body) & set(given):

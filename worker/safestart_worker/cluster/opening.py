@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import logging
+import os
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack, asynccontextmanager
+from copy import deepcopy
 from tempfile import TemporaryDirectory
 from typing import Any
 
@@ -30,7 +32,11 @@ async def open_cluster(
     """Connect to ``scheduler``, or start an embedded cluster when it is empty; the block's end closes it."""
     async with AsyncExitStack() as stack:
         folder = stack.enter_context(_private_folder())
-        with dask.config.set({**_config(max_attempts), "temporary-directory": folder}):
+        if not scheduler:
+            _forget_variables()
+        with dask.config.set(
+            {**_defaults(scheduler), **_config(max_attempts), "temporary-directory": folder}
+        ):
             security = configured(scheduler) if scheduler else throwaway()
             local = None if scheduler else await stack.enter_async_context(_embedded(processes, security))
             try:
@@ -59,9 +65,24 @@ async def open_cluster(
 
 def _private_folder() -> TemporaryDirectory[str]:
     """A private folder: Dask imports from its processes' working folder, and others may write to its default one."""
-    return TemporaryDirectory(
-        prefix="safestart-", dir=dask.config.get("temporary-directory", None), ignore_cleanup_errors=True
-    )
+    return TemporaryDirectory(prefix="safestart-", ignore_cleanup_errors=True)
+
+
+def _forget_variables() -> None:
+    """Remove Dask's variables, which the task processes would read when they start."""
+    for name in [name for name in os.environ if name.startswith("DASK_")]:
+        del os.environ[name]
+
+
+def _defaults(scheduler: str) -> dict[str, Any]:
+    """Dask's own defaults in place of the user's files and variables, which may set lifetimes, preloads and folders.
+
+    What the user says about connections holds for the user's scheduler.
+    """
+    defaults: dict[str, Any] = deepcopy(dask.config.merge(*dask.config.defaults))
+    if scheduler:
+        defaults["distributed"]["comm"] = deepcopy(dask.config.get("distributed.comm"))
+    return defaults | {"scheduler-address": None}
 
 
 def _embedded(processes: int, security: Security) -> LocalCluster:

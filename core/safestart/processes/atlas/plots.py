@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Polygon
 
@@ -13,8 +14,7 @@ from safestart.closed_form.by_name import ClosedForm, map_of
 from safestart.engines.registry import engine_spec
 from safestart.engines.spec import LineStyle
 from safestart.model.scenario import Grid, Scenario
-from safestart.processes.base import Artifact
-from safestart.processes.plotting import draw_corridor, figure, png
+from safestart.processes.plotting import draw_corridor, drawn_as, figure
 
 _GO, _NO_GO = "#56B4E9", "#E69F00"
 _FINE = 400
@@ -25,7 +25,8 @@ _FORMS: tuple[tuple[ClosedForm, str, LineStyle], ...] = (
 )
 
 
-def atlas_map(scenario: Scenario, grid: Grid, atlas: Atlas) -> Artifact:
+@drawn_as("atlas.png")
+def atlas_map(scenario: Scenario, grid: Grid, atlas: Atlas) -> Figure:
     """Polygon of proved GO, proved NO_GO, closed form as an outline, deepest start as a cross."""
     shape = scenario.corridor
     drawing = figure(8.6, 4.5)
@@ -79,4 +80,4 @@ def atlas_map(scenario: Scenario, grid: Grid, atlas: Atlas) -> Artifact:
     axes.set_title(
         f"Starts at rest that can stay {atlas.question.horizon:g} s: {rate:g} deg/s, {thrust:g} m/s²"
     )
-    return png("atlas.png", drawing)
+    return drawing

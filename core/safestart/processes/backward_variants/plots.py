@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from safestart.model.scenario import Floats
 from safestart.processes.backward_variants.spec import BackwardVariantsInputs, PlanarCwhInput
-from safestart.processes.base import Artifact
-from safestart.processes.plotting import figure, png
+from safestart.processes.plotting import drawn_as, figure
 from safestart.sets.backward.variants import Variant
 
 _COLOURS = ("#0072B2", "#666666")
@@ -40,7 +40,8 @@ _MOST_POINTS = 1500
 Shown = Sequence[tuple[str, Mapping[str, Variant], Floats | None]]
 
 
-def picture(inputs: BackwardVariantsInputs, shown: Shown) -> Artifact:
+@drawn_as("backward_variants.png")
+def picture(inputs: BackwardVariantsInputs, shown: Shown) -> Figure:
     """Three panels with equal axes; colours are systems, line styles are sets, dots the empirical set."""
     drawing = figure(13.5, 6.0)
     panels = drawing.subplots(1, 3, sharex=True, sharey=True)
@@ -66,7 +67,7 @@ def picture(inputs: BackwardVariantsInputs, shown: Shown) -> Artifact:
         + (", section" if any(value is not None for value in inputs.section or []) else ""),
         fontsize=11,
     )
-    return png("backward_variants.png", drawing)
+    return drawing
 
 
 def _label(inputs: BackwardVariantsInputs, which: int) -> str:

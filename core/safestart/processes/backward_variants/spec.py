@@ -154,7 +154,7 @@ class CloudOutput(WireModel):
     high: list[float]
 
 
-class FlownOutput(WireModel):
+class FlownVariantOutput(WireModel):
     """Noisy flights from the boundary of ``chance_open_loop``; the start that succeeded least."""
 
     starts: int
@@ -171,7 +171,7 @@ class SystemOutput(WireModel):
     name: str
     variants: list[VariantOutput]
     cloud: CloudOutput | None
-    flown: FlownOutput | None
+    flown: FlownVariantOutput | None
 
 
 class RatioOutput(WireModel):
@@ -196,7 +196,7 @@ SPEC = ProcessSpec(
     description=(
         "From which states a linear system with box inputs reaches a box in N steps: nominal; robust against a box of "
         "disturbances, with inputs fixed in advance and with inputs that know the state; chance-constrained under "
-        "Gaussian noise, from inside and outside; and the empirical set of paper 000, section 3. Planar systems "
+        "Gaussian noise, from inside and outside; and the empirical set of Iskender et al., section 3. Planar systems "
         "exactly as polygons, others by linear programs. CWH comes with the double integrator and the extents' ratio."
     ),
     inputs=BackwardVariantsInputs,

@@ -8,14 +8,14 @@ from collections.abc import Mapping
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch
 
 from safestart.engines.base import EngineResult, Problem
 from safestart.engines.registry import engine_spec
 from safestart.model.scenario import Floats
-from safestart.processes.base import Artifact
-from safestart.processes.plotting import draw_corridor, figure, png
+from safestart.processes.plotting import draw_corridor, drawn_as, figure
 
 _BOTH, _ONLY_ENGINE, _ONLY_REFERENCE = "#009E73", "#D55E00", "#0072B2"
 
@@ -28,7 +28,8 @@ def _title(problem: Problem) -> str:
     )
 
 
-def overlay_map(problem: Problem, results: Mapping[str, EngineResult]) -> Artifact:
+@drawn_as("overlay.png")
+def overlay_map(problem: Problem, results: Mapping[str, EngineResult]) -> Figure:
     """Certificate filled, the other engines as outlines, the range limit as a circle."""
     shape = problem.scenario.corridor
     drawing = figure(8.6, 4.5)
@@ -66,7 +67,7 @@ def overlay_map(problem: Problem, results: Mapping[str, EngineResult]) -> Artifa
         )
     axes.set_title(_title(problem), fontsize=11)
     drawing.legend(handles=handles, loc="outside lower center", ncols=2, frameon=False, fontsize=9)
-    return png("overlay.png", drawing)
+    return drawing
 
 
 def _level(result: EngineResult) -> Floats:
@@ -75,7 +76,8 @@ def _level(result: EngineResult) -> Floats:
     return np.where(result.mask, 0.5, -0.5) if result.margin is None else result.margin
 
 
-def agreement_panels(problem: Problem, results: Mapping[str, EngineResult]) -> Artifact:
+@drawn_as("agreement.png")
+def agreement_panels(problem: Problem, results: Mapping[str, EngineResult]) -> Figure:
     """One panel per engine: cells in both sets, in the engine's only, in the reference's only."""
     reference = next(
         (n for n in ("exact", "hamilton_jacobi") if n in results and results[n].mask is not None), None
@@ -103,7 +105,7 @@ def agreement_panels(problem: Problem, results: Mapping[str, EngineResult]) -> A
         fontsize=9,
     )
     drawing.suptitle(f"Each engine against {against}: {_title(problem)}", fontsize=11)
-    return png("agreement.png", drawing)
+    return drawing
 
 
 def _panel(axes: Axes, problem: Problem, result: EngineResult, reference: EngineResult | None) -> None:

@@ -18,6 +18,7 @@ from safestart.processes.base import Artifact, ProcessOutput
 from safestart.processes.benchmark.notes import notes
 from safestart.processes.benchmark.plots import agreement_panels, overlay_map
 from safestart.processes.benchmark.spec import BenchmarkQuestion
+from safestart.processes.output import Undrawn
 from safestart.processes.plotting import npz
 from safestart.processes.wire import DT_S
 from safestart.runtime.progress import Context
@@ -114,7 +115,7 @@ def _against(short: str, mask: Bools | None, other: Bools | None) -> dict[str, f
     return dict(zip(keys, (area, iou(mask, other), violation(mask, other)), strict=True))
 
 
-def _artifacts(problem: Problem, results: Mapping[str, EngineResult]) -> tuple[Artifact, ...]:
+def _artifacts(problem: Problem, results: Mapping[str, EngineResult]) -> tuple[Artifact | Undrawn, ...]:
     x, y = problem.grid.axes(problem.scenario.corridor)
     arrays: dict[str, Any] = {"x_m": x, "y_m": y, "inside": problem.inside()}
     for name, result in results.items():

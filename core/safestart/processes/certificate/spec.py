@@ -7,7 +7,7 @@ from pydantic import Field
 from safestart.closed_form.by_name import ClosedForm
 from safestart.model.scenario import Rest
 from safestart.processes.base import ProcessSpec, Table, WireModel
-from safestart.processes.views import Column, Facts
+from safestart.processes.views import Column, Facts, Layer, Picture
 from safestart.processes.wire import Certificate, GridInput, ScenarioInput
 
 _CELL_S = 1.5e-7
@@ -61,6 +61,13 @@ SPEC = ProcessSpec(
                 Column("Synchronization radius of the paper [m]", "r_sync_m"),
                 Column("Why there is none", "r_sync_reason"),
             )
+        ),
+        Picture(
+            "Certified starts",
+            "x [m], target's body frame",
+            "y [m], target's body frame",
+            (Layer("certified", "positive", "cells", "x_m", "y_m", value="margin_m", colour="certified"),),
+            equal=True,
         ),
     ),
     keywords=("certificate", "safe-start region"),

@@ -7,21 +7,22 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from safestart.collision_avoidance.encounters.adversary import TITLES as ADVERSARIES
 from safestart.collision_avoidance.encounters.pilots import TITLES as PILOTS
 from safestart.model.scenario import Floats
-from safestart.processes.base import Artifact
 from safestart.processes.collision_avoidance.flown import Flown
 from safestart.processes.collision_avoidance.spec import CollisionAvoidanceInputs
-from safestart.processes.plotting import figure, png
+from safestart.processes.plotting import drawn_as, figure
 
 LOST, SAFE, LINE = "#D55E00", "#0072B2", "#333333"
 _TITLES = {"outside": "starts outside the unsafe set, near it", "inside": "starts proved unsafe"}
 
 
-def matrix_picture(rows: Sequence[dict[str, Any]]) -> Artifact:
+@drawn_as("encounters.png")
+def matrix_picture(rows: Sequence[dict[str, Any]]) -> Figure:
     """Breach probability of every pilot against every adversary, with its interval."""
     kinds = [kind for kind in _TITLES if any(row["starts"] == kind for row in rows)]
     chosen = [[row for row in rows if row["starts"] == kind] for kind in kinds]
@@ -54,10 +55,11 @@ def matrix_picture(rows: Sequence[dict[str, Any]]) -> Artifact:
     drawing.suptitle(
         "Loss of separation, % with 95 % interval: pilots (rows) against adversaries", fontsize=11
     )
-    return png("encounters.png", drawing)
+    return drawing
 
 
-def flights_picture(inputs: CollisionAvoidanceInputs, flown: Flown) -> Artifact:
+@drawn_as("flights.png")
+def flights_picture(inputs: CollisionAvoidanceInputs, flown: Flown) -> Figure:
     """The closest flights of some pilots from the same set of starts, and separation over time under supervision."""
     around = [name for name in flown.paths if name != "supervisor"]
     supervised = "supervisor" in flown.paths
@@ -73,7 +75,7 @@ def flights_picture(inputs: CollisionAvoidanceInputs, flown: Flown) -> Artifact:
     if supervised:
         _over_time(panels[-1], flown.paths["supervisor"], inputs)
     drawing.suptitle("Dots: starts; orange: came within the keep-out distance", fontsize=11)
-    return png("flights.png", drawing)
+    return drawing
 
 
 def _around(panel: Axes, paths: Floats, keep_out: float, reach: float) -> None:

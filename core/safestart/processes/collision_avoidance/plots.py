@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch, Rectangle
 
@@ -20,10 +21,9 @@ from safestart.collision_avoidance.game import Game, Players
 from safestart.collision_avoidance.tube import Tube
 from safestart.levelset import ValueField
 from safestart.model.scenario import Floats
-from safestart.processes.base import Artifact
 from safestart.processes.collision_avoidance.captured import BEYOND, HALF_WIDTH_M, Captured
 from safestart.processes.collision_avoidance.spec import CollisionAvoidanceInputs
-from safestart.processes.plotting import figure, png
+from safestart.processes.plotting import drawn_as, figure
 
 LOST, SAFE, OPEN, LINE = "#D55E00", "#0072B2", "#F0E442", "#333333"
 _POINTS = 141
@@ -59,7 +59,8 @@ def slices(inputs: CollisionAvoidanceInputs, tube: Tube) -> list[Slice]:
     return found
 
 
-def unsafe_picture(inputs: CollisionAvoidanceInputs, drawn: Sequence[Slice], tube: Tube) -> Artifact:
+@drawn_as("unsafe.png")
+def unsafe_picture(inputs: CollisionAvoidanceInputs, drawn: Sequence[Slice], tube: Tube) -> Figure:
     """Where separation cannot be kept, by velocity: proved (filled) and by the level set alone (line)."""
     drawing = figure(0.6 + 4.3 * max(1, len(drawn)), 5.6)
     panels = drawing.subplots(1, max(1, len(drawn)), sharex=True, sharey=True, squeeze=False)[0]
@@ -101,7 +102,7 @@ def unsafe_picture(inputs: CollisionAvoidanceInputs, drawn: Sequence[Slice], tub
     drawing.suptitle(
         f"Positions of the {what} within {inputs.horizon_s:g} s (arrow: direction of motion)", fontsize=11
     )
-    return png("unsafe.png", drawing)
+    return drawing
 
 
 def _extent(one: Slice) -> float:
@@ -111,7 +112,8 @@ def _extent(one: Slice) -> float:
     return float(min(1.5 * far, one.axis[-1]) or one.axis[-1])
 
 
-def capture_picture(inputs: CollisionAvoidanceInputs, taken: Captured) -> Artifact:
+@drawn_as("capture.png")
+def capture_picture(inputs: CollisionAvoidanceInputs, taken: Captured) -> Figure:
     """Time to the recovery slot by position, with only a radial speed (Fig. 3)."""
     count = len(taken.times)
     drawing = figure(1.6 + 4.0 * count, 4.7)
@@ -143,10 +145,11 @@ def capture_picture(inputs: CollisionAvoidanceInputs, taken: Captured) -> Artifa
         f"Capture set of the recovery slot (orange) in {inputs.capture_horizon_s:g} s, by flight; grey: not captured",
         fontsize=11,
     )
-    return png("capture.png", drawing)
+    return drawing
 
 
-def capture_space_picture(inputs: CollisionAvoidanceInputs, game: Game, slot: Slot) -> Artifact:
+@drawn_as("capture_space.png")
+def capture_space_picture(inputs: CollisionAvoidanceInputs, game: Game, slot: Slot) -> Figure:
     """The same over positions and tangential speed (Fig. 4): outlines at some tangential speeds."""
     count = len(inputs.capture_radial_m_s)
     drawing = figure(0.8 + 4.4 * count, 4.8)
@@ -180,10 +183,11 @@ def capture_space_picture(inputs: CollisionAvoidanceInputs, game: Game, slot: Sl
     drawing.suptitle(
         f"Capture set within {inputs.capture_horizon_s:g} s at nine tangential speeds", fontsize=11
     )
-    return png("capture_space.png", drawing)
+    return drawing
 
 
-def escape_picture(escapes: Sequence[Escape], burn_s: float, orbit_s: float) -> Artifact:
+@drawn_as("escape.png")
+def escape_picture(escapes: Sequence[Escape], burn_s: float, orbit_s: float) -> Figure:
     """The four escape modes: the first minutes, and one orbit (Fig. 2)."""
     drawing = figure(11.0, 4.8)
     near, far = drawing.subplots(1, 2)
@@ -207,7 +211,7 @@ def escape_picture(escapes: Sequence[Escape], burn_s: float, orbit_s: float) -> 
     far.set_ylabel("y radial [km]")
     far.set_title(f"{orbit_s / 60.0:.0f} min (one orbit); square: its end", fontsize=10)
     drawing.suptitle(f"Escape modes: {burn_s:g} s of full thrust from the dot, then free motion", fontsize=11)
-    return png("escape.png", drawing)
+    return drawing
 
 
 def _frame(axes: Axes) -> None:

@@ -30,7 +30,7 @@ class BoxInput(WireModel):
     speed_m_s: float = Field(6.0, gt=0, le=100, description="Half-width of the speeds, m/s.")
 
 
-class GridInput(WireModel):
+class GameGridInput(WireModel):
     """The grid of the level set."""
 
     nodes_position: int = Field(31, ge=7, le=101, description="Nodes along x and along y.")
@@ -78,7 +78,7 @@ class CollisionAvoidanceInputs(WireModel):
         le=1000,
         description="Running cost, metres of separation that 1 m/s of fuel is worth; hj coasts where thrust pays less.",
     )
-    grid: GridInput = Field(default_factory=lambda: GridInput.model_validate({}))
+    grid: GameGridInput = Field(default_factory=lambda: GameGridInput.model_validate({}))
     states: Annotated[list[State], Field(max_length=MAX_STATES)] = Field(
         [],
         description="States to be judged: (x, y, vx, vy), or in space (x, y, z, vx, vy, vz), m and m/s; x tangential.",
@@ -207,7 +207,7 @@ SPEC = ProcessSpec(
     id="collision-avoidance",
     title="Collision avoidance between two satellites",
     description=(
-        "The game of paper 001: the states from which separation cannot be kept (proved, and by a level set whose "
+        "The game of Hui et al.: the states from which separation cannot be kept (proved, and by a level set whose "
         "error is measured), the capture set of the recovery slot, the escape modes, and closed-loop encounters "
         "with breach probabilities for every pilot and adversary."
     ),

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from typing import Any
 
+from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from safestart.processes.base import Artifact
-from safestart.processes.plotting import figure, png
+from safestart.processes.plotting import drawn_as, figure
 
 COLOURS = {"GO": "#009E73", "NO_GO": "#D55E00", "UNDECIDED": "#BBBBBB"}
 _HATCHES = {"GO": "", "NO_GO": "//", "UNDECIDED": ".."}
 
 
-def picture(document: dict[str, Any]) -> Artifact:
+@drawn_as("timeline.png")
+def picture(document: dict[str, Any]) -> Figure:
     """Verdicts over time; an instant without neighbours of its verdict is a thin line."""
     intervals = document["intervals"]
     names = list(dict.fromkeys(one["corridor"] for one in intervals))
@@ -43,4 +44,4 @@ def picture(document: dict[str, Any]) -> Artifact:
         for verdict, colour in COLOURS.items()
     ]
     drawing.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False)
-    return png("timeline.png", drawing)
+    return drawing

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from safestart.closed_form.by_name import ClosedForm
 from safestart.model.scenario import Bools, CorridorShape, Grid
-from safestart.processes.base import Artifact
-from safestart.processes.plotting import draw_corridor, figure, png
+from safestart.processes.plotting import draw_corridor, drawn_as, figure
 
 _TITLES: dict[ClosedForm, str] = {
     "certified": "certified start at rest, by thrust",
@@ -21,6 +21,7 @@ _MAX_PANELS = 6
 _MAX_LEVELS = 6
 
 
+@drawn_as("coverage.png")
 def coverage_map(
     name: ClosedForm,
     shape: CorridorShape,
@@ -28,7 +29,7 @@ def coverage_map(
     rates: Sequence[float],
     thrusts: Sequence[float],
     masks: Bools,
-) -> Artifact:
+) -> Figure:
     """Panels of at most six tumble rates, spread over the list; the least thrust is drawn last, on top."""
     panels = _spread(len(rates), _MAX_PANELS)
     levels = sorted(_spread(len(thrusts), _MAX_LEVELS), key=lambda k: -thrusts[k])
@@ -53,7 +54,7 @@ def coverage_map(
         ncols=len(levels),
         frameon=False,
     )
-    return png("coverage.png", drawing)
+    return drawing
 
 
 def _spread(count: int, most: int) -> list[int]:

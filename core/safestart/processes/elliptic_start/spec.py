@@ -9,7 +9,7 @@ from pydantic import Field
 from safestart.model.scenario import MAX_RANGE, Rest
 from safestart.processes.base import ProcessSpec, WireModel
 from safestart.processes.start_in_space.parts import EllipticOrbit
-from safestart.processes.views import Column, Facts, Findings
+from safestart.processes.views import Column, Facts, Findings, Layer, Picture
 from safestart.processes.wire import CorridorInput, Thrust
 
 Coordinate = Annotated[float, Field(ge=-MAX_RANGE, le=MAX_RANGE)]
@@ -92,6 +92,13 @@ SPEC = ProcessSpec(
                 Column("Rate of LVLH at the start [deg/s]", "lvlh_rate_deg_s"),
                 Column("Perigee on the ground at eccentricity", "ground_eccentricity"),
             )
+        ),
+        Picture(
+            "Starts",
+            "x [m], target's body frame",
+            "y [m], target's body frame",
+            (Layer("start", "points", "starts", "x_m", "y_m", value="verdict"),),
+            equal=True,
         ),
     ),
     keywords=("elliptic orbit", "certificate", "eccentricity"),

@@ -11,7 +11,7 @@ from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.costs import FIRST_S, program_s
 from safestart.processes.go_no_go.question_fields import QuestionKind
 from safestart.processes.go_no_go.spec import StateInput
-from safestart.processes.views import Column, Findings
+from safestart.processes.views import Column, Findings, Layer, Picture
 from safestart.processes.wire import Horizon, ScenarioInput
 
 
@@ -78,6 +78,19 @@ SPEC = ProcessSpec(
                 Column("after [s]", "closest_s"),
                 Column("delta-v [m/s]", "delta_v_m_s"),
             ),
+        ),
+        Picture(
+            "Flight",
+            "x [m], target's body frame",
+            "y [m], target's body frame",
+            (Layer("flight", "line", "flight", "body_m.0", "body_m.1"),),
+            equal=True,
+        ),
+        Picture(
+            "Distance to each face",
+            "time [s]",
+            "distance [m]",
+            tuple(Layer(f"face {k + 1}", "line", "flight", "time_s", f"distance_m.{k}") for k in range(5)),
         ),
     ),
     keywords=("exact", "trajectory"),

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from safestart.errors import InvalidInput, invalid
 from safestart.exact.answer import Answer, Verdict
 from safestart.exact.question import SPEED_SCALE, Goal, Question
+from safestart.exact.space.question import SpaceQuestion
 from safestart.processes.go_no_go.spec import GoNoGoInputs
 from safestart.processes.wire import DT_S
 
 _WIRE = {"keep_out": "keep_out_m", "hold": "hold_x_m, hold_y_m, hold_z_m", "speed_limit": "speed_limit_m_s"}
+_NO_STAY = "a thrust history arrives at rest, but nothing proves that the chaser can stay there"
 
 
 def question_of(inputs: GoNoGoInputs, dimensions: int) -> Question:
@@ -28,14 +32,27 @@ def question_of(inputs: GoNoGoInputs, dimensions: int) -> Question:
         raise invalid(_WIRE.get(field, field), str(error.required), error.received) from None
 
 
+def with_arrival(question: Question, answers: list[Answer]) -> list[Answer]:
+    """GOs of `synchronize` of which nothing proves that the chaser stays after its end become UNDECIDED."""
+    if question.goal is None:
+        return answers
+    return [
+        replace(answer, verdict=Verdict.UNDECIDED, reason=_NO_STAY)
+        if answer.verdict is Verdict.GO and answer.arrival is None
+        else answer
+        for answer in answers
+    ]
+
+
 def sentence(question: Question, answer: Answer) -> str:
     """The verdict in words."""
-    return _told(question, answer) + (
+    return told(question, answer) + (
         "; the hold plane implies the keep-out radius" if question.keep_out > 0.0 else ""
     )
 
 
-def _told(question: Question, answer: Answer) -> str:
+def told(question: Question | SpaceQuestion, answer: Answer) -> str:
+    """The verdict in words, without the keep-out radius."""
     if answer.verdict is Verdict.UNDECIDED:
         return f"undecided: {answer.reason}; margin between {answer.lower:.3g} and {answer.upper:.3g} m"
     span, spare, short = question.horizon, f"{answer.lower:.2f} m", f"{-answer.upper:.2f} m"
@@ -50,6 +67,14 @@ def _told(question: Question, answer: Answer) -> str:
     if answer.verdict is Verdict.GO and answer.thrust is not None:
         flown = len(answer.thrust) * question.dt
         done = "is at rest in the hold ball after" if question.goal is not None else "stays for"
-        return f"a thrust history{fast} {done} {flown:g} s, with {spare} to spare{scales}"
+        told = f"a thrust history{fast} {done} {flown:g} s, with {spare} to spare{scales}"
+        if question.goal is None:
+            return told
+        if answer.arrival is None:
+            return f"{told}; that it can stay there is not proved"
+        return (
+            f"{told}; then it stops in {answer.arrival.stop:.2g} s and stands for ever, at least "
+            f"{answer.arrival.margin:.2f} m from every face"
+        )
     asked = "is at rest in the hold ball within" if question.goal is not None else "stays for"
     return f"no thrust history{fast} {asked} {span:g} s: each misses a limit by at least {short}{scales}"

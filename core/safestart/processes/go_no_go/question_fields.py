@@ -44,6 +44,11 @@ class QuestionFields(HalfWidths):
     rest_speed_m_s: float = Field(
         0.05, ge=1e-4, le=100, description="Largest speed in the body frame that counts as at rest, m/s."
     )
+    after_arrival: Literal["stay", "any"] = Field(
+        "stay",
+        description="stay: GO of synchronize needs a proof that the chaser stays for ever after its end, else it is "
+        "UNDECIDED. any: what comes after the end is not asked.",
+    )
     speed_limit_m_s: float | None = Field(
         None, ge=0.001, le=1000, description="Largest LVLH speed at all times, m/s; absent: none."
     )

@@ -13,7 +13,7 @@ from safestart.processes.go_no_go.cost import cost
 from safestart.processes.go_no_go.method_registry import UNPROVED, MethodName
 from safestart.processes.go_no_go.question_fields import QuestionFields, QuestionKind
 from safestart.processes.go_no_go.uncertainty import Member
-from safestart.processes.views import Column, Facts, Findings
+from safestart.processes.views import Column, Facts, Findings, Layer, Picture
 from safestart.processes.wire import ScenarioInput
 
 MAX_STATES = 100_000
@@ -145,6 +145,17 @@ SPEC = ProcessSpec(
                 Column("Why there is none", "r_sync_reason"),
                 Column("Faces", "faces"),
             )
+        ),
+        Picture(
+            "Starts",
+            "x [m], target's body frame",
+            "y [m], target's body frame",
+            (
+                Layer(
+                    "start", "points", "states", "states.x_m", "states.y_m", value="verdict", beside="states"
+                ),
+            ),
+            equal=True,
         ),
     ),
     keywords=("certificate", "go/no-go"),

@@ -6,20 +6,21 @@ import math
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from safestart.control.hold.hold_sets import Ellipsoid, Hold, Polyhedron
 from safestart.model.scenario import Floats
-from safestart.processes.base import Artifact
 from safestart.processes.hold_region.spec import HoldRegionInputs
-from safestart.processes.plotting import draw_corridor, figure, png
+from safestart.processes.plotting import draw_corridor, drawn_as, figure
 from safestart.sets.backward.polygon import box, cut, hull
 
 _SMALL, _LARGE = "#D55E00", "#0072B2"
 
 
+@drawn_as("hold_region.png")
 def picture(
     inputs: HoldRegionInputs, hold: Hold, inner: Ellipsoid, outer: Polyhedron | None, phase: float
-) -> Artifact:
+) -> Figure:
     """Left: where a start that turns with the reference may be. Right: the sets' shadows along x and y, LVLH."""
     drawing = figure(12.0, 5.0)
     place, radial, along = drawing.subplots(1, 3)
@@ -57,7 +58,7 @@ def picture(
         f"Hold region, {inputs.omega_t_deg_s:g} deg/s, {inputs.a_max_m_s2:g} m/s², body at {inputs.phase_deg:g} deg",
         fontsize=11,
     )
-    return png("hold_region.png", drawing)
+    return drawing
 
 
 def _circle() -> Floats:

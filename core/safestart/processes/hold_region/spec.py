@@ -60,7 +60,7 @@ class PolyhedronOutput(WireModel):
     volume_ratio: float = Field(description="Over the ellipsoid's volume.")
 
 
-class FlownOutput(WireModel):
+class FlownHoldOutput(WireModel):
     """Flights from a set's boundary; from beyond_polyhedron, at 1.02 of its vertices, all must fail."""
 
     set: SetName
@@ -83,16 +83,16 @@ class HoldRegionOutputs(WireModel):
     reference_thrust_m_s2: float = Field(description="Largest thrust that the hold point itself asks for.")
     ellipsoid: EllipsoidOutput | None
     polyhedron: PolyhedronOutput | None
-    flown: list[FlownOutput]
+    flown: list[FlownHoldOutput]
 
 
 SPEC = ProcessSpec(
     id="hold-region",
     title="Region that the hold keeps",
     description=(
-        "Station keeping at the hold point of a turning target by LQR (paper 000, section 8.3): the largest ellipsoid "
-        "of errors that stays within corridor and thrust limit at all times and every angle of the body, and the "
-        "largest set at all from which the loop meets no limit, a polyhedron; both flown from their boundary."
+        "Station keeping at the hold point of a turning target by LQR (Iskender et al., section 8.3): the largest "
+        "ellipsoid of errors that stays within corridor and thrust limit at all times and every angle of the body, and "
+        "the largest set at all from which the loop meets no limit, a polyhedron; both flown from their boundary."
     ),
     inputs=HoldRegionInputs,
     outputs=HoldRegionOutputs,

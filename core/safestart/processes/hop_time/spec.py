@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from safestart.processes.base import ProcessSpec, WireModel
-from safestart.processes.views import Column, Facts
+from safestart.processes.base import ProcessSpec, Table, WireModel
+from safestart.processes.views import Column, Facts, Layer, Picture
 
 
 class HopTimeInputs(WireModel):
@@ -32,13 +32,16 @@ class HopTimeOutputs(WireModel):
     fold_deg: float | None = Field(
         description="Angle, modulo 180 deg, beyond which there is no such hop; null: every angle has one."
     )
+    path: list[list[float]] = Field(
+        description="The hop's path in LVLH: radial and along-track, in shares of the distance at its start."
+    )
 
 
 SPEC = ProcessSpec(
     id="hop-time",
     title="How long a hop takes",
     description=(
-        "Length of a hop of paper 004 along any line through the target that leaves a share rho of the distance and "
+        "Length of a hop of Silva et al. along any line through the target that leaves a share rho of the distance and "
         "ends perpendicular to the line, in periods of a circular orbit, from the hop-time equation in closed form. "
         "Angles beyond the fold of its branch are refused."
     ),
@@ -46,7 +49,17 @@ SPEC = ProcessSpec(
     outputs=HopTimeOutputs,
     run="safestart.processes.hop_time.run:run",
     light=True,
-    views=(Facts((Column("Length [orbits]", "orbits"), Column("Fold [deg]", "fold_deg"))),),
+    tables=(Table("path", ("path",)),),
+    views=(
+        Facts((Column("Length [orbits]", "orbits"), Column("Fold [deg]", "fold_deg"))),
+        Picture(
+            "Path of the hop, the target at 0",
+            "along-track [distance at the start]",
+            "radial [distance at the start]",
+            (Layer("hop", "line", "path", "path.1", "path.0"),),
+            equal=True,
+        ),
+    ),
     keywords=("hopping", "guidance", "V-bar", "R-bar", "glideslope"),
     example={"angle_deg": 40, "rho": 0.7},
 )

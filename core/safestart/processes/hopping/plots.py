@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from safestart.dynamics.cwh import transition_matrix
@@ -15,15 +16,15 @@ from safestart.hopping.approach import Approach, line
 from safestart.hopping_flights.fly import Flown, World
 from safestart.missed_burn.prove import Proof
 from safestart.model.scenario import Floats
-from safestart.processes.base import Artifact
 from safestart.processes.hopping.spec import HoppingInputs
-from safestart.processes.plotting import figure, png
+from safestart.processes.plotting import drawn_as, figure
 
 PROVED, UNPROVED = "#1B7F3B", "#C0392B"
 _SAMPLES = 300
 
 
-def plan_picture(inputs: HoppingInputs, plan: Approach, proof: Proof) -> Artifact:
+@drawn_as("plan.png")
+def plan_picture(inputs: HoppingInputs, plan: Approach, proof: Proof) -> Figure:
     """Left: hops and the drift after each in the orbit plane. Right: the impulses."""
     drawing = figure(12.0, 5.2)
     plane, fuel = drawing.subplots(1, 2, width_ratios=(1.4, 1.0))
@@ -63,12 +64,13 @@ def plan_picture(inputs: HoppingInputs, plan: Approach, proof: Proof) -> Artifac
         f"Hopping approach, planned; drifts of {inputs.abort_orbits:g} orbits with errors of one sigma (linear motion)",
         fontsize=11,
     )
-    return png("plan.png", drawing)
+    return drawing
 
 
+@drawn_as("flights.png")
 def flights_picture(
     inputs: HoppingInputs, world: World, flights: Sequence[Flown], breach: dict[str, Any]
-) -> Artifact:
+) -> Figure:
     """Left: approaches flown. Right: how near an abort after each hop would come."""
     drawing = figure(12.0, 5.2)
     plane, near = drawing.subplots(1, 2, width_ratios=(1.4, 1.0))
@@ -99,7 +101,7 @@ def flights_picture(
         f"that enters {inputs.keep_out_m:g} m (95 %: {100 * breach['low']:.2f} to {100 * breach['high']:.2f} %)",
         fontsize=11,
     )
-    return png("flights.png", drawing)
+    return drawing
 
 
 def _drift(n: float, state: Floats, times: Floats) -> Floats:

@@ -144,10 +144,10 @@ SPEC = ProcessSpec(
     id="hopping",
     title="Hopping approaches, their risk and their proof",
     description=(
-        "V-bar, R-bar and any other line of paper 004: hops planned in closed form, flown by the MPC with a barrier "
+        "V-bar, R-bar and any other line of Silva et al.: hops planned in closed form, flown by the MPC with a barrier "
         "about the true Earth (J2, noise, dispersed starts), with the probability and its interval that thrusters that "
         "die after some hop let the chaser enter the keep-out sphere, and the proof in continuous time of every hop. "
-        "Cut into shards."
+        "In parts."
     ),
     inputs=HoppingInputs,
     outputs=HoppingOutputs,

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch
 
@@ -15,10 +16,9 @@ from safestart.engines.base import ResultCode
 from safestart.engines.registry import engine_spec
 from safestart.engines.spec import LineStyle
 from safestart.model.scenario import Floats
-from safestart.processes.base import Artifact
 from safestart.processes.inclusion_chain.regions import Region
 from safestart.processes.inclusion_chain.spec import CHAIN, PAPER_CHAIN, ChainInputs
-from safestart.processes.plotting import draw_corridor, figure, png
+from safestart.processes.plotting import draw_corridor, drawn_as, figure
 
 _LABELS = {
     "tube": "S_tube (stays, disturbed)",
@@ -47,7 +47,8 @@ _FILLED = ("hj_position", "tube", "synchronize", "certified")
 _FULL = LinearSegmentedColormap.from_list("violation", ["#FFFFFF", "#FBE3CF", "#E68A45", "#B04A00"])
 
 
-def chain_map(inputs: ChainInputs, regions: Mapping[str, Region], document: Mapping[str, Any]) -> Artifact:
+@drawn_as("sets.png")
+def chain_map(inputs: ChainInputs, regions: Mapping[str, Region], document: Mapping[str, Any]) -> Figure:
     """Sets of eq. (12) filled and outlined, the others as outlines; crosses where a link of the chain fails."""
     scenario, grid = inputs.scenario(), inputs.grid.grid()
     shape = scenario.corridor
@@ -92,12 +93,13 @@ def chain_map(inputs: ChainInputs, regions: Mapping[str, Region], document: Mapp
         )
     axes.set_title(f"Safe-start sets at {_point(inputs)}", fontsize=11)
     drawing.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False, fontsize=9)
-    return png("sets.png", drawing)
+    return drawing
 
 
+@drawn_as("violations.png")
 def violation_table(
     inputs: ChainInputs, regions: Mapping[str, Region], document: Mapping[str, Any]
-) -> Artifact:
+) -> Figure:
     """Matrix of violation fractions in percent; the links that eq. (12) claims to be 0 are framed."""
     names = list(regions)
     table = np.array([[document["violation_fraction"][a][b] for b in names] for a in names], dtype=np.float64)
@@ -124,7 +126,7 @@ def violation_table(
     axes.set_ylabel("cells of this set (count) …")
     axes.set_title(f"Violations of inclusion, %\n{_point(inputs)}", fontsize=11)
     drawing.colorbar(shown, ax=axes, shrink=0.75, label="% of the inner set's cells")
-    return png("violations.png", drawing)
+    return drawing
 
 
 def _point(inputs: ChainInputs) -> str:

@@ -24,6 +24,7 @@ from safestart.processes.inclusion_chain.notes import notes
 from safestart.processes.inclusion_chain.plots import chain_map, violation_table
 from safestart.processes.inclusion_chain.regions import Region, region_of
 from safestart.processes.inclusion_chain.spec import CHAIN, PAPER_CHAIN, ChainInputs
+from safestart.processes.output import Undrawn
 from safestart.processes.plotting import npz
 from safestart.runtime.progress import Context
 
@@ -129,7 +130,7 @@ def _artifacts(
     document: Mapping[str, Any],
     points: Floats,
     corridor: Bools,
-) -> tuple[Artifact, ...]:
+) -> tuple[Artifact | Undrawn, ...]:
     arrays: dict[str, Any] = {"points_m": points, "inside": corridor}
     for name, region in regions.items():
         if region.code is ResultCode.OK:

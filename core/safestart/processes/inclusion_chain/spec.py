@@ -92,7 +92,7 @@ class ChainLink(WireModel):
     cells: int | None = Field(description="Cells in the inner set and out of the outer one.")
 
 
-class CounterExample(WireModel):
+class ChainCounterExample(WireModel):
     """The cell of the inner set that is farthest out of the outer one."""
 
     inner: SetName
@@ -147,7 +147,7 @@ class ChainOutputs(WireModel):
         description="[inner][outer]: share of the inner set's cells that are out of the outer set; null: empty or "
         "failed."
     )
-    counter_examples: list[CounterExample]
+    counter_examples: list[ChainCounterExample]
     horizon_contained_s: list[Containment]
     slivers: list[Sliver]
     notes: list[str]
@@ -157,7 +157,7 @@ SPEC = ProcessSpec(
     id="inclusion-chain",
     title="Inclusion chain of the safe-start sets",
     description=(
-        "Computes S_tube, S_ana, S_sync and S_HJpos (paper 000, eq. 12) at one horizon on one grid, the sound "
+        "Computes S_tube, S_ana, S_sync and S_HJpos (Iskender et al., eq. 12) at one horizon on one grid, the sound "
         "certificate in the place of S_ana and S_ana, which is not sound, beside it, with the velocity-aware HJ "
         "target. For every pair: which share of the one lies outside the other, with a counter-example and, where "
         "there is one, its proof; and the horizon at which the certified set is contained."

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from matplotlib.ticker import MaxNLocator
 
 from safestart.dynamics.cwh import transition_matrix
-from safestart.missed_burn.cases import Case
+from safestart.dynamics.two_body_kernel import STAGES, WEIGHTS, drifted, seen
+from safestart.missed_burn.earth import target_before
+from safestart.missed_burn.plan import Question
 from safestart.missed_burn.prove import Finding, Proof, Verdict
+from safestart.missed_burn.sets import Case
 from safestart.model.scenario import Floats
-from safestart.processes.base import Artifact
-from safestart.processes.plotting import figure, png
+from safestart.processes.plotting import drawn_as, figure
 
 COLOURS = {"PROVED": "#1B7F3B", "VIOLATED": "#C0392B", "UNKNOWN": "#B7791F"}
 _MARKS = {"start": "o", "made": "o", "partial": "s", "misdirected": "^", "late": "D", "stuck": "v"}
@@ -21,35 +24,37 @@ _SAMPLES = 240
 _MEMBERS = 12
 
 
-def picture(proof: Proof) -> Artifact:
+@drawn_as("aborts.png")
+def picture(proof: Proof) -> Figure:
     """Left: free drifts after every burn, some members of each set, coloured by the proof. Right: distances."""
     drawing = figure(12.0, 5.2)
     plane, bars = drawing.subplots(1, 2, width_ratios=(1.25, 1.0))
     keep_out = proof.question.keep_out
     draw_drifts(plane, proof, range(len(proof.findings)))
     _distances(bars, proof)
-    motion = "linear" if proof.question.radius is None else "nonlinear"
+    motion = "true" if proof.question.earth else "linear" if proof.question.radius is None else "nonlinear"
     verdict = {
         Verdict.PROVED: f"proved: at no time nearer than {proof.least:.2f} m",
         Verdict.VIOLATED: f"violated: a flight within the errors comes nearer than {keep_out:g} m",
         Verdict.UNKNOWN: f"unknown: {proof.gap:.2f} m of {keep_out:g} m are not proved",
     }[proof.verdict]
     drawing.suptitle(f"Burns that fail, {motion} motion; {verdict}", fontsize=11)
-    return png("aborts.png", drawing)
+    return drawing
 
 
 def draw_drifts(axes: Axes, proof: Proof, which: range) -> None:
     """Drifts of missed burns in the orbit plane, V-bar to the left as the target flies to the left, nadir down."""
     keep_out = proof.question.keep_out
-    n, marks = proof.question.plan.mean_motion, [np.full(2, -1.5 * keep_out), np.full(2, 1.5 * keep_out)]
+    marks = [np.full(2, -1.5 * keep_out), np.full(2, 1.5 * keep_out)]
     for k in which:
         finding = proof.findings[k]
         if finding.case.kind not in ("start", "made"):
             continue
         colour = COLOURS["PROVED" if finding.least >= keep_out else _refuted(finding, keep_out)]
-        for path in _paths(n, finding.case):
+        paths = _paths(proof.question, finding.case)
+        for path in paths:
             axes.plot(path[:, 1], path[:, 0], color=colour, linewidth=0.6, alpha=0.45)
-        start = finding.case.centre
+        start = paths[0][0]
         axes.plot(start[1], start[0], marker="x", color="#222222", markersize=6, zorder=6)
         marks.append(start[:2])
     axes.add_patch(Circle((0.0, 0.0), keep_out, facecolor="#F6D5D0", edgecolor="#8C2B1D", zorder=1))
@@ -71,10 +76,9 @@ def _refuted(finding: Finding, keep_out: float) -> str:
     return "VIOLATED" if finding.nearest < keep_out else "UNKNOWN"
 
 
-def _paths(n: float, case: Case) -> list[Floats]:
-    """Paths (T, 6) of the centre, of members at corners of the boxes, drawn by a fixed pattern."""
+def _paths(question: Question, case: Case) -> list[Floats]:
+    """LVLH paths (T, 6) of the centre, of members at corners of the boxes, drawn by a fixed pattern."""
     times = np.linspace(0.0, case.duration, _SAMPLES)
-    matrices = np.array([transition_matrix(n, float(t)) for t in times])
     rng = np.random.default_rng(7)
     members = [case.centre]
     for _ in range(_MEMBERS if len(case.columns) else 0):
@@ -84,7 +88,20 @@ def _paths(n: float, case: Case) -> list[Floats]:
             member = member + (share / np.linalg.norm(share)) @ case.columns[begin:end]
             begin = end
         members.append(member)
+    if question.earth is not None:
+        target = target_before(question, max(case.burn, 0))
+        return [_flown(np.concatenate([target, member]), times[1]) for member in members]
+    matrices = np.array([transition_matrix(question.plan.mean_motion, float(t)) for t in times])
     return [matrices @ member for member in members]
+
+
+def _flown(flight: Floats, seconds: float) -> Floats:
+    """The path about the true Earth, looked at every so many seconds."""
+    path = [seen(flight)]
+    for _ in range(_SAMPLES - 1):
+        flight, _ = drifted(flight, seconds, STAGES, WEIGHTS)
+        path.append(seen(flight))
+    return np.array(path)
 
 
 def _distances(axes: Axes, proof: Proof) -> None:

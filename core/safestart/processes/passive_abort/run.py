@@ -5,8 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
+
 from safestart.hopping.approach import mean_motion_of
 from safestart.missed_burn.document import document_of
+from safestart.missed_burn.earth import Earth
 from safestart.missed_burn.plan import Burn, Errors, Failures, Plan, Question
 from safestart.missed_burn.prove import Proof, Verdict, greatest_scale, prove
 from safestart.missed_burn.replay import Flown
@@ -23,6 +26,8 @@ NOTES = {
     "(the nonlinear terms, J2, drag) is not in it.",
     "nonlinear": "model: nonlinear. The verdict speaks about two point masses, the target on a circular orbit, "
     "round-off included; J2 and drag are not in it. A gap here may be that of the bound on the nonlinear terms.",
+    "earth": "model: earth. The verdict speaks about both bodies about the Earth with J2, the target on its given "
+    "orbit, the chaser's states before burns within the errors of those given; drag and other forces are not in it.",
 }
 
 
@@ -61,7 +66,21 @@ def question_of(inputs: PassiveAbortInputs) -> Question:
     horizon = inputs.abort_orbits * math.tau / n
     radius = inputs.semi_major_axis_m if inputs.model == "nonlinear" else None
     errors, failures = errors_of(inputs.errors), failures_of(inputs.failures)
-    return Question(plan, inputs.keep_out_m, horizon, errors, failures, radius)
+    earth = earth_of(inputs, plan) if inputs.model == "earth" else None
+    return Question(plan, inputs.keep_out_m, horizon, errors, failures, radius, earth)
+
+
+def earth_of(inputs: PassiveAbortInputs, plan: Plan) -> Earth:
+    """The target's orbit and the states before the burns."""
+    tilt, perigee, anomaly = (
+        math.radians(a)
+        for a in (inputs.inclination_deg, inputs.argument_of_perigee_deg, inputs.true_anomaly_deg)
+    )
+    states = inputs.states
+    before = None
+    if states is not None:
+        before = np.array([[*state.position_m, *state.velocity_m_s] for state in states])
+    return Earth.of(plan, inputs.semi_major_axis_m, inputs.eccentricity, tilt, perigee, anomaly, before)
 
 
 def errors_of(errors: ErrorsInput) -> Errors:

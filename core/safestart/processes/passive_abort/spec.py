@@ -6,27 +6,41 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
+from safestart.model.orbit import EARTH_RADIUS
 from safestart.processes.base import ProcessSpec, WireModel
 from safestart.processes.passive_abort.wire import (
+    AbortStartInput,
     BurnInput,
     ErrorsInput,
     FailuresInput,
     KeepOut,
     Orbits,
     SemiMajorAxis,
-    StartInput,
 )
 from safestart.processes.views import Column, Facts, Findings, Rows
 
 VerdictName = Literal["PROVED", "VIOLATED", "UNKNOWN"]
-ModelName = Literal["linear", "nonlinear"]
+ModelName = Literal["linear", "nonlinear", "earth"]
 
 
 class PassiveAbortInputs(WireModel):
     """A plan, its errors, the failures, the keep-out sphere and the horizon."""
 
     semi_major_axis_m: SemiMajorAxis = 8.1e6
-    start: StartInput = Field(description="State right before the first burn, LVLH.")
+    eccentricity: float = Field(
+        0.0, ge=0, le=0.8, description="Of the target's orbit at the first burn (model earth)."
+    )
+    inclination_deg: float = Field(0.0, ge=0, le=180, description="Its inclination, deg (model earth).")
+    argument_of_perigee_deg: float = Field(
+        0.0, ge=-360, le=360, description="Its perigee, deg (model earth)."
+    )
+    true_anomaly_deg: float = Field(
+        0.0,
+        ge=-360,
+        le=360,
+        description="Where the target is at the first burn, from perigee, deg (model earth).",
+    )
+    start: AbortStartInput = Field(description="State right before the first burn, LVLH.")
     burns: list[BurnInput] = Field(min_length=1, max_length=200, description="The plan, in order.")
     keep_out_m: KeepOut = 50.0
     abort_orbits: Orbits = 2.0
@@ -34,8 +48,15 @@ class PassiveAbortInputs(WireModel):
     failures: FailuresInput = Field(default_factory=lambda: FailuresInput.model_validate({}))
     model: ModelName = Field(
         "linear",
-        description="Motion that the proof speaks about: linear (CWH) or nonlinear (two point masses): what CWH "
-        "leaves out is bounded by Lagrange's remainder. Drifts that go many kilometres away are out of its reach.",
+        description="Motion that the proof speaks about: linear (CWH); nonlinear (two point masses, circular orbit): "
+        "what CWH leaves out is bounded by Lagrange's remainder, drifts of many kilometres are out of its reach; "
+        "earth: both bodies about the Earth with J2, any eccentricity, near the plan as it is flown there.",
+    )
+    states: list[AbortStartInput] | None = Field(
+        None,
+        max_length=200,
+        description="Model earth: states before each burn, around which the box of errors lies, as burns are planned "
+        "anew; absent: the plan flown about the Earth without errors.",
     )
     error_level: bool = Field(
         True, description="Also find the greatest multiple of the errors that is proved."
@@ -48,11 +69,23 @@ class PassiveAbortInputs(WireModel):
                 raise ValueError("burns: in the order of their times, no two at once")
         if any(not any(burn.impulse_m_s) for burn in self.burns):
             raise ValueError("burns: impulses that are not zero")
-        if self.model == "nonlinear" and not self.errors.at_each_burn:
-            raise ValueError("errors.at_each_burn: true where model is nonlinear")
+        if self.model != "linear" and not self.errors.at_each_burn:
+            raise ValueError(f"errors.at_each_burn: true where model is {self.model}")
+        self._orbit()
         if self.failures.stuck_s > 0.0 and self.failures.acceleration_m_s2 == 0.0:
             raise ValueError("failures.acceleration_m_s2: more than 0 where a burn may be stuck on")
         return self
+
+    def _orbit(self) -> None:
+        angles = self.inclination_deg, self.argument_of_perigee_deg, self.true_anomaly_deg
+        if self.model != "earth":
+            if self.eccentricity or any(angles) or self.states is not None:
+                raise ValueError("model: earth, where eccentricity, angles of the orbit or states are given")
+            return
+        if self.semi_major_axis_m * (1.0 - self.eccentricity) <= EARTH_RADIUS:
+            raise ValueError(f"eccentricity: a perigee above the Earth's surface, {EARTH_RADIUS:g} m")
+        if self.states is not None and len(self.states) != len(self.burns):
+            raise ValueError(f"states: one before each of the {len(self.burns)} burns")
 
 
 class CaseOutput(WireModel):
@@ -65,7 +98,7 @@ class CaseOutput(WireModel):
     when_s: float | None = Field(description="When it does, s after the burn.")
 
 
-class FlownOutput(WireModel):
+class FlownAbortOutput(WireModel):
     """A flight to replay: from the state at ``begin_s`` the burns as they come, a push, then drift to ``look_s``."""
 
     burn: int
@@ -91,7 +124,7 @@ class PassiveAbortOutputs(WireModel):
         description="lambda: the greatest multiple of all errors for which every case is proved; null: not asked for."
     )
     cases: list[CaseOutput]
-    counter_example: FlownOutput | None
+    counter_example: FlownAbortOutput | None
     notes: list[str]
 
 
@@ -99,9 +132,10 @@ SPEC = ProcessSpec(
     id="passive-abort",
     title="Missed burns: does a plan stay away from the target, proved",
     description=(
-        "Any plan of impulses near a target on a circular orbit: any one burn missed, late, partial, stuck on or "
+        "Any plan of impulses near a target, on a circular orbit or about the Earth with J2 and any eccentricity: "
+        "any one burn missed, late, partial, stuck on or "
         "misdirected, with errors of navigation and thrust. The least distance to the target is proved at all times of "
-        "the drift that follows, in the linear (CWH) or the nonlinear motion, with a document that safestart "
+        "the drift that follows, in the linear (CWH), the nonlinear or the true motion, with a document that safestart "
         "verify checks; or a flight to replay that comes too near; or UNKNOWN with the gap."
     ),
     inputs=PassiveAbortInputs,

@@ -18,7 +18,7 @@ KeepOut = Annotated[float, Field(gt=0, le=1e5, description="Radius around the ta
 Orbits = Annotated[float, Field(gt=0, le=20, description="How many orbits the drift is followed.")]
 
 
-class StartInput(WireModel):
+class AbortStartInput(WireModel):
     """A state in LVLH: x radial, y along-track, z cross-track."""
 
     position_m: Three = Field(description="LVLH position, m.")

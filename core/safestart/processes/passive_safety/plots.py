@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch, Polygon, Rectangle
 
@@ -20,15 +21,15 @@ from safestart.passive_safety.reach.tube import Tube
 from safestart.passive_safety.requirements import SPEED_FACES, SPEED_LIMITS
 from safestart.passive_safety.switching_guard import FACE_LIMITS, FACES, GAP_GUARD, Guard
 from safestart.passive_safety.verify import Verification, drift_sources
-from safestart.processes.base import Artifact
 from safestart.processes.passive_safety.outlines import outlines
-from safestart.processes.plotting import figure, png
+from safestart.processes.plotting import drawn_as, figure
 from safestart.runtime.progress import Context
 
 _FAR, _NEAR, _DRIFT, _BAD, _CONE = "#0072B2", "#009E73", "#CC79A7", "#D55E00", "#F0E442"
 
 
-def powered_picture(answer: Verification) -> Artifact:
+@drawn_as("tubes.png")
+def powered_picture(answer: Verification) -> Figure:
     """Positions, positions near the target, velocities in mode 2, thrust over time."""
     reach = answer.reach
     drawing = figure(10.4, 8.0)
@@ -67,17 +68,18 @@ def powered_picture(answer: Verification) -> Artifact:
         f"Reach tubes with the engines on: {system.dynamics.value} dynamics, {gains} gains, {system.guard.value}",
         fontsize=11,
     )
-    return png("tubes.png", drawing)
+    return drawing
 
 
-def drift_picture(answers: Sequence[Verification]) -> Artifact:
+@drawn_as("after_abort.png")
+def drift_picture(answers: Sequence[Verification]) -> Figure:
     """Positions after an abort, a row for each window: as a whole, and near the target's box."""
     drawing = figure(10.4, 0.4 + 4.4 * len(answers))
     for (whole, close), answer in zip(drawing.subplots(len(answers), 2, squeeze=False), answers, strict=True):
         _drift_row(whole, close, answer)
     until = answers[0].question.horizon
     drawing.suptitle(f"Where the chaser drifts after an abort, until {until:g} min", fontsize=11)
-    return png("after_abort.png", drawing)
+    return drawing
 
 
 def _drift_row(whole: Axes, close: Axes, answer: Verification) -> None:

@@ -16,7 +16,7 @@ Window = Annotated[list[Minutes], Field(min_length=2, max_length=2)]
 VerdictName = Literal["SAFE", "UNSAFE", "UNKNOWN"]
 
 
-class StartInput(WireModel):
+class RendezvousStartInput(WireModel):
     """A start in Hill's frame of the target: x radial, y along-track."""
 
     x_m: float = Field(-900.0, ge=-2000, le=2000, description="Radial position, m.")
@@ -37,7 +37,7 @@ class SpreadInput(WireModel):
 class PassiveSafetyInputs(RendezvousInputs):
     """Starts, horizon, abort windows, the target's box, and the rendezvous."""
 
-    centre: StartInput = Field(default_factory=lambda: StartInput.model_validate({}))
+    centre: RendezvousStartInput = Field(default_factory=lambda: RendezvousStartInput.model_validate({}))
     half_widths: SpreadInput = Field(default_factory=lambda: SpreadInput.model_validate({}))
     horizon_min: float = Field(
         300.0, gt=0, le=600, description="Horizon of powered flight and drift together, min."
@@ -67,7 +67,7 @@ class PassiveSafetyInputs(RendezvousInputs):
         return self
 
 
-class CounterExample(WireModel):
+class RendezvousCounterExample(WireModel):
     """A flight to replay: fly from the start, cut the engines at ``abort_min``, look at ``time_min``."""
 
     x_m: float
@@ -89,7 +89,7 @@ class FindingOutput(WireModel):
     bound: float | None = Field(description="Proved extreme: least distance, else the greatest value.")
     margin: float | None = Field(description="Proved room to the limit.")
     reason: str
-    counter_example: CounterExample | None
+    counter_example: RendezvousCounterExample | None
 
 
 class WindowOutput(WireModel):
@@ -106,7 +106,7 @@ class CriticalOutput(WireModel):
     proved_until_min: float | None = Field(
         description="Every abort from 0 to here is proved safe; null: none is."
     )
-    counter_example: CounterExample | None = Field(
+    counter_example: RendezvousCounterExample | None = Field(
         description="Collides after the earliest such abort found."
     )
     reason: str
@@ -130,7 +130,7 @@ SPEC = ProcessSpec(
     id="passive-safety",
     title="Passive safety of the switched rendezvous, proved",
     description=(
-        "Reach tubes of the switched LQR rendezvous of paper 003 (linear or nonlinear dynamics, published or own "
+        "Reach tubes of the switched LQR rendezvous of Chan and Mitra (linear or nonlinear dynamics, published or own "
         "gains, octagon or circle as guard): thrust, line of sight, speed, and separation after an engine failure at "
         "any time of a window. SAFE is proved, UNSAFE comes with a flight to replay, UNKNOWN with a reason. Brackets "
         "the critical abort time."

@@ -9,12 +9,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import BoundaryNorm
+from matplotlib.figure import Figure
 
 from safestart.model.scenario import Floats
 from safestart.passive_safety.switching_guard import Guard
-from safestart.processes.base import Artifact
 from safestart.processes.passive_safety.plots import frame
-from safestart.processes.plotting import figure, png
+from safestart.processes.plotting import drawn_as, figure
 from safestart.processes.safe_abort_map.spec import SafeAbortMapInputs
 
 _STEPS = 12
@@ -26,7 +26,8 @@ def arrays(document: dict[str, Any]) -> dict[str, Floats]:
     return {name: np.array(document[name], dtype=np.float64) for name in names}
 
 
-def map_picture(inputs: SafeAbortMapInputs, document: dict[str, Any]) -> Artifact:
+@drawn_as("map.png")
+def map_picture(inputs: SafeAbortMapInputs, document: dict[str, Any]) -> Figure:
     """Passive safety alone, and with every requirement: colour is the time up to which it is proved."""
     values = arrays(document)
     boxes = _boxes(inputs, document)
@@ -61,7 +62,7 @@ def map_picture(inputs: SafeAbortMapInputs, document: dict[str, Any]) -> Artifac
         f"each mark is one start, proved for ±{inputs.half_width_m:g} m around it and not for what lies between",
         fontsize=11,
     )
-    return png("map.png", drawing)
+    return drawing
 
 
 def _boxes(inputs: SafeAbortMapInputs, document: dict[str, Any]) -> Floats:

@@ -91,8 +91,8 @@ SPEC = ProcessSpec(
     id="safe-abort-map",
     title="Safe-abort map of the switched rendezvous",
     description=(
-        "Fig. 5 of paper 003, proved: for every start of an arc or a grid the time up to which each abort drifts past "
-        "the target, and up to which thrust, line of sight and speed are proved as well. Cut into shards."
+        "Fig. 5 of Chan and Mitra, proved: for every start of an arc or a grid the time up to which each abort drifts "
+        "past the target, and up to which thrust, line of sight and speed are proved as well. In parts."
     ),
     inputs=SafeAbortMapInputs,
     outputs=SafeAbortMapOutputs,

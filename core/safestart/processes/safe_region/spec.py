@@ -6,7 +6,7 @@ from pydantic import Field
 
 from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.costs import region_s
-from safestart.processes.views import Column, Facts
+from safestart.processes.views import Column, Facts, Layer, Picture
 from safestart.processes.wire import Horizon, ScenarioInput
 
 
@@ -55,6 +55,30 @@ SPEC = ProcessSpec(
                 Column("at y [m]", "deepest_start_m.1"),
                 Column("Why the polygons are farther apart than usual", "message"),
             )
+        ),
+        Picture(
+            "Starts that can stay",
+            "x [m], target's body frame",
+            "y [m], target's body frame",
+            (
+                Layer(
+                    "proved GO",
+                    "area",
+                    "inner_polygon_m",
+                    "inner_polygon_m.0",
+                    "inner_polygon_m.1",
+                    colour="exact",
+                ),
+                Layer(
+                    "outside: proved NO_GO",
+                    "area",
+                    "outer_polygon_m",
+                    "outer_polygon_m.0",
+                    "outer_polygon_m.1",
+                    colour="lost",
+                ),
+            ),
+            equal=True,
         ),
     ),
     keywords=("exact", "safe-start region"),

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from safestart.model.scenario import Floats
-from safestart.processes.base import Artifact
-from safestart.processes.plotting import draw_corridor, figure, png
+from safestart.processes.plotting import draw_corridor, drawn_as, figure
 from safestart.processes.sweep.spec import SweepInputs
 
 Path = tuple[dict[str, Any], Floats, Floats]
@@ -26,7 +26,8 @@ NAMES = {
 _SAFE, _LOST = "#0072B2", "#D55E00"
 
 
-def confusion_picture(inputs: SweepInputs, confusion: Mapping[str, Mapping[str, Any]]) -> Artifact:
+@drawn_as("confusion.png")
+def confusion_picture(inputs: SweepInputs, confusion: Mapping[str, Mapping[str, Any]]) -> Figure:
     """One 2 x 2 matrix per certificate (rows) and controller (columns)."""
     lines, columns = max(1, len(confusion)), len(inputs.controllers)
     drawing = figure(2.9 * columns + 0.6, 2.7 * lines + 0.7)
@@ -36,7 +37,7 @@ def confusion_picture(inputs: SweepInputs, confusion: Mapping[str, Mapping[str, 
             _matrix(panel, cell)
             panel.set_title(f"{NAMES[certificate]} / {NAMES[name]}", fontsize=10)
     drawing.suptitle("certified (rows) against\nflown without violation (columns)", fontsize=10)
-    return png("confusion.png", drawing)
+    return drawing
 
 
 def _matrix(panel: Axes, cell: Mapping[str, Any]) -> None:
@@ -60,7 +61,8 @@ def _matrix(panel: Axes, cell: Mapping[str, Any]) -> None:
     )
 
 
-def table_picture(inputs: SweepInputs, cells: Sequence[Mapping[str, Any]]) -> Artifact:
+@drawn_as("table.png")
+def table_picture(inputs: SweepInputs, cells: Sequence[Mapping[str, Any]]) -> Figure:
     """Share of starts certified and flown, per range (panels down), over tumble rate and thrust."""
     columns: list[tuple[str, str]] = [("certified", name) for name in inputs.certificates]
     columns += [("feasible", name) for name in inputs.controllers]
@@ -86,10 +88,11 @@ def table_picture(inputs: SweepInputs, cells: Sequence[Mapping[str, Any]]) -> Ar
     for panel in axes[-1]:
         panel.set_xlabel("tumble rate [deg/s]", fontsize=9)
     drawing.colorbar(image, ax=axes, label="share of the starts", shrink=0.8)
-    return png("table.png", drawing)
+    return drawing
 
 
-def worst_picture(inputs: SweepInputs, paths: Mapping[str, Sequence[Path]]) -> Artifact:
+@drawn_as("worst.png")
+def worst_picture(inputs: SweepInputs, paths: Mapping[str, Sequence[Path]]) -> Figure:
     """The kept flights of each controller in the body frame; a cross marks a violation."""
     shown = {name: flights for name, flights in paths.items() if flights}
     drawing = figure(4.8 * len(shown), 2.9)
@@ -107,4 +110,4 @@ def worst_picture(inputs: SweepInputs, paths: Mapping[str, Sequence[Path]]) -> A
                 panel.plot(*body[-1], marker="x", markersize=8, markeredgewidth=2, color=colour)
         lost_count = sum(case["violated_at_s"] is not None for case, _, _ in flights)
         panel.set_title(f"{NAMES[name]}: {len(flights)} worst certified, {lost_count} lost", fontsize=10)
-    return png("worst.png", drawing)
+    return drawing

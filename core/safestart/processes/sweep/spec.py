@@ -99,7 +99,7 @@ class SweepInputs(WireModel):
         ["certified", "paper", "exact"],
         max_length=3,
         description="certified: explicit manoeuvres with a proof. paper (formerly closed_form): the conditions of "
-        "paper 000, not sound. exact: cone programs.",
+        "Iskender et al., not sound. exact: cone programs.",
     )
     preset: Literal["tuned", "paper"] = Field("tuned", description="Gains of the filter.")
     filter: FilterInput = Field(default_factory=FilterInput)
@@ -168,7 +168,7 @@ class SweepConfusion(Confusion):
     """A certificate (positive: certified) against a controller (actual: flown without violation)."""
 
     false_positive_rate: float | None = Field(description="fp / (fp + tn).")
-    false_positive_share: float | None = Field(description="fp / all, which paper 000 calls a rate.")
+    false_positive_share: float | None = Field(description="fp / all, which Iskender et al. calls a rate.")
     wilson_95: Rates95
 
 
@@ -226,7 +226,7 @@ class SweepOutputs(WireModel):
     )
     false_go_count: int
     notes: list[str]
-    run_s: float = Field(description="Seconds of all shards together.")
+    run_s: float = Field(description="Seconds of all parts together.")
 
 
 HERE = "safestart.processes.sweep"
@@ -249,8 +249,8 @@ SPEC = ProcessSpec(
     title="Closed-loop sweep",
     description=(
         "Flies many starts with the chosen controllers against a chosen truth, violations looked for at all times, and "
-        "compares with the certificates: Table 3 layout, confusion matrices with intervals, impulse, worst cases. Cut "
-        "into shards; the result does not depend on the number of workers."
+        "compares with the certificates: Table 3 layout, confusion matrices with intervals, impulse, worst cases. In "
+        "parts; the result does not depend on the number of workers."
     ),
     inputs=SweepInputs,
     outputs=SweepOutputs,

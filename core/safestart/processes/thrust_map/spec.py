@@ -9,7 +9,7 @@ from safestart.model.scenario import MAX_MEAN_MOTION, Rest
 from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.costs import FIRST_S
 from safestart.processes.coverage.spec import Rates, Thrusts
-from safestart.processes.views import Column, Rows
+from safestart.processes.views import Column, Layer, Picture, Rows
 from safestart.processes.wire import Certificate, CorridorInput
 
 PROVED_FOR_S = 60.0
@@ -104,6 +104,30 @@ SPEC = ProcessSpec(
                 Column("certified [%]", "safe_percent"),
                 Column("by the paper's conditions, not sound [%]", "paper_safe_percent"),
             ),
+        ),
+        Picture(
+            "Certified share of the corridor [%]",
+            "tumble rate [deg/s]",
+            "thrust acceleration [m/s²]",
+            (
+                Layer(
+                    "certified [%]",
+                    "heat",
+                    "safe_percent",
+                    "omega_t_deg_s",
+                    "a_max_m_s2",
+                    value="safe_percent",
+                ),
+                Layer(
+                    "needed at the stand-off",
+                    "line",
+                    "required_a_max_m_s2",
+                    "omega_t_deg_s",
+                    "required_a_max_m_s2",
+                    colour="lost",
+                ),
+            ),
+            logarithmic=True,
         ),
     ),
     keywords=("certificate", "trade study"),

@@ -7,11 +7,13 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
 
 from safestart.model.scenario import Floats
 from safestart.processes.base import Artifact
-from safestart.processes.plotting import figure, npz, png
+from safestart.processes.output import Undrawn
+from safestart.processes.plotting import drawn_as, figure, npz
 from safestart.processes.tracking_mpc.setup import Setup
 from safestart.tracking.flight import Flight
 
@@ -19,7 +21,7 @@ _COLOURS = ("#0072B2", "#D55E00", "#009E73")
 _PLAN, _WALL, _INK = "#CC79A7", "#888888", "#333333"
 
 
-def pictures(setup: Setup, flight: Flight, document: dict[str, Any]) -> Iterator[Artifact]:
+def pictures(setup: Setup, flight: Flight, document: dict[str, Any]) -> Iterator[Artifact | Undrawn]:
     """The pictures and arrays of a request."""
     if flight.plans:
         yield _path(setup, flight, np.array(document["predicted_body_m"]))
@@ -39,7 +41,8 @@ def pictures(setup: Setup, flight: Flight, document: dict[str, Any]) -> Iterator
         yield _region(setup, document["region"])
 
 
-def _path(setup: Setup, flight: Flight, predicted: Floats) -> Artifact:
+@drawn_as("path.png")
+def _path(setup: Setup, flight: Flight, predicted: Floats) -> Figure:
     drawing = figure(11.0, 5.4)
     lvlh: Any = drawing.add_subplot(1, 2, 1, projection="3d")
     body: Any = drawing.add_subplot(1, 2, 2, projection="3d")
@@ -64,7 +67,7 @@ def _path(setup: Setup, flight: Flight, predicted: Floats) -> Artifact:
     _label(body, "x body [m]", "y body [m]", "z body [m]", None)
     for axes in (lvlh, body):
         axes.legend(fontsize=8, loc="upper left")
-    return png("path.png", drawing)
+    return drawing
 
 
 def _prism(setup: Setup, axes: Any, height: float) -> None:
@@ -96,7 +99,8 @@ def _frames(count: int) -> tuple[int, ...]:
     return tuple(dict.fromkeys((0, (count - 1) // 4, (count - 1) // 2)))
 
 
-def _over_time(setup: Setup, flight: Flight) -> Artifact:
+@drawn_as("over_time.png")
+def _over_time(setup: Setup, flight: Flight) -> Figure:
     drawing = figure(10.4, 6.6)
     (inputs, ranges), (place, cost) = drawing.subplots(2, 2)
     period = setup.motion.period
@@ -120,7 +124,7 @@ def _over_time(setup: Setup, flight: Flight) -> Artifact:
         axes.legend(fontsize=8)
     for axes in (inputs, ranges, place, cost):
         _grid(axes)
-    return png("over_time.png", drawing)
+    return drawing
 
 
 def _grid(axes: Axes) -> None:
@@ -128,7 +132,8 @@ def _grid(axes: Axes) -> None:
     axes.grid(alpha=0.3)
 
 
-def _region(setup: Setup, region: dict[str, Any]) -> Artifact:
+@drawn_as("region.png")
+def _region(setup: Setup, region: dict[str, Any]) -> Figure:
     drawing = figure(7.4, 5.4)
     axes = drawing.subplots()
     x, y = np.array(region["x_m"]), np.array(region["y_m"])
@@ -154,4 +159,4 @@ def _region(setup: Setup, region: dict[str, Any]) -> Artifact:
         f"starts at rest in LVLH, z = 0; N_c = {setup.tuning.n_c}, theta: {setup.tuning.theta_limit}",
         fontsize=10,
     )
-    return png("region.png", drawing)
+    return drawing

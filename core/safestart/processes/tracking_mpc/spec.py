@@ -29,14 +29,14 @@ class DockingCorridorInput(WireModel):
     z0_m: float = Field(0.1, ge=0, le=1000, description="Half-width of the port in z, m.")
 
 
-class StartInput(WireModel):
+class TrackingStartInput(WireModel):
     """Where the chaser starts."""
 
     position_m: Triple = Field([1.5, 2.5, 1.5], min_length=3, max_length=3, description="Body frame, m.")
     velocity_m_s: Triple = Field([0.0, 0.0, 0.0], min_length=3, max_length=3, description="LVLH, m/s.")
 
     @model_validator(mode="after")
-    def _near(self) -> StartInput:
+    def _near(self) -> TrackingStartInput:
         if max(map(abs, self.position_m)) > 1000 or max(map(abs, self.velocity_m_s)) > 10:
             raise ValueError("start: within 1000 m and 10 m/s")
         return self
@@ -118,7 +118,9 @@ class TrackingMpcInputs(WireModel):
             "largest cut whose corners can be held, the inputs' own rows, or the target alone."
         ),
     )
-    start: StartInput = Field(default_factory=lambda: StartInput.model_validate({}), description="Start.")
+    start: TrackingStartInput = Field(
+        default_factory=lambda: TrackingStartInput.model_validate({}), description="Start."
+    )
     steps: int = Field(60, ge=3, le=600, description="Steps of the flight, and of any impulse history.")
     truth: Literal["hcw", "two_body_j2"] = Field("hcw", description="Motion that is flown.")
     inertia_error: float = Field(
@@ -154,9 +156,9 @@ SPEC = ProcessSpec(
     id="tracking-mpc",
     title="MPC for tracking a tumbling target",
     description=(
-        "Paper 002, corrected: a chaser docks with a target that tumbles freely about three axes. One flight with its "
-        "certificate, the starts that the controller can take beside those that any impulse history can, and a Monte "
-        "Carlo study over navigation, input, spin and inertia errors. Pictures; the study in shards."
+        "Rebollo et al., corrected: a chaser docks with a target that tumbles freely about three axes. One flight with "
+        "its certificate, the starts that the controller can take beside those that any impulse history can, and a "
+        "Monte Carlo study over navigation, input, spin and inertia errors. Pictures; the study in parts."
     ),
     inputs=TrackingMpcInputs,
     outputs=TrackingMpcOutputs,

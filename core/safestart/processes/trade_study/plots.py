@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 
-from safestart.processes.base import Artifact
-from safestart.processes.plotting import figure, png
+from safestart.processes.plotting import drawn_as, figure
 from safestart.processes.trade_study.spec import TradeStudyInputs
 
 MAPS = (
@@ -21,7 +21,8 @@ _CERTIFIED = {"certified": "certified for ever", "paper": "the paper's condition
 _MOST_WRITTEN = 12
 
 
-def heat_maps(inputs: TradeStudyInputs, points: Sequence[Mapping[str, Any]]) -> Artifact:
+@drawn_as("trade_study.png")
+def heat_maps(inputs: TradeStudyInputs, points: Sequence[Mapping[str, Any]]) -> Figure:
     """Four maps over tumble rate (across) and thrust (up); grey without a value."""
     rates, thrusts = inputs.omega_t_deg_s, inputs.a_max_m_s2
     drawing = figure(2.0 * (1.9 + 0.52 * min(len(rates), 14)), 2.0 * (1.2 + 0.36 * min(len(thrusts), 14)))
@@ -49,4 +50,4 @@ def heat_maps(inputs: TradeStudyInputs, points: Sequence[Mapping[str, Any]]) -> 
                     colour = "black" if value > 0.6 * top else "white"
                     panel.text(k, i, text, ha="center", va="center", fontsize=8, color=colour)
         drawing.colorbar(image, ax=panel, shrink=0.9)
-    return png("trade_study.png", drawing)
+    return drawing

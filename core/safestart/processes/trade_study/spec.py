@@ -75,7 +75,7 @@ SPEC = ProcessSpec(
     title="Trade study over tumble rate and thrust",
     description=(
         "For every pair of tumble rate and thrust: certified share of the corridor, area proved by the exact answer, "
-        "share flown by the filter, impulse. Starts at rest in LVLH on a grid. Heat maps; a shard per operating point."
+        "share flown by the filter, impulse. Starts at rest in LVLH on a grid. Heat maps; a part per operating point."
     ),
     inputs=TradeStudyInputs,
     outputs=TradeStudyOutputs,

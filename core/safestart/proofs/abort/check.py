@@ -11,6 +11,8 @@ from itertools import pairwise
 
 from flint import arb, arb_mat, fmpq
 
+from safestart.proofs.abort.complete import Complete
+from safestart.proofs.abort.earth import EarthChecker
 from safestart.proofs.abort.sets import Reached, Sets, transition
 from safestart.proofs.abort.statement import Asked, Event, read
 from safestart.proofs.abort.strays import strays
@@ -24,14 +26,15 @@ def check(document: object) -> tuple[Asked, int]:
     """Check a document; the statement and the number of cells, or ``ProofRejected``."""
     asked = read(document)
     with precise(_BITS):
-        return asked, Checker(asked).check()
+        return asked, (EarthChecker if asked.earth is not None else Checker)(asked).check()
 
 
-class Checker:
-    """One statement under check."""
+class Checker(Complete):
+    """One statement under check, about a circular orbit."""
 
     def __init__(self, asked: Asked) -> None:
-        self.asked, self.n, self.sets = asked, arb(asked.n), Sets(asked)
+        super().__init__(asked)
+        self.n, self.sets = arb(asked.n), Sets(asked)
         self.rows: dict[fmpq, arb_mat] = {}
         # q'' = P cos n t + Q sin n t, from Phi_p'' = P' cos n t + Q' sin n t.
         n = self.n
@@ -40,72 +43,15 @@ class Checker:
         q[0, 3], q[1, 0], q[1, 4], q[2, 5] = -n, -6 * n * n, -4 * n, -n
         self.bends = p, q
 
-    def check(self) -> int:
-        """Check that no case is missing and all cells hold; returns the number of cells."""
-        self._complete()
-        cells = 0
-        for event in self.asked.events:
-            state = self.sets.of(event.kind, event.burn, event.first, event.last)
-            self._covered(event)
-            self._held(event, state)
-            cells += len(event.cells)
-        return cells
-
-    def _complete(self) -> None:
-        """Check that every event of the statement has its case, and that the pieces of [0, tau] leave no gap."""
-        asked = self.asked
-        lasting = {"late": asked.late, "stuck": asked.stuck}
-        found: dict[tuple[str, int], list[tuple[fmpq, fmpq]]] = {}
-        for event in asked.events:
-            found.setdefault((event.kind, event.burn), []).append((event.first, event.last))
-        needed = [("start", -1)]
-        for k in range(len(asked.times)):
-            needed.append(("made", k))
-            needed += [("partial", k)] * asked.partial + [("misdirected", k)] * (asked.misdirected > 0)
-            needed += [(kind, k) for kind, length in lasting.items() if length > 0]
-        for kind, burn in needed:
-            spans = sorted(found.get((kind, burn), []))
-            if not spans:
-                raise ProofRejected(f"cases: required one for {kind}, burn {burn}")
-            if kind in lasting:
-                reached = fmpq(0)
-                for first, last in spans:
-                    if not first <= reached <= last or last > lasting[kind]:
-                        raise ProofRejected(f"cases: {kind}, burn {burn}: the pieces must follow one another")
-                    reached = last
-                if reached != lasting[kind]:
-                    raise ProofRejected(
-                        f"cases: {kind}, burn {burn}: the pieces end before {float(lasting[kind])} s"
-                    )
-
-    def _covered(self, event: Event) -> None:
-        """Check that the cells cover the drift."""
-        duration = self._duration(event)
-        reached = fmpq(0)
-        for cell in sorted(event.cells):
-            if cell[0] > reached:
-                break
-            reached = max(reached, cell[1])
-        if reached < duration:
-            raise ProofRejected(
-                f"{event.kind}, burn {event.burn}: the cells end at {float(reached):.9g} s, required "
-                f"{float(duration):.9g} s"
-            )
-
-    def _duration(self, event: Event) -> fmpq:
-        """Duration of a drift: the horizon, and the wait for the next burn, which may be late."""
-        asked, k = self.asked, event.burn
-        if event.kind == "start":
-            return max(asked.horizon, asked.late)
-        if event.kind == "made" and k + 1 < len(asked.times):
-            return max(asked.horizon, asked.times[k + 1] - asked.times[k] + asked.late)
-        return asked.horizon
+    def held(self, event: Event) -> None:
+        """Check the cells of an event."""
+        self._held(event, self.sets.of(event.kind, event.burn, event.first, event.last))
 
     def _strays(self, event: Event, table: arb_mat, sizes: list[int]) -> list[list[arb]]:
         """How far each axis may be from the linear motion, up to the end of each part; empty in the linear model."""
         if self.asked.radius is None:
             return []
-        h = self._duration(event) / len(event.radii)
+        h = self.duration(event) / len(event.radii)
         nodes = [_size(self._rows(h * k) * table, None, sizes) for k in range(len(event.radii) + 1)]
         between = arb(h * h / 8) * _size(self.bends[0] * table, self.bends[1] * table, sizes)
         linear = [arb.max(a, b) + between + self.sets.detour(event) for a, b in pairwise(nodes)]
@@ -121,7 +67,7 @@ class Checker:
         claim, strays, duration = (
             arb(self.asked.least),
             self._strays(event, table, sizes),
-            self._duration(event),
+            self.duration(event),
         )
         for begin, end, *direction in event.cells:
             d = [arb(e) for e in direction]

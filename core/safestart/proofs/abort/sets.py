@@ -106,7 +106,8 @@ def _cross(a: list[arb], b: list[arb]) -> list[arb]:
     return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 
 
-def _speeds(v: list[arb]) -> arb_mat:
+def speeds(v: list[arb]) -> arb_mat:
+    """A velocity as a state."""
     return column([arb(0)] * 3 + v)
 
 
@@ -118,13 +119,16 @@ class Sets:
         self.share, self.angle = arb(asked.share), arb(asked.angle)
         self.before: list[Reached] = []
         self.after: list[Reached] = []
-        planned = column([arb(e) for e in asked.start])
+        planned = column([arb(e) for e in (asked.earth.before[0] if asked.earth else asked.start)])
         box = [arb(e) for e in asked.box]
         state = Reached(planned).grown(box)
         for k, impulse in enumerate(asked.impulses):
             if k:
                 over = transition(self.n, arb(asked.times[k] - asked.times[k - 1]))
-                planned = over * (planned + _speeds([arb(e) for e in asked.impulses[k - 1]]))
+                if asked.earth is None:
+                    planned = over * (planned + speeds([arb(e) for e in asked.impulses[k - 1]]))
+                else:
+                    planned = column([arb(e) for e in asked.earth.before[k]])
                 state = Reached(planned).grown(box) if asked.anew else self.after[-1].moved(over)
             self.before.append(state)
             self.after.append(self._burnt(state, impulse, 1 - self.share, self.angle))
@@ -162,7 +166,7 @@ class Sets:
         middle, half, across = shell(least, 1 + self.share, angle)
 
         def lifted(unit: list[arb], length: arb) -> arb_mat:
-            added = _speeds([length * size * e for e in unit])
+            added = speeds([length * size * e for e in unit])
             return added if back is None else back * added
 
         centre = state.centre + lifted(along, middle)
@@ -170,7 +174,7 @@ class Sets:
             centre, [*state.blocks, [lifted(along, half)], [lifted(one, across), lifted(two, across)]]
         )
 
-    def _loose(self, size: arb) -> arb:
+    def loose(self, size: arb) -> arb:
         """Largest length of the error of a thrust of this size."""
         _, half, across = shell(1 - self.share, 1 + self.share, self.angle)
         return size * (half * half + across * across).sqrt()
@@ -187,12 +191,12 @@ class Sets:
         back = transition(self.n, -middle)
         state = self._burnt(self.before[burn], impulse, 1 - self.share, self.angle, back)
         scale = shell(1 - self.share, 1 + self.share, self.angle)[0]
-        v = _speeds([scale * arb(e) for e in impulse])
+        v = speeds([scale * arb(e) for e in impulse])
         a = generator(self.n)
         state.blocks.append([half * (back * (a * v))])
         second = transition(self.n, -span) * (a * (a * v))
         size = sum((arb(e) ** 2 for e in impulse), arb(0)).sqrt()
-        loose = self._loose(size)
+        loose = self.loose(size)
         rates = self._rates(arb(0.5) * (1 + arb(0, 1)) * arb(last))
         return state.grown(
             [arb((half * half / 2 * second[k, 0]).abs_upper()) + half * loose * rates[k] for k in range(6)]
@@ -207,10 +211,10 @@ class Sets:
         push = [scale * thrust * e for e in along]
         after = self.after[burn]
         state = Reached(after.centre - held(self.n, -middle) * column(push), list(after.blocks))
-        state.blocks.append([half * (transition(self.n, -middle) * _speeds(push))])
+        state.blocks.append([half * (transition(self.n, -middle) * speeds(push))])
         end = arb(last)
         rates = self._rates(end / 2 + arb(0, 1) * end / 2)
-        loose = self._loose(thrust)
+        loose = self.loose(thrust)
         errors = [arb(0)] * 3 + [loose * end] * 3
         bend = half * half / 2 * scale * thrust
         return state.grown([errors[k] + (bend + loose * end * end) * rates[k] for k in range(6)])

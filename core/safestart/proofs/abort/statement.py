@@ -21,6 +21,12 @@ _FAILURES = ("late_s", "partial", "stuck_s", "acceleration_m_s2", "misdirected_r
 _CASE = ("kind", "burn", "first_s", "last_s", "cells")
 _MOST_BURNS, _MOST_CASES, _MOST_CELLS, _MOST_PARTS = 200, 40_000, 400_000, 1000
 LONGEST_PHASE = fmpq(1, 2)
+MODELS: dict[str, tuple[str, ...]] = {
+    "linear": (),
+    "nonlinear": ("semi_major_axis_m",),
+    "earth": ("target", "before"),
+}
+_TARGET = ("position_m", "velocity_m_s", "mu_m3_s2", "j2", "earth_radius_m")
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,11 +42,24 @@ class Event:
 
 
 @dataclass(frozen=True, slots=True)
+class Target:
+    """Inertial state (6,) of the target at the first burn, the Earth's constants, and LVLH states of the chaser before
+    every burn."""
+
+    state: list[fmpq]
+    mu: fmpq
+    j2: fmpq
+    radius: fmpq
+    before: list[list[fmpq]]
+
+
+@dataclass(frozen=True, slots=True)
 class Asked:
     """The statement in SI, all rational."""
 
     n: fmpq
     radius: fmpq | None
+    earth: Target | None
     start: list[fmpq]
     times: list[fmpq]
     impulses: list[list[fmpq]]
@@ -66,10 +85,11 @@ def read(document: Any) -> Asked:
     if document["verdict"] != "PROVED":
         raise ProofRejected(f"verdict: required PROVED, received {shown(document['verdict'])}")
     question = part(document, "question", dict)
-    bent = question.get("model") == "nonlinear"
-    fields(question, "question", (*_QUESTION, "semi_major_axis_m") if bent else _QUESTION)
-    if question["model"] not in ("linear", "nonlinear"):
-        raise ProofRejected(f"model: required linear or nonlinear, received {shown(question['model'])}")
+    model = question.get("model")
+    if model not in MODELS:
+        raise ProofRejected(f"model: required {' or '.join(MODELS)}, received {shown(model)}")
+    bent = model != "linear"
+    fields(question, "question", (*_QUESTION, *MODELS[model]))
     start = part(question, "start", dict)
     fields(start, "start", ("position_m", "velocity_m_s"))
     errors, failures = part(question, "errors", dict), part(question, "failures", dict)
@@ -88,10 +108,11 @@ def read(document: Any) -> Asked:
         raise ProofRejected("late_s, stuck_s: required at most half a radian of the orbit")
     anew = _flag(errors, "at_each_burn")
     if bent and not anew:
-        raise ProofRejected("at_each_burn: required true for the nonlinear model")
+        raise ProofRejected("at_each_burn: required true for this model")
     return Asked(
         n=n,
-        radius=number(question, "semi_major_axis_m", 1e3, 1e9) if bent else None,
+        radius=number(question, "semi_major_axis_m", 1e3, 1e9) if model == "nonlinear" else None,
+        earth=_target(question, len(times)) if model == "earth" else None,
         start=vector(start["position_m"], "position_m", 3) + vector(start["velocity_m_s"], "velocity_m_s", 3),
         times=times,
         impulses=impulses,
@@ -108,6 +129,29 @@ def read(document: Any) -> Asked:
         misdirected=number(failures, "misdirected_rad", 0.0, 3.141592653589793),
         least=least,
         events=_events(part(document, "cases", list), len(times), bent),
+    )
+
+
+def _target(question: Any, burns: int) -> Target:
+    target, before = part(question, "target", dict), part(question, "before", list)
+    fields(target, "target", _TARGET)
+    for key in ("position_m", "velocity_m_s"):
+        if len(part(target, key, list)) != 3:
+            raise ProofRejected(f"target.{key}: required 3 numbers")
+    if len(before) != burns:
+        raise ProofRejected(f"before: required one state before each of {burns} burns")
+    states = []
+    for state in before:
+        fields(state, "before", ("position_m", "velocity_m_s"))
+        states.append(
+            vector(state["position_m"], "position_m", 3) + vector(state["velocity_m_s"], "velocity_m_s", 3)
+        )
+    return Target(
+        [exact(e, "target", -1e9, 1e9) for e in target["position_m"] + target["velocity_m_s"]],
+        number(target, "mu_m3_s2", 1.0, 1e18),
+        number(target, "j2", 0.0, 0.1),
+        number(target, "earth_radius_m", 1.0, 1e9),
+        states,
     )
 
 

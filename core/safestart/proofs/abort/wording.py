@@ -28,12 +28,19 @@ def lines(asked: Asked) -> tuple[str, ...]:
         f"at all times the chaser stays {_double(asked.keep_out)!r} m away from the target, and more: "
         f"{_double(asked.least)!r} m",
         _model(asked),
-        f"horizon: {_double(asked.horizon):g} s after the last burn that is made",
+        f"horizon: {_double(asked.horizon):g} s after the end of the last burn that is made",
         f"any burn is {'; or '.join(failures)}; no burn follows a failure",
         f"states: within {box[:3]} m and {box[3:]} m/s of the plan {held}",
         f"burns: size within {100 * _double(asked.share):g} %, direction within "
         f"{math.degrees(_double(asked.angle)):g} deg",
-        f"start in LVLH: {[_double(e) for e in asked.start]} m, m/s",
+        *(
+            [f"start in LVLH: {[_double(e) for e in asked.start]} m, m/s"]
+            if asked.earth is None
+            else [
+                f"before burn {k} in LVLH: {[_double(e) for e in state]} m, m/s"
+                for k, state in enumerate(asked.earth.before)
+            ]
+        ),
         *(
             f"burn {k} at {_double(time)!r} s: {[_double(e) for e in impulse]} m/s"
             for k, (time, impulse) in enumerate(zip(asked.times, asked.impulses, strict=True))
@@ -42,6 +49,13 @@ def lines(asked: Asked) -> tuple[str, ...]:
 
 
 def _model(asked: Asked) -> str:
+    if asked.earth is not None:
+        state = [_double(e) for e in asked.earth.state]
+        return (
+            f"model: earth, both bodies about the Earth with J2 = {_double(asked.earth.j2)!r} (mu "
+            f"{_double(asked.earth.mu)!r} m^3/s^2, radius {_double(asked.earth.radius)!r} m); the target at "
+            f"{state[:3]} m, {state[3:]} m/s, inertial, at the first burn; no drag, no other force"
+        )
     n = f"mean motion {_double(asked.n)!r} rad/s"
     if asked.radius is None:
         return f"model: linear (CWH) about a circular orbit, {n}"

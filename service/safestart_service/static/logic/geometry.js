@@ -30,3 +30,20 @@ export function closed(polygon) {
   const ring = [...polygon, polygon[0]];
   return { x: ring.map((p) => p[0]), y: ring.map((p) => p[1]) };
 }
+
+/** Whether a point lies within a polygon (even-odd rule). */
+export function within([x, y], polygon) {
+  let inside = false;
+  polygon.forEach(([ax, ay], k) => {
+    const [bx, by] = polygon[(k + 1) % polygon.length];
+    if ((ay > y) !== (by > y) && x < ax + ((bx - ax) * (y - ay)) / (by - ay)) inside = !inside;
+  });
+  return inside;
+}
+
+/** The value of a map over x and y at its node nearest to a point; null beyond the map. */
+export function nearest([x, y], { x_m: xs, y_m: ys, margin_m: values }) {
+  const [dx, dy] = [xs[1] - xs[0], ys[1] - ys[0]];
+  const [ix, iy] = [Math.round((x - xs[0]) / dx), Math.round((y - ys[0]) / dy)];
+  return values[iy]?.[ix] ?? null;
+}

@@ -6,7 +6,7 @@ import { figure } from "./words.js";
 export const FIELDS = {
   omega_t_deg_s: { first: "3", title: "Tumble rate", unit: "deg/s" },
   a_max_m_s2: { first: "0.1", title: "Thrust acceleration", unit: "m/s²" },
-  horizon_s: { first: "60", title: "Stay for", unit: "s" },
+  horizon_s: { first: "60", title: "Time in corridor", unit: "s" },
   y_max_m: { first: "150", title: "Show up to", unit: "m" },
   question: { first: "stay", title: "Requirement", words: ["stay", "synchronize"] },
   within_s: { first: "200", title: "within", unit: "s" },
@@ -82,6 +82,15 @@ export const proven = (values, start) => ({
 export const flight = (values, start) => ({
   ...scenario(values), rest: values.rest, question: values.question, horizon_s: values.horizon_s,
   ...(values.question === "synchronize" ? { within_s: values.within_s } : {}), start,
+});
+
+/** The verdict's question as inputs of the process that answers it for many starts. */
+export const asProcess = (values, start) => ({
+  id: "go-no-go",
+  inputs: {
+    ...scenario(values), rest: values.rest, question: values.question, horizon_s: values.horizon_s,
+    ...(values.question === "synchronize" ? { within_s: values.within_s } : {}), ...spreads(values), states: [start],
+  },
 });
 
 const said = (name, value) => `${FIELDS[name].title[0].toLowerCase()}${FIELDS[name].title.slice(1)} ${value}${FIELDS[name].unit ? ` ${FIELDS[name].unit}` : ""}`;

@@ -54,6 +54,14 @@ export function tablesOf(outputs, known = []) {
   return found;
 }
 
+/** Lists side by side, scalars left out, as rows of cells under their names; vectors take a column per entry. */
+export function rowsOf(lists) {
+  const whole = Object.fromEntries(Object.entries(lists).filter(([, value]) => Array.isArray(value) && value.length === lists.time_s.length));
+  const rows = lists.time_s.map((_, k) => flat(Object.fromEntries(Object.entries(whole).map(([name, value]) => [name, value[k]]))));
+  const names = Object.keys(rows[0]);
+  return [names, ...rows.map((row) => names.map((name) => row[name]))];
+}
+
 /** Names of all columns, in the order of their first appearance, without those that are empty in every row. */
 export const columnsOf = (rows) => [...new Set(rows.flatMap(Object.keys))].filter((name) => rows.some((row) => row[name] !== null && row[name] !== undefined && row[name] !== ""));
 

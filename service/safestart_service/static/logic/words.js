@@ -33,6 +33,18 @@ export function lines(text, letters) {
   return found.join("<br>");
 }
 
+/** Ticks of a logarithmic axis that people read as they are: 1, 2 and 5 of every decade between two values. */
+export function roundTicks(low, high) {
+  const found = [];
+  for (let decade = Math.floor(Math.log10(low)); decade <= Math.log10(high); decade++) {
+    for (const digit of [1, 2, 5]) {
+      const value = Number(`${digit}e${decade}`);
+      if (value >= low * 0.999 && value <= high * 1.001) found.push(value);
+    }
+  }
+  return found;
+}
+
 /** Rows of cells as CSV (RFC 4180 with plain line ends). */
 export const csv = (rows) => `${rows.map((row) => row.map((cell) => {
   const text = cell === null || cell === undefined ? "" : String(cell);

@@ -1,12 +1,13 @@
-// Compare: runs of one process side by side, by the measures that its description names.
+// Compare: runs of one process side by side, their inputs, verdicts and figures, and the measures that its description names.
 
-import { differing } from "../logic/outcome.js";
+import { differing, outcome } from "../logic/outcome.js";
 import { tablesOf } from "../logic/tables.js";
 import { csv } from "../logic/words.js";
 import { get, root } from "../parts/api.js";
 import { draw, saveButtons } from "../parts/chart.js";
 import { $, el, fail, loading, save, table } from "../parts/page.js";
 import { description, names, viewsOf } from "../parts/process.js";
+import { listed } from "../parts/views.js";
 
 const ids = (new URLSearchParams(location.search).get("jobs") ?? "").split(",").filter(Boolean).slice(0, 12);
 
@@ -14,37 +15,59 @@ const empty = (...text) => $("state").replaceChildren(el("p", { class: "empty" }
 
 async function show() {
   if (ids.length < 2) {
-    empty("Choose two or more successful runs ");
+    empty("Choose two or more successful runs of one process ");
     return;
   }
   loading($("state"));
   try {
     const jobs = await Promise.all(ids.map((id) => get(`/jobs/${id}`)));
-    const processes = [...new Set(jobs.map((job) => job.processID))];
+    const processes = [...new Set(jobs.map((job) => job.processID))], open = jobs.filter((job) => job.status !== "successful");
     if (processes.length > 1) {
       empty(`These are runs of ${processes.join(" and ")}, which cannot be compared. Choose runs of one process `);
       return;
     }
-    const spec = await description(processes[0]), [view] = viewsOf(spec, "comparison");
-    if (!view) {
-      empty(`Runs of ${processes[0]} have nothing to be compared by. Choose others `);
+    if (open.length) {
+      empty(`Without a result: ${open.map((job) => `${job.jobID.slice(0, 8)} (${job.status})`).join(", ")}. Choose successful runs `);
       return;
     }
+    const spec = await description(processes[0]), [view] = viewsOf(spec, "comparison");
     const results = await Promise.all(ids.map((id) => get(`/jobs/${id}/results`)));
-    await compare(view, names(spec), results.map(({ inputs, outputs }, k) => ({ id: ids[k], inputs, rows: tablesOf(outputs)[view.table] ?? [] })));
+    const runs = results.map(({ inputs, outputs }, k) => ({ id: ids[k], job: jobs[k], inputs, tables: tablesOf(outputs, spec["safestart:tables"]) }));
+    document.title = `Compare ${processes[0]} · safestart`;
+    await compare(spec, view, names(spec), runs);
   } catch (error) {
     fail($("state"), error, show);
   }
 }
 
-async function compare(view, { title, colour }, runs) {
+/** What every process can be compared by: inputs that differ, the verdict, the figures among its outputs. */
+function figures(spec, runs, differ, heading) {
+  const rows = [
+    ...differ.map((path) => [path, (run) => told(run.inputs, path)]),
+    ["verdict", (run) => { const found = outcome(spec["safestart:views"], run.tables); return found && `${found.word.replace("_", " ")}${found.of > 1 ? ` (${found.count} of ${found.of})` : ""}`; }],
+    ...viewsOf(spec, "facts").flatMap(({ columns }) => columns.map(({ title, path }) => [title, (run) => run.tables[""][0][path]])),
+  ];
+  const known = new Set(viewsOf(spec, "facts").flatMap(({ columns }) => columns.map(({ path }) => path)));
+  const others = [...new Set(runs.flatMap((run) => Object.keys(run.tables[""][0])))].filter((path) => !known.has(path));
+  rows.push(...others.map((path) => [path, (run) => run.tables[""][0][path]]), ["run [s]", (run) => (Date.parse(run.job.finished) - Date.parse(run.job.started)) / 1000]);
+  const there = rows.filter(([, of]) => runs.some((run) => ![null, undefined, ""].includes(of(run))));
+  const columns = [["figure", ([name]) => name], ...runs.map((run) => [heading(run), ([, of]) => of(run)])];
+  return [el("h2", {}, "Inputs that differ, outcome and figures"), ...listed(there, columns, "Figures of each run", "comparison")];
+}
+
+function told(inputs, path) {
+  const found = path.split(".").reduce((part, key) => part?.[key], inputs);
+  return Array.isArray(found) ? JSON.stringify(found) : found;
+}
+
+async function compare(spec, view, { title, colour }, runs) {
   const differ = differing(runs.map((run) => run.inputs));
-  const value = (run, name, path) => run.rows.find((row) => row[view.by] === name)?.[path] ?? null;
-  const told = (inputs, path) => path.split(".").reduce((part, key) => part?.[key], inputs);
+  const rowsOf = (run) => run.tables[view?.table] ?? [];
+  const value = (run, name, path) => rowsOf(run).find((row) => row[view.by] === name)?.[path] ?? null;
   const heading = (run) => [...differ.slice(0, 3).map((path) => `${path} ${told(run.inputs, path)}`), run.id.slice(0, 8)].join(", ");
-  const all = [...new Set(runs.flatMap((run) => run.rows.map((row) => row[view.by])))];
-  const parts = [], charts = [];
-  for (const { title: name, path } of view.measures) {
+  const all = view ? [...new Set(runs.flatMap((run) => rowsOf(run).map((row) => row[view.by])))] : [];
+  const parts = figures(spec, runs, differ, heading), charts = [];
+  for (const { title: name, path } of view?.measures ?? []) {
     const place = el("div", { class: "chart low", role: "group", "aria-label": `${name}; the table has the figures` });
     charts.push([place, path, name]);
     const columns = [[view.by, title], ...runs.map((run) => [heading(run), (one) => value(run, one, path)])];

@@ -1,13 +1,17 @@
 // Explore: the operating point, the regions, one start, its flight. Store and address hold the text of every field.
 
-import { FIELDS, certificate, flight as flightOf, flightWords, fromAddress, mapLacks, mapWords, paper, proven, read, region as regionOf, start as startOf, toAddress } from "../logic/question.js";
+import { nearest, within } from "../logic/geometry.js";
+import { PRESETS } from "../logic/presets.js";
+import { FIELDS, asProcess, certificate, flight as flightOf, flightWords, fromAddress, mapLacks, mapWords, paper, proven, read, region as regionOf, start as startOf, toAddress } from "../logic/question.js";
 import { Store } from "../logic/store.js";
-import { figure } from "../logic/words.js";
+import { rowsOf } from "../logic/tables.js";
+import { csv, figure } from "../logic/words.js";
 import { execute, get, post } from "../parts/api.js";
 import { saveButtons } from "../parts/chart.js";
+import { copies } from "../parts/copies.js";
 import { Flight } from "../parts/flight.js";
 import { drawMap, pointAt } from "../parts/map.js";
-import { $, el, fail } from "../parts/page.js";
+import { $, el, fail, save } from "../parts/page.js";
 import { listStored, storedInputs, storedNote, storedSets } from "../parts/stored.js";
 import { verdict as verdictCards } from "../parts/verdict.js";
 
@@ -141,7 +145,7 @@ function showFlight(panel) {
   else if (panel.state === "there") {
     if (flight.data === panel.answer) return;
     const { flies, text } = flightWords(panel.answer, given(store.inputs));
-    if (flies) flight.load(panel.answer, text);
+    if (flies) flight.load(panel.answer, text, given(store.inputs).a_max_m_s2);
     else flight.clear(text);
   } else {
     flight.clear(panel.state === "asking" ? "Computing the flight …" : "");
@@ -150,15 +154,30 @@ function showFlight(panel) {
   redraw();
 }
 
+/** What the map knows of a point, in words: the nearest node's certified margin, and the proved polygons. */
+function known(point) {
+  const said = [], margin = certified.answer && nearest(point, certified.answer);
+  if (margin !== null) said.push(margin > 0 ? `certified for ever, about ${figure(margin, 3)} m from every face` : "not certified");
+  if (region.answer?.outer_polygon_m.length) {
+    const { inner_polygon_m: inner, outer_polygon_m: outer } = region.answer;
+    said.push(`${within(point, inner) ? "GO, proved" : within(point, outer) ? "undecided on the map" : "NO GO, proved"} for ${given(store.inputs).horizon_s} s`);
+  }
+  return said;
+}
+
 function showPointed({ state, answer: found, question }) {
   const place = $("cursor");
-  if (state !== "there") {
+  if (state === "none" || !question) {
     place.textContent = "Move over the picture for the margins, click to choose a start.";
     return;
   }
-  const margins = Object.entries(found.face_margins_m).map(([face, margin]) => `${face} ${figure(margin, 3)} m`);
-  place.textContent = `(${question.x_m}, ${question.y_m}) m · the paper's conditions, not sound: ${found.verdict.replace("_", " ")} · after erosion: ${margins.join(", ")}`
-    + (found.range_margin_m === null ? "" : ` · range ${figure(found.range_margin_m, 3)} m`);
+  const point = [question.x_m, question.y_m], said = [`(${point.join(", ")}) m`, ...known(point)];
+  if (state === "there") {
+    const margins = Object.entries(found.face_margins_m).map(([face, margin]) => `${face} ${figure(margin, 3)} m`);
+    if (found.range_margin_m !== null) margins.push(`range ${figure(found.range_margin_m, 3)} m`);
+    said.push(`the paper's conditions, not sound: ${found.verdict.replace("_", " ")} (${margins.join(", ")})`);
+  }
+  place.textContent = said.join(" · ");
 }
 
 // ---- the fields
@@ -215,6 +234,16 @@ map.addEventListener("mousemove", (event) => {
 $("frame").addEventListener("change", redraw);
 $("stored").addEventListener("change", ({ target }) => change({ job: target.value, ...storedInputs(target.value) }));
 map.after(saveButtons(map, "safe-start-region", el));
+$("verdict").after(copies(() => { const asked = started(store.inputs); return asked && asProcess(asked.values, asked.start); }));
+$("flight-tools").append(el("button", { type: "button", class: "plain", onclick: () => save("flight.csv", csv(rowsOf(flight.data))) }, "Flight as CSV"));
+$("preset").append(...PRESETS.map(({ title }, k) => el("option", { value: String(k) }, title)));
+$("preset").addEventListener("change", ({ target }) => {
+  const chosen = PRESETS[target.value];
+  $("preset-note").textContent = chosen ? `${chosen.from}. The other fields keep what they hold.` : "";
+  if (!chosen) return;
+  change(chosen.texts);
+  store.hasten();
+});
 if (unknown.length) $("address").textContent = `The address has settings that this page does not know: ${unknown.join(", ")}.`;
 for (const details of document.querySelectorAll("#controls details")) {
   details.open = [...details.querySelectorAll("input[name]")].some(({ name }) => store.inputs[name] !== FIELDS[name].first);

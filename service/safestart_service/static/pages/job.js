@@ -3,6 +3,7 @@
 import { newest } from "../logic/store.js";
 import { duration, moment } from "../logic/words.js";
 import { Problem, call, follow, get, post, remove, root } from "../parts/api.js";
+import { copies } from "../parts/copies.js";
 import { $, definition, el, fail, loading, status } from "../parts/page.js";
 import { description } from "../parts/process.js";
 import { known, results, verdictBadge } from "../parts/results.js";
@@ -36,6 +37,7 @@ function frame() {
     active && !job.dismissal_requested ? el("button", { type: "button", class: "danger", onclick: cancel }, "Cancel") : null,
     active ? null : el("button", { type: "button", onclick: again }, job.status === "successful" ? "Run again" : "Try again"),
     el("a", { href: `${root}/dashboard/submit?process=${job.processID}&from=${id}` }, "Change inputs"),
+    copies(() => ({ id: job.processID, inputs: job.inputs })),
   ].filter(Boolean));
   const facts = [["Submitted", moment(job.created)], ["Started", moment(job.started)], ["Finished", moment(job.finished)], ["Attempts", String(job.attempts)]];
   if (job.position) facts.push(["Place in the queue", String(job.position)]);
@@ -103,8 +105,9 @@ async function partial(signal) {
     const { shards, outputs } = await get(`/jobs/${id}/partial`, { signal });
     const spec = await description(job.processID);
     if (signal.aborted || !outputs) return;
-    const { head, parts } = shown(known(spec, outputs, job.inputs));
-    $("results").replaceChildren(el("h2", {}, `So far: ${shards.done} of ${shards.total} parts`), ...head, ...parts);
+    const { head, pictures, parts, draws } = shown(known(spec, outputs, job.inputs));
+    $("results").replaceChildren(el("h2", {}, `So far: ${shards.done} of ${shards.total} parts`), ...head, ...pictures, ...parts);
+    for (const drawn of draws) await drawn();
   } catch {
     // Nothing yet, or the service is unavailable, which the stream reports.
   }

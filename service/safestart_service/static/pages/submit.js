@@ -2,10 +2,11 @@
 
 import { Store } from "../logic/store.js";
 import { call, execute, get, root } from "../parts/api.js";
+import { copies } from "../parts/copies.js";
 import { field, mark } from "../parts/form.js";
 import { $, el, fail, loading } from "../parts/page.js";
 import { description } from "../parts/process.js";
-import { known, rest, verdictBadge } from "../parts/results.js";
+import { firstScreen, known, rest, verdictBadge } from "../parts/results.js";
 import { shown } from "../parts/views.js";
 
 const address = new URLSearchParams(location.search);
@@ -46,7 +47,7 @@ function showForm({ state, answer, error }) {
   entry = field(schema, schema, "", "", given);
   $("form").replaceChildren(entry.node, el("div", { class: "tools" },
     el("button", { type: "submit" }, light ? "Run now" : "Submit"),
-    light ? el("button", { type: "button", class: "plain", onclick: queue }, "Queue it") : null));
+    light ? el("button", { type: "button", class: "plain", onclick: queue }, "Queue it") : null), copies(() => ({ id: spec.id, inputs: entry.value() })));
 }
 
 /** One schema of all inputs, from the description's separate schemas. */
@@ -70,13 +71,15 @@ function showAnswer({ state, answer, error, question }) {
   const place = $("state");
   if (state === "failed") {
     fail(place, error, () => store.hasten());
-    mark($("form"), error.document?.field);
+    mark($("form"), error.document?.field, error.message);
   } else if (state === "asking") loading(place, "Running");
   else if (state === "none") place.replaceChildren();
   else {
-    const result = known(answer.spec, answer.outputs, question.inputs), { head, parts } = shown(result);
-    place.replaceChildren(el("h2", {}, "Answer ", verdictBadge(result) ?? ""), ...head, ...parts, ...rest(result),
+    const result = known(answer.spec, answer.outputs, question.inputs), { head, pictures, parts, draws } = shown(result), [first, ...more] = pictures;
+    place.replaceChildren(el("h2", { class: "answered" }, "Answer ", verdictBadge(result) ?? ""), firstScreen(result, head, first), ...more, ...parts, ...rest(result),
       el("details", {}, el("summary", {}, "The answer as JSON"), el("pre", { tabindex: "0" }, text(answer.outputs))));
+    for (const drawn of draws) drawn();
+    place.scrollIntoView({ block: "start" });
   }
 }
 
@@ -100,7 +103,7 @@ async function queue() {
   } catch (error) {
     for (const button of buttons) button.disabled = false;
     fail($("state"), error);
-    mark($("form"), error.document?.field);
+    mark($("form"), error.document?.field, error.message);
   }
 }
 

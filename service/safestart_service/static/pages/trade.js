@@ -2,7 +2,7 @@
 
 import { Store } from "../logic/store.js";
 import { closedWords, readTrade, tradeAddress, tradeExplore } from "../logic/trade.js";
-import { csv, figure } from "../logic/words.js";
+import { csv, figure, roundTicks } from "../logic/words.js";
 import { execute, root } from "../parts/api.js";
 import { draw, saveButtons, theme } from "../parts/chart.js";
 import { $, el, fail, loading, save, table } from "../parts/page.js";
@@ -34,6 +34,7 @@ store.panel({
 async function picture(found, inputs) {
   const share = found.a_max_m_s2.map((_, k) => found.safe_percent.map((row) => row[k]));
   const [low, high] = [Math.min(...inputs.a_max_m_s2), Math.max(...inputs.a_max_m_s2)];
+  const ticks = roundTicks(low, high);
   await draw($("map"), [
     {
       type: "heatmap", x: found.omega_t_deg_s, y: found.a_max_m_s2, z: share, zmin: 0, zmax: 100, colorscale: "Cividis",
@@ -50,7 +51,7 @@ async function picture(found, inputs) {
   ], {
     title: { text: closedWords(inputs) },
     xaxis: { title: { text: "tumble rate [deg/s]" } }, showlegend: true,
-    yaxis: { title: { text: "thrust acceleration [m/s²]" }, type: "log", range: [Math.log10(low), Math.log10(high)] },
+    yaxis: { title: { text: "thrust acceleration [m/s²]" }, type: "log", range: [Math.log10(low), Math.log10(high)], tickvals: ticks, ticktext: ticks.map(String) },
   });
   const place = $("map");
   place.removeAllListeners?.("plotly_click");

@@ -6,7 +6,7 @@ import { get } from "./api.js";
 import { draw, saveButtons, theme } from "./chart.js";
 import { el, fail } from "./page.js";
 
-const AXES = { xaxis: { title: { text: "x body [m]" }, constrain: "domain" }, yaxis: { title: { text: "y body [m]" }, scaleanchor: "x", constrain: "domain" } };
+const AXES = { xaxis: { title: { text: "x [m], target's body frame" }, constrain: "domain" }, yaxis: { title: { text: "y [m], target's body frame" }, scaleanchor: "x", constrain: "domain" } };
 const arraysOf = ({ job }, { artifact }) => get(`/jobs/${job}/artifacts/${artifact}/arrays`);
 
 /** The comparison of two masks; `one` and `two` are the selects that name them. */

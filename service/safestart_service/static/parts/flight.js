@@ -23,14 +23,17 @@ export class Flight {
     this.data = null;
     $("play").disabled = $("clock").disabled = $("frame").disabled = true;
     $("flown").textContent = text;
-    $("time").textContent = "";
+    $("time").textContent = $("instant").textContent = "";
+    $("flight-line").hidden = true;
     $("flight").classList.toggle("empty-flight", true);
   }
 
-  /** Show a flight at its end; `text` describes it. */
-  load(data, text) {
+  /** Show a flight at its end; `text` describes it, `limit` is its largest thrust acceleration. */
+  load(data, text, limit) {
     this.stop();
     this.data = data;
+    this.limit = limit;
+    $("flight-line").hidden = false;
     $("clock").max = data.time_s.length - 1;
     $("play").disabled = $("clock").disabled = $("frame").disabled = false;
     $("flown").textContent = text;
@@ -61,19 +64,28 @@ export class Flight {
 
   curves() {
     const { time_s: x, thrust_m_s2: thrust, distance_m: distance, faces } = this.data;
-    const { soft } = theme();
+    const { soft, ink, limit } = theme(), ends = [x[0], x.at(-1)];
     const traces = faces.map((face, k) => ({
       name: face, x, y: distance.map((row) => row[k]), mode: "lines", line: { color: FACES[k], width: 2 }, hovertemplate: "%{y:.2f} m",
     }));
     traces.push({
       name: "thrust", x, y: thrust.map((u) => Math.hypot(...u)), mode: "lines", line: { color: soft, width: 1.5, shape: "hv", dash: "dot" },
       yaxis: "y2", hovertemplate: "%{y:.4f} m/s²",
-    });
+    }, { name: "thrust limit", x: ends, y: [this.limit, this.limit], mode: "lines", line: { color: limit, width: 1.5, dash: "dash" }, yaxis: "y2", hoverinfo: "skip" },
+    { name: "face", x: ends, y: [0, 0], mode: "lines", line: { color: ink, width: 1.5 }, showlegend: false, hoverinfo: "skip" });
     draw($("curves"), traces, {
-      hovermode: "x", shapes: [this.mark()], margin: { l: 52, r: 58, t: 30, b: 44 }, legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 },
+      hovermode: "x", shapes: [this.mark()], margin: { l: 46, r: 50, t: 8, b: 84 }, legend: { orientation: "h", yref: "container", y: 0, yanchor: "bottom", x: 0 },
       xaxis: { title: { text: "time [s]" } }, yaxis: { title: { text: "distance to face [m]" }, rangemode: "tozero" },
       yaxis2: { title: { text: "thrust [m/s²]" }, overlaying: "y", side: "right", rangemode: "tozero", showgrid: false },
     });
+  }
+
+  /** State, thrust and the nearest face at the clock's time, in words. */
+  instant() {
+    const { time_s: time, body_m: body, lvlh_m: orbit, lvlh_m_s: speed, thrust_m_s2: thrust, distance_m: distance, faces } = this.data, k = this.step;
+    const at = (vector, digits) => `(${vector.map((value) => figure(value, digits)).join(", ")})`;
+    const near = distance[k].indexOf(Math.min(...distance[k]));
+    return `At ${figure(time[k], 4)} s: body ${at(body[k], 4)} m · LVLH ${at(orbit[k], 4)} m, ${at(speed[k], 3)} m/s · thrust ${at(thrust[k], 3)} m/s² · ${figure(distance[k][near], 4)} m to ${faces[near]}`;
   }
 
   mark() {
@@ -85,6 +97,7 @@ export class Flight {
     this.step = step;
     $("clock").value = step;
     $("time").textContent = `${figure(this.data.time_s[step], 3)} s`;
+    $("instant").textContent = this.instant();
     window.Plotly.relayout($("curves"), { shapes: [this.mark()] });
     if (draws) this.redraw();
   }

@@ -1,6 +1,7 @@
 // A form from a JSON schema; it needs only a process's description.
 
 import { bounds, filled, numbers, parsed, resolve } from "../logic/schema.js";
+import { plainly, titled } from "../logic/titles.js";
 import { el } from "./page.js";
 
 /** `{ node, value() }` of one schema; `value()` gives undefined if nothing was entered. */
@@ -16,14 +17,18 @@ export function field(schema, whole, name, path, given) {
   return json(schema, name, path, fallback);
 }
 
+/** The fields of an object: the first ones are open, those that hardly anybody changes are folded. */
 function group(schema, whole, name, path, given) {
+  const example = whole.examples?.[0] ?? {};
   const parts = Object.entries(schema.properties).map(([key, inner]) => {
     const required = schema.required?.includes(key);
-    const example = whole.examples?.[0]?.[key];
-    const known = given?.[key] ?? (path === "" && required ? example : undefined);
-    return [key, field(inner, whole, key, path ? `${path}.${key}` : key, known)];
+    const known = given?.[key] ?? (path === "" && required ? example[key] : undefined);
+    return [key, field(inner, whole, key, path ? `${path}.${key}` : key, known), path !== "" || required || key in example || given?.[key] !== undefined];
   });
-  const node = el("fieldset", {}, name ? el("legend", {}, name) : null, ...parts.map(([, part]) => part.node));
+  const open = parts.filter(([, , first]) => first), rare = parts.filter(([, , first]) => !first);
+  const folded = rare.length ? el("details", { class: "rare" }, el("summary", {}, `${rare.length} more ${rare.length === 1 ? "setting" : "settings"}, as usual unless changed: ${rare.map(([key]) => titled(key).text.toLowerCase()).join(", ")}`),
+    ...rare.map(([, part]) => part.node)) : null;
+  const node = el("fieldset", {}, name ? el("legend", {}, titled(name).text) : null, ...open.map(([, part]) => part.node), folded);
   return {
     node,
     value: () => filled(parts.map(([key, part]) => [key, part.value()]), path !== "" && !given, schema),
@@ -31,12 +36,13 @@ function group(schema, whole, name, path, given) {
 }
 
 function dial(schema, name, path, control, more) {
-  const id = `in-${path}`;
+  const id = `in-${path}`, { text: title, unit } = titled(name);
   control.id = id;
   control.dataset.path = path;
-  const said = [schema.description, bounds(schema)].filter(Boolean).join(" ");
+  const said = [plainly(schema.description), bounds(schema)].filter(Boolean).join(" ");
   if (said) control.setAttribute("aria-describedby", `${id}-said`);
-  return el("div", { class: "dial" }, el("label", { for: id }, name), control, more ?? null, said ? el("p", { class: "note", id: `${id}-said` }, said) : null);
+  return el("div", { class: "dial" }, el("label", { for: id, title: name }, title), unit ? el("span", { class: "value" }, control, el("span", { class: "unit" }, unit)) : control, more ?? null,
+    said ? el("p", { class: "note", id: `${id}-said` }, said) : null);
 }
 
 function number(schema, name, path, given) {
@@ -71,9 +77,9 @@ function list(schema, whole, name, path, given) {
       box.checked = (given ?? []).includes(one);
       return [one, box];
     });
-    const node = el("fieldset", {}, el("legend", {}, name),
+    const node = el("fieldset", {}, el("legend", {}, titled(name).text),
       el("div", { class: "checks" }, ...boxes.map(([one, box]) => el("label", {}, box, ` ${one}`))),
-      schema.description ? el("p", { class: "note" }, schema.description) : null);
+      schema.description ? el("p", { class: "note" }, plainly(schema.description)) : null);
     node.dataset.path = path;
     return { node, value: () => boxes.filter(([, box]) => box.checked).map(([one]) => one) };
   }
@@ -91,14 +97,17 @@ function json(schema, name, path, given) {
   return { node: dial({ ...schema, description: `${schema.description ?? ""} JSON.` }, name, path, control), value: () => parsed(control.value) };
 }
 
-/** Mark the field that a problem names; true if it exists. */
-export function mark(form, name) {
+/** Mark the field that a problem names, with what is wrong beside it; true if it exists. */
+export function mark(form, name, wrong = "") {
+  for (const old of form.querySelectorAll(".wrong")) old.remove();
   for (const old of form.querySelectorAll('[aria-invalid="true"]')) old.removeAttribute("aria-invalid");
   const plain = String(name ?? "").replace(/^inputs\.?/, "");
   for (let path = plain; path; path = path.includes(".") ? path.slice(0, path.lastIndexOf(".")) : "") {
     const found = form.querySelector(`[data-path="${CSS.escape(path)}"]`);
     if (found) {
       found.setAttribute("aria-invalid", "true");
+      for (let fold = found.closest("details"); fold; fold = fold.parentElement.closest("details")) fold.open = true;
+      if (wrong) found.closest(".dial, fieldset").append(el("p", { class: "note wrong" }, wrong));
       found.scrollIntoView({ block: "center" });
       found.focus?.();
       return true;

@@ -58,13 +58,14 @@ export function drawMap(place, { values, certified, region, sets, turn, overlay,
   const known = { values, certified, region, sets };
   const traces = [...(inOrbit ? orbit(known, turn) : body(known)), ...overlay(inOrbit ? "lvlh" : "body")];
   const high = inOrbit ? 2 * far : 1.09 * values.y_max_m, wide = 2 * (inOrbit ? far : reach);
-  // As tall as equal axes need, plus title, ticks and legend.
+  // As tall as equal axes need, plus title, ticks and legend; the clock below stays on the same screen.
   const beside = 100 + 20 * Math.ceil(7 / Math.max(1, Math.floor((place.clientWidth - 64) / 190)));
-  place.style.height = `${Math.min(0.85 * innerHeight, ((place.clientWidth - 70) * high) / wide + beside)}px`;
+  const above = Math.min(place.getBoundingClientRect().top + scrollY, 0.35 * innerHeight);
+  place.style.height = `${Math.max(280, Math.min(innerHeight - above - 90, ((place.clientWidth - 70) * high) / wide + beside))}px`;
   return draw(place, traces, {
     uirevision: `${inOrbit}/${values.y_max_m}/${values.c_x}`, showlegend: true, title: { text: says },
-    xaxis: { title: { text: inOrbit ? "x LVLH, radial [m]" : "x body [m]" }, range: inOrbit ? [-far, far] : [-reach, reach], constrain: "domain" },
-    yaxis: { title: { text: inOrbit ? "y LVLH, along-track [m]" : "y body [m]" }, range: inOrbit ? [-far, far] : [-0.06 * values.y_max_m, 1.03 * values.y_max_m], scaleanchor: "x", constrain: "domain" },
+    xaxis: { title: { text: inOrbit ? "x [m], LVLH: radial" : "x [m], target's body frame" }, range: inOrbit ? [-far, far] : [-reach, reach], constrain: "domain" },
+    yaxis: { title: { text: inOrbit ? "y [m], LVLH: along-track" : "y [m], target's body frame" }, range: inOrbit ? [-far, far] : [-0.06 * values.y_max_m, 1.03 * values.y_max_m], scaleanchor: "x", constrain: "domain" },
   });
 }
 

@@ -24,14 +24,17 @@ export function fail(place, error, again) {
   const asks = document.getElementById("key");
   // The user may be typing a key there; a second refusal must not erase it.
   if (known && error.status === 401 && asks && place.contains(asks)) return;
+  if (known && error.status === 401) {
+    place.replaceChildren(asks ? el("p", { class: "empty" }, "This needs the key that this page asks for.") : keyCard());
+    return;
+  }
   const box = el("div", { class: "problem", role: "alert" });
   box.append(el("h2", {}, known ? error.document.title ?? "Refused" : "This page has a fault"));
   box.append(el("p", {}, error.message));
   if (known && error.document.required && !error.message.includes(error.document.required)) {
     box.append(el("p", { class: "note" }, `Required: ${error.document.required}. Received: ${error.document.received}.`));
   }
-  if (known && error.status === 401) box.append(asks ? el("p", { class: "note" }, "The key is asked for elsewhere on this page.") : keyForm());
-  else if (again) box.append(el("button", { type: "button", onclick: again }, "Try again"));
+  if (again) box.append(el("button", { type: "button", onclick: again }, "Try again"));
   place.replaceChildren(box);
   if (!known) console.error(error);
 }
@@ -40,11 +43,10 @@ export function loading(place, text = "Loading") {
   place.replaceChildren(el("p", { class: "empty", role: "status" }, `${text} …`));
 }
 
-function keyForm() {
-  const field = el("input", { type: "password", id: "key", autocomplete: "off", required: true });
-  const form = el("form", { class: "inline" },
-    el("label", { for: "key" }, hasKey() ? "This key is not accepted. Another one:" : "API key"), field,
-    el("button", { type: "submit" }, "Use this key"));
+/** A form that asks for a key; the page is loaded anew with it. */
+export function keyForm(id = "key", text = hasKey() ? "This key is not accepted. Another one:" : "API key") {
+  const field = el("input", { type: "password", id, autocomplete: "off", required: true });
+  const form = el("form", { class: "inline" }, el("label", { for: id }, text), field, el("button", { type: "submit" }, "Use this key"));
   form.addEventListener("submit", (event) => {
     event.preventDefault();
     useKey(field.value);
@@ -53,10 +55,17 @@ function keyForm() {
   return form;
 }
 
+/** The card that asks for a key in place of what it opens. */
+const keyCard = () => el("section", { class: "card alone" }, el("h2", {}, "This service needs a key"), keyForm(),
+  el("p", { class: "note" }, "The browser keeps it until this tab is closed. ", el("code", {}, "safestart keys create"), " beside the database makes one, an administrator too."));
+
 /** A word in a frame, and its subject: a job's status says nothing about the verdict of its result. */
 export const badge = (about, word, kind) => el("span", { class: `badge ${about}` }, el("span", { class: "about" }, about), " ", el("b", { class: about === "job" ? `status ${kind}` : `outcome ${kind}` }, word));
 
-export const status = (job) => badge("job", job.dismissal_requested && job.status === "running" ? "stopping" : job.status, job.status);
+/** The words for a job's status; the wire's own stay the classes. */
+const STATUS = { accepted: "waiting", dismissed: "cancelled" };
+
+export const status = (job) => badge("job", job.dismissal_requested && job.status === "running" ? "stopping" : STATUS[job.status] ?? job.status, job.status);
 
 /** A link to a file of the API, fetched with the key. */
 export function download(call, href, name, text) {

@@ -1,9 +1,10 @@
 // The result of a job: first its verdicts, then pictures, outputs without a view, downloads, provenance.
 
+import { keyInputs } from "../logic/inputs.js";
 import { outcome } from "../logic/outcome.js";
 import { columnsOf, tablesOf } from "../logic/tables.js";
+import { inputTitle } from "../logic/titles.js";
 import { figure } from "../logic/words.js";
-import { root } from "./api.js";
 import { badge, definition, download, el } from "./page.js";
 import { names } from "./process.js";
 import { listed, shown } from "./views.js";
@@ -21,14 +22,22 @@ export function verdictBadge({ spec, tables }) {
   return badge("verdict", found.word.replace("_", " ") + many + claimed, found.sense);
 }
 
+/** What the first screen of a result holds: the head of its views and its inputs beside the first of its pictures. */
+export function firstScreen(result, head, picture) {
+  const inputs = keyInputs(result.spec, result.inputs), short = !head.some((node) => node.matches(".findings, .scroll, .two"));
+  const told = el("section", { class: "key-inputs", "aria-label": "Key inputs" }, el("h2", {}, "Asked with"), el("dl", {}, ...inputs.map(([path, value]) => definition(inputTitle(path), value))));
+  return el("div", { class: "first" }, el("div", { class: "said" }, ...head, ...(short ? [told] : [])), el("div", { class: "beside" }, ...(picture ? [picture] : []), ...(short ? [] : [told])));
+}
+
 /** Show the result of a job. */
 export async function results(place, job, spec, call) {
   const document = await (await call(`/jobs/${job.jobID}/results`)).json();
   const result = known(spec, document.outputs, document.inputs, { artifacts: document.artifacts, job: job.jobID });
-  const { head, parts: views, draws } = shown(result);
-  const parts = [...head, ...pictures(call, job.processID, document.artifacts), ...views, ...rest(result)];
+  const { head, pictures, parts: views, draws } = shown(result), [first, ...more] = [...pictures, ...images(call, job.processID, document.artifacts)];
+  const notes = (document.provenance?.notes ?? []).map((note) => el("p", { class: "note" }, note));
+  const parts = [firstScreen(result, head, first), ...notes, ...(more.length ? [el("div", { class: "two pictures" }, ...more)] : []), ...views, ...rest(result)];
   parts.push(el("h2", { class: "on-screen" }, "Downloads"), el("ul", { class: "files" },
-    el("li", {}, download(call, `${root}/jobs/${job.jobID}/results`, `${job.processID}-${job.jobID.slice(0, 8)}.json`, "result document")),
+    el("li", {}, download(call, `/jobs/${job.jobID}/results`, `${job.processID}-${job.jobID.slice(0, 8)}.json`, "result document")),
     ...document.artifacts.map((file) => el("li", {}, download(call, file.href, file.name, `${file.name} (${file.media_type}, ${Math.ceil(file.size / 1024)} KiB)`))),
     ...Object.keys(result.tables).filter(Boolean).map((name) => el("li", {}, download(call, `/jobs/${job.jobID}/results?${new URLSearchParams({ format: "csv", table: name })}`, `${name}.csv`, `table ${name} (CSV)`)))),
   el("div", { class: "tools" }, el("button", { type: "button", class: "plain", onclick: () => print() }, "Print a report")),
@@ -39,7 +48,7 @@ export async function results(place, job, spec, call) {
   return result;
 }
 
-function pictures(call, process, artifacts) {
+function images(call, process, artifacts) {
   return artifacts.filter((file) => file.media_type === "image/png").map((file) => {
     const image = el("img", { alt: `${process}: ${file.name}` });
     call(file.href).then((answer) => answer.blob()).then((blob) => { image.src = URL.createObjectURL(blob); }, () => { image.alt += " (not loaded)"; });

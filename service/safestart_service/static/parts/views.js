@@ -1,5 +1,6 @@
 // The kinds of views that a process's description names for its outputs. Each makes elements; some are drawn once these are on the page.
 
+import { layersOf } from "../logic/layers.js";
 import { exploreAddress, findings } from "../logic/outcome.js";
 import { wilson } from "../logic/statistics.js";
 import { each } from "../logic/tables.js";
@@ -7,20 +8,21 @@ import { csv, figure } from "../logic/words.js";
 import { root } from "./api.js";
 import { drawFlights, drawOverlay } from "./arrays.js";
 import { definition, el, save, table } from "./page.js";
+import { drawPicture } from "./picture.js";
 
 /** Rows shown at most; the download has all of them. */
 const MOST_ROWS = 500;
 const SHORT = 12;
 
 /**
- * Elements and pictures of a result by its views: `{ head, parts, draws }`; `head` precedes all pictures.
- * `result` is `{ spec, names, outputs, tables, inputs,
- * artifacts, job }`; `draws` are to be called once the parts are on the page.
+ * Elements of a result by its views: `{ head, pictures, parts, draws }`; `head` belongs on the first screen, beside the
+ * first picture. `result` is `{ spec, names, outputs, tables, inputs, artifacts, job }`; `draws` are to be called once
+ * the elements are on the page.
  */
 export function shown(result) {
-  const head = [], parts = [], draws = [], views = result.spec["safestart:views"], from = views.findIndex((view) => isLong(view, result));
-  views.forEach((view, k) => KINDS[view.kind]?.(view, result, from < 0 || k < from ? head : parts, draws));
-  return { head, parts, draws };
+  const head = [], pictures = [], parts = [], draws = [], views = result.spec["safestart:views"], from = views.findIndex((view) => isLong(view, result));
+  views.forEach((view, k) => KINDS[view.kind]?.(view, result, view.kind === "picture" ? pictures : from < 0 || k < from ? head : parts, draws));
+  return { head, pictures, parts, draws };
 }
 
 /** Whether a view is large: the pictures precede the first large one. */
@@ -31,8 +33,12 @@ const KINDS = {
     const all = findings(view, tables);
     if (!all.length) return;
     const word = (found) => el("b", { class: `word ${found.shown}` }, found.word.replace("_", " "));
-    const columns = used(view.columns, all.map(({ row }) => row), names);
-    parts.push(el("h2", {}, view.title), table(all, [["verdict", word], ...columns.map(([title, of]) => [title, (found) => of(found.row)])], view.title));
+    const columns = used(view.columns, all.map(({ row }) => row), names).map(([title, of]) => [title, (found) => of(found.row)]);
+    // What only some findings have, such as a counter-example, stands in one cell of theirs.
+    const some = columns.filter(([, of]) => all.some((found) => missing(of(found)))), every = columns.filter((column) => !some.includes(column));
+    const besides = (found) => some.filter(([, of]) => !missing(of(found))).map(([title, of]) => `${title} ${figure(of(found))}`).join(" · ");
+    const last = some.length > 1 ? [["besides", besides]] : some;
+    parts.push(el("h2", {}, view.title), el("div", { class: "findings" }, table(all, [["verdict", word], ...every, ...last], view.title)));
   },
 
   facts({ columns }, { tables, names }, parts) {
@@ -66,6 +72,14 @@ const KINDS = {
     draws.push(() => drawOverlay({ view, result, chart, said, one, two }));
   },
 
+  picture(view, result, parts, draws) {
+    const layers = layersOf(view, result.tables, result.inputs);
+    if (!layers.length) return;
+    const chart = el("div", { class: "chart", role: "group", "aria-label": `${view.title}; the tables have the figures` });
+    parts.push(el("figure", { class: "card" }, chart));
+    draws.push(() => drawPicture({ view, result, chart, layers }));
+  },
+
   flights(view, result, parts, draws) {
     const groups = each(result.outputs, `${view.path}.*`);
     if (!groups.length) return;
@@ -81,9 +95,11 @@ const KINDS = {
   },
 };
 
+const missing = (value) => value === null || value === undefined || value === "";
+
 /** Non-empty columns as [title, function of the row]; names among their values are replaced by titles. */
 function used(columns, rows, names) {
-  const there = columns.filter(({ path }) => rows.some((row) => row[path] !== null && row[path] !== undefined && row[path] !== ""));
+  const there = columns.filter(({ path }) => rows.some((row) => !missing(row[path])));
   return there.map(({ title, path }) => [title, (row) => (typeof row[path] === "string" ? names.title(row[path]) : row[path])]);
 }
 

@@ -19,6 +19,7 @@ KNOWN = frozenset(
             "hold_z_m",
             "ball_radius_m",
             "rest_speed_m_s",
+            "after_arrival",
             "witness",
         ),
     }

@@ -53,6 +53,8 @@ def prove(inputs: GoNoGoInputs, solve: Solve, context: Context) -> Verdicts:
         reasons = [disturbed.sentence(disturbance, question, answer) for answer in answers]
     else:
         answers, by = solve(question, starts, context)
+        if inputs.after_arrival == "stay":
+            answers = asked.with_arrival(question, answers)
         reasons = [asked.sentence(question, answer) for answer in answers]
     return Verdicts(
         [answer.verdict.value for answer in answers],

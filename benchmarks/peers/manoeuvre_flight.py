@@ -33,13 +33,25 @@ def distances(scenario: Scenario, places: Floats, dimensions: int) -> Floats:
 
 
 def fly(
-    scenario: Scenario, rest: Rest, point: Floats, plan: Manoeuvre, after: float, samples: int = 400
+    scenario: Scenario,
+    rest: Rest,
+    point: Floats,
+    plan: Manoeuvre,
+    after: float,
+    samples: int = 400,
+    tolerance: float = 1e-10,
+    velocity: Floats | None = None,
 ) -> Flown:
-    """Fly ``plan``'s thrust open loop in LVLH from ``point`` at rest, and for ``after`` seconds beyond its end."""
+    """Fly ``plan``'s thrust open loop in LVLH from ``point`` at rest, and for ``after`` seconds beyond its end.
+
+    ``velocity`` (3,), m/s in LVLH, stands in the place of the rest.
+    ``samples`` of each part are looked at; ``tolerance`` is the integrator's, relative and, times 10, in metres.
+    """
     n, w = scenario.target.mean_motion, scenario.target.tumble_rate
     place = np.zeros(3)
     place[: len(point)] = point
-    velocity = w * np.array([-place[1], place[0], 0.0]) if rest is Rest.BODY else np.zeros(3)
+    if velocity is None:
+        velocity = w * np.array([-place[1], place[0], 0.0]) if rest is Rest.BODY else np.zeros(3)
 
     def rate(t: float, s: Floats) -> Floats:
         ux, uy, uz = plan.thrust_lvlh(np.array([t]))[0]
@@ -56,7 +68,9 @@ def fly(
             continue
         nudge = 1e-12 * (end - begin) if begin > 0.0 else 0.0
         grid = np.linspace(begin + nudge, end, samples)
-        out = solve_ivp(rate, (grid[0], grid[-1]), state, "DOP853", grid, rtol=1e-10, atol=1e-9)
+        out = solve_ivp(
+            rate, (grid[0], grid[-1]), state, "DOP853", grid, rtol=tolerance, atol=10.0 * tolerance
+        )
         assert out.success
         state = out.y[:, -1]
         places.append(out.y[:3].T)

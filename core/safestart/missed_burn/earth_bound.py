@@ -1,0 +1,88 @@
+"""Bounds on one case about the true Earth: the linear motion near a reference, and how far the true one strays.
+
+The difference e of both motions has e'' = G e + w. Over a part of length h its pushes w_j, at most W_j, change the
+state at the part's end by at most (cosh(k h) - 1)/K W_j in position and sinh(k h)/k W_j in velocity, K = k^2 the bound
+on |G|; the transition carries that to all later nodes, and the same functions bound e within a part. W_j is the
+remainder at the radius of a trial, which is accepted where the motion that it permits stays inside.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from safestart.missed_burn.earth import PARTS, PER_PART, Drift, drift_after, remainder
+from safestart.missed_burn.plan import Question
+from safestart.missed_burn.sets import Case
+from safestart.missed_burn.table_kernel import images_of, least_between
+from safestart.model.scenario import Floats
+
+UNBOUNDED = 1e30
+_UP = 1.0 + 1e-9
+_TRIALS = 60
+
+
+def earth_bound(
+    case: Case, question: Question, enough: float, below: float, tolerance: float, most: int
+) -> tuple[float, float, float, Floats, Floats, Floats]:
+    """Lower bound, least distance of a member, its time (s) and coordinates, cells (N, 5), s, radii (PARTS,), m."""
+    drift = drift_after(question, case.kind, case.burn)
+    last = min(math.ceil(case.duration / drift.step), PARTS * PER_PART)
+    rows = np.ascontiguousarray(drift.tables[: last + 1, :3])
+    strays, trials = strays_along(case, question, drift)
+    off, curve = case.centre - drift.reference, 0.125 * drift.stiffness * drift.step**2 * _UP
+    path = drift.path[: last + 1]
+    low, near, when, member, cells = least_between(
+        path, rows, off, case.columns, case.ends, curve, strays, PER_PART, enough, below, tolerance, most
+    )
+    cells[:, :2] *= drift.step
+    return low, near, when * drift.step, member, cells, trials
+
+
+def strays_along(case: Case, question: Question, drift: Drift) -> tuple[Floats, Floats]:
+    """How far (PARTS,), m, the true motion may be from the linear one in each part, and the trial radii (PARTS,), m."""
+    h, k = drift.part, math.sqrt(drift.stiffness)
+    curve = 0.125 * drift.stiffness * h * h
+    nodes = images_of(
+        np.ascontiguousarray(drift.tables[::PER_PART, :3]),
+        case.centre - drift.reference,
+        case.columns,
+        case.ends,
+    )[1]
+    reached = _UP * np.maximum(nodes[:-1], nodes[1:]).sum(axis=1) / (1.0 - curve)
+    reached += detour(case, question, k) + 1e-6
+    grown, slid = math.cosh(k * h), math.sinh(k * h) / k
+    pushed = (grown - 1.0) / drift.stiffness, slid
+    strays, trials, pushes = np.full(PARTS, UNBOUNDED), np.full(PARTS, UNBOUNDED), np.zeros(PARTS)
+    influence = drift.influence
+    for j in range(PARTS):
+        # influence[:, :, j, m]: from the end of part m - 1.
+        from_position = influence[:, 0, j, 1 : j + 1] @ pushes[:j] * pushed[0]
+        from_velocity = influence[:, 1, j, 1 : j + 1] @ pushes[:j] * pushed[1]
+        at, fast = from_position + from_velocity
+        before = _UP * (grown * at + slid * fast)
+        trial = float(reached[j] + before) * _UP + 1e-6
+        for _ in range(_TRIALS):
+            push = remainder(drift.lowest, trial)
+            if not math.isfinite(push):
+                return strays, trials
+            there = before + pushed[0] * push * _UP
+            needed = float(reached[j] + there)
+            if needed < trial:
+                break
+            trial = needed * _UP + 1e-6
+        else:
+            return strays, trials
+        pushes[j], strays[j], trials[j] = push, there, trial
+    return strays, trials
+
+
+def detour(case: Case, question: Question, k: float) -> float:
+    """Largest distance, m, of the actual position during a late or lasting burn from its equivalent state's."""
+    if case.kind not in ("late", "stuck"):
+        return 0.0
+    most, failures = 1.0 + question.errors.thrust_share, question.failures
+    if case.kind == "late":
+        return most * question.plan.burns[case.burn].size * math.sinh(k * case.last) / k * _UP
+    return most * failures.acceleration * (math.cosh(k * case.last) - 1.0) / k**2 * _UP

@@ -1,0 +1,165 @@
+"""The least distance of a drifting set, where the transition is known at equally spaced times only.
+
+The set is a path and, off from it, a centre and blocks. Each image y has y'' = G(t) y with |G| <= K (the path by the
+mean of gravity's gradient between both bodies), so over [a, b] y differs from its chord by at most k sup |y|, where
+k = K (b - a)^2/8, and so sup |y| <= max(|y(a)|, |y(b)|) / (1 - k). For a unit vector d, inertial and fixed,
+
+    distance >= min(f_d(a), f_d(b)) - k/(1 - k) sum of max(|y(a)|, |y(b)|) over path, centre, blocks,
+
+f_d as in :mod:`safestart.missed_burn.drift_kernel`, less what the true motion may stray.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from safestart.missed_burn.drift_kernel import ROUNDING
+from safestart.missed_burn.nearest import nearest
+from safestart.model.scenario import Floats
+from safestart.runtime.kernels import compiled
+
+_FIRST = 48
+Ends = NDArray[np.int64]
+
+
+@compiled()
+def images_of(tables: Floats, centre: Floats, columns: Floats, ends: Ends) -> tuple[Floats, Floats]:
+    """Positions (T, 1 + C, 3) of the centre and the columns at all times, and sizes (T, 1 + K) of centre and blocks."""
+    count, many = len(tables), len(columns)
+    images, sizes = np.zeros((count, 1 + many, 3)), np.zeros((count, 1 + len(ends)))
+    for t in range(count):
+        for i in range(3):
+            for j in range(6):
+                images[t, 0, i] += tables[t, i, j] * centre[j]
+                for c in range(many):
+                    images[t, 1 + c, i] += tables[t, i, j] * columns[c, j]
+        sizes[t, 0] = math.sqrt((images[t, 0] ** 2).sum())
+        begin = 0
+        for k in range(len(ends)):
+            sizes[t, 1 + k] = math.sqrt((images[t, 1 + begin : 1 + ends[k]] ** 2).sum())
+            begin = ends[k]
+    return images, sizes
+
+
+@compiled()
+def _value(images: Floats, ends: Ends, d: Floats) -> float:
+    """f_d at one time; ``images`` (1 + C, 3)."""
+    total = images[0, 0] * d[0] + images[0, 1] * d[1] + images[0, 2] * d[2]
+    begin = 0
+    for end in ends:
+        square = 0.0
+        for j in range(begin, end):
+            part = images[1 + j, 0] * d[0] + images[1 + j, 1] * d[1] + images[1 + j, 2] * d[2]
+            square += part * part
+        total -= math.sqrt(square)
+        begin = end
+    return float(total)
+
+
+@compiled()
+def _bound(
+    begin: int,
+    end: int,
+    d: Floats,
+    images: Floats,
+    sizes: Floats,
+    ends: Ends,
+    curve: float,
+    strays: Floats,
+    per_part: int,
+) -> float:
+    """Lower bound between two nodes; ``curve``: K/8 times the square of the nodes' distance."""
+    k = curve * (end - begin) ** 2
+    if k >= 0.9:
+        return -np.inf
+    spread = 0.0
+    for j in range(sizes.shape[1]):
+        spread += max(sizes[begin, j], sizes[end, j])
+    low: float = min(_value(images[begin], ends, d), _value(images[end], ends, d))
+    low -= (k / (1.0 - k) + ROUNDING * 1e3) * spread + strays[(end - 1) // per_part]
+    return low
+
+
+@compiled()
+def least_between(
+    path: Floats,
+    tables: Floats,
+    centre: Floats,
+    columns: Floats,
+    ends: Ends,
+    curve: float,
+    strays: Floats,
+    per_part: int,
+    enough: float,
+    below: float,
+    tolerance: float,
+    most: int,
+) -> tuple[float, float, int, Floats, Floats]:
+    """Bounds on the least distance over all nodes of ``path`` (T, 3) and ``tables`` (T, 3, 6), and between them.
+
+    ``strays`` (L,): how far the true motion may be from the linear one up to the end of each part of ``per_part``
+    nodes. Ends as :func:`safestart.missed_burn.drift_kernel.least_distance` does. Returns the lower bound, the least
+    distance of a member, its node and coordinates, and the cells (N, 5): two nodes and a direction.
+    """
+    images, off = images_of(tables, centre, columns, ends)
+    sizes = np.empty((len(tables), 2 + len(ends)))
+    sizes[:, 1:] = off
+    for t in range(len(tables)):
+        sizes[t, 0] = math.sqrt((path[t] ** 2).sum())
+        images[t, 0] += path[t]
+    last = len(tables) - 1
+    cells, bounds = np.empty((most, 5)), np.empty(most)
+    sharp = np.zeros(most, dtype=np.bool_)
+    d, member, best = np.empty(3), np.empty(len(columns)), np.zeros(len(columns))
+    count = min(_FIRST, last)
+    for k in range(count):
+        cells[k, 0], cells[k, 1] = last * k // count, last * (k + 1) // count
+    upper, goal, when, fresh = np.inf, np.inf, 0, 0
+    while True:
+        for k in range(fresh, count):
+            middle = int(cells[k, 0] + cells[k, 1]) // 2
+            size = math.sqrt((images[middle, 0] ** 2).sum())
+            for i in range(3):
+                cells[k, 2 + i] = images[middle, 0, i] / size if size > 0.0 else 1.0 if i == 0 else 0.0
+            bounds[k] = _bound(
+                int(cells[k, 0]), int(cells[k, 1]), cells[k, 2:], images, sizes, ends, curve, strays, per_part
+            )
+            sharp[k] = False
+        fresh = count
+        worst = int(np.argmin(bounds[:count]))
+        low = bounds[worst]
+        if low >= enough or low >= goal - tolerance or upper < below:
+            break
+        begin, end = int(cells[worst, 0]), int(cells[worst, 1])
+        middle = (begin + end) // 2
+        if not sharp[worst]:
+            sharp[worst] = True
+            distance = nearest(
+                tables[middle], centre, path[middle], columns, ends, cells[worst, 2:], d, member
+            )
+            if distance < upper:
+                upper, when = distance, middle
+                best[:] = member
+            goal = min(goal, distance - strays[max(middle - 1, 0) // per_part])
+            two = _bound(begin, end, d, images, sizes, ends, curve, strays, per_part)
+            if two > low:
+                cells[worst, 2:] = d
+                bounds[worst] = two
+            continue
+        if count >= most or end - begin < 2:
+            break
+        cells[count, 0], cells[count, 1] = middle, end
+        cells[worst, 1] = middle
+        # The whole interval's direction serves both halves until they are the worst.
+        cells[count, 2:] = cells[worst, 2:]
+        for k in (worst, count):
+            bounds[k] = _bound(
+                int(cells[k, 0]), int(cells[k, 1]), cells[k, 2:], images, sizes, ends, curve, strays, per_part
+            )
+            sharp[k] = False
+        count += 1
+        fresh = count
+    return low, upper, when, best, cells[:count].copy()

@@ -1,0 +1,58 @@
+"""One start in space: the flat question of a query string or a command line, and its answer without arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Literal
+
+from pydantic import Field
+
+from safestart.processes.base import WireModel
+from safestart.processes.flat import Flat, Parameter
+from safestart.processes.go_no_go.question_fields import QuestionKind
+from safestart.processes.sharding import load
+from safestart.processes.start_in_space.parts import FiveFaces, SpaceStart
+from safestart.processes.start_in_space.spec import SPEC, SpaceInputs, SpaceOutputs
+from safestart.runtime.progress import Context
+
+_WHOLE = Flat(SpaceInputs, {"starts": SpaceStart})
+_FIVE = Flat(SpaceInputs, {"starts": SpaceStart, "corridor": FiveFaces})
+PARAMETERS: dict[str, Parameter] = _WHOLE.parameters | _FIVE.parameters
+"""Flat names; the five faces come as their own parameters or, like any others, as the JSON of ``corridor``."""
+_ARRAYS = (
+    *("verdict", "margin_m", "model_error_m", "violated_faces", "position_m", "velocity_m_s"),
+    *("reason", "end_s", "proof"),
+)
+
+
+class SpaceAnswer(WireModel):
+    """The verdict on one start in space; fields as in the outputs of start-in-space."""
+
+    verdict: Literal["GO", "NO_GO", "UNDECIDED"]
+    margin_m: float | None = Field(description=SpaceOutputs.model_fields["margin_m"].description)
+    model_error_m: float = Field(description=SpaceOutputs.model_fields["model_error_m"].description)
+    violated_faces: list[str] = Field(description="Faces that the start itself is outside of.")
+    reason: str = Field(description="The verdict in a sentence.")
+    position_m: list[float] = Field(description="The start, LVLH, m.")
+    velocity_m_s: list[float] = Field(description="The start, LVLH, m/s.")
+    faces: list[str] = Field(description="Names of the faces.")
+    end_s: float | None = Field(description="When the flight of a GO ends (synchronize), s.")
+    proof: dict[str, Any] | None = Field(
+        None, description="Proof document for `safestart verify`, if requested."
+    )
+    proof_url: str | None = Field(
+        None, description="Where a service gives the proof document alone; null for UNDECIDED."
+    )
+    method: Literal["exact", "auto"]
+    question: QuestionKind
+
+
+def parse(values: Mapping[str, Any]) -> SpaceInputs:
+    """Validate flat values, which may be texts; raises ``InvalidInput`` under the flat name."""
+    return (_WHOLE if "corridor" in values else _FIVE).parse(values)
+
+
+def document_of_one(inputs: SpaceInputs, context: Context) -> dict[str, Any]:
+    """``SpaceAnswer`` for the only start."""
+    found: dict[str, Any] = load(SPEC.run)(inputs, context).document
+    return found | {name: found[name] and found[name][0] for name in _ARRAYS}

@@ -1,0 +1,22 @@
+// The points of a picture's layers, from tables of outputs and the inputs beside them.
+
+import { flat } from "./tables.js";
+
+const DEFAULT = { c_x: 1.5, x0_m: 2.5, r_h_m: 0.5 };
+
+/** Layers with rows: `{ ...layer, rows: [{ x, y, value }] }`, without the rows that lack a coordinate. */
+export function layersOf(view, tables, inputs) {
+  const beside = (name, k) => (name && inputs[name]?.[k] ? Object.fromEntries(Object.entries(flat(inputs[name][k])).map(([key, value]) => [`${name}.${key}`, value])) : {});
+  const isNumber = (value) => typeof value === "number" && Number.isFinite(value);
+  return view.layers.map((layer) => {
+    const whole = (tables[layer.table] ?? []).map((row, k) => ({ ...row, ...beside(layer.beside, k) }));
+    return { ...layer, rows: whole.map((row) => ({ x: row[layer.x], y: row[layer.y], value: row[layer.value] })).filter(({ x, y }) => isNumber(x) && isNumber(y)) };
+  }).filter(({ rows }) => rows.length);
+}
+
+/** The corridor of the inputs, if it is the usual one of three numbers; absent numbers have their usual values. */
+export function shapeOf({ corridor }) {
+  if (corridor === undefined || corridor === null) return null;
+  const shape = { ...DEFAULT, ...corridor };
+  return "faces" in corridor || !Object.keys(DEFAULT).every((name) => typeof shape[name] === "number") ? null : shape;
+}

@@ -1,0 +1,65 @@
+"""The embedded cluster has Dask's defaults and ours; a worker whose warm-up failed takes no jobs."""
+
+import asyncio
+import os
+from collections.abc import Callable
+from typing import Any, cast
+
+import dask
+import pytest
+
+from safestart_worker import loop
+from safestart_worker.cluster.cluster import Cluster
+from safestart_worker.cluster.opening import _defaults, _forget_variables
+
+USERS = {
+    "temporary-directory": "/nonexistent",
+    "scheduler-address": "tcp://10.0.0.1:8786",
+    "distributed.worker.lifetime.duration": "4 s",
+    "distributed.worker.preload": ["nowhere"],
+    "distributed.nanny.preload": ["nowhere"],
+    "distributed.scheduler.idle-timeout": "3 s",
+    "distributed.comm.tls.ca-file": "/mine/ca.pem",
+}
+
+
+def test_the_users_dask_configuration_is_not_ours() -> None:
+    with dask.config.set(USERS):
+        own, elsewhere = _defaults(""), _defaults("tls://there:8786")
+    for found in (own, elsewhere):
+        assert found["temporary-directory"] is None
+        assert found["scheduler-address"] is None
+        part = found["distributed"]
+        assert part["worker"]["lifetime"]["duration"] is None
+        assert part["worker"]["preload"] == part["nanny"]["preload"] == []
+        assert part["scheduler"]["idle-timeout"] is None
+    assert own["distributed"]["comm"]["tls"]["ca-file"] is None
+    assert elsewhere["distributed"]["comm"]["tls"]["ca-file"] == "/mine/ca.pem"
+    own["distributed"]["worker"]["preload"].append("ours")  # a copy
+    assert _defaults("")["distributed"]["worker"]["preload"] == []
+
+
+def test_task_processes_do_not_see_dasks_variables(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("DASK_TEMPORARY_DIRECTORY", "/nonexistent")
+    monkeypatch.setenv("DASK_CONFIG", "/nonexistent")
+    _forget_variables()
+    assert not [name for name in os.environ if name.startswith("DASK_")]
+
+
+class Broken:
+    """A cluster whose task processes cannot compile."""
+
+    embedded = True
+
+    async def warm_up(self, say: Callable[[str], None]) -> None:
+        say("flights")
+        raise RuntimeError("cannot cache function 'march'")
+
+
+def test_a_failed_warm_up_is_not_ready(capsys: pytest.CaptureFixture[str], caplog: Any) -> None:
+    async def warmed() -> bool:
+        return await loop._warm(cast(Cluster, Broken()), asyncio.Event())
+
+    assert asyncio.run(warmed()) is False
+    assert capsys.readouterr().out == "warming up kernels ... flights, failed\n"
+    assert "takes no jobs and ends" in caplog.text
