@@ -101,7 +101,7 @@ def openapi_generator(shop: Workshop) -> str:
 
 
 def openapi_typescript(shop: Workshop) -> str:
-    shop.npm("openapi-typescript", "openapi-fetch", "typescript@5")
+    shop.npm("openapi-typescript", "openapi-fetch", "typescript@5", "@types/node")
     shop.run("npx", "openapi-typescript", "openapi-3.1.json", "-o", "safestart.ts")
     shutil.copy(PROGRAMS / "typed.ts", shop.folder)
     strict = ["--strict", "--module", "nodenext", "--target", "es2022", "--outDir", "out"]
