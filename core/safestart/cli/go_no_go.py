@@ -12,8 +12,8 @@ from safestart.cli.console import Json, out, print_json
 from safestart.cli.files import read_json, target
 from safestart.cli.options import takes
 from safestart.errors import invalid
+from safestart.processes.door import PARAMETERS, document_of_one, parse
 from safestart.processes.execute import execute
-from safestart.processes.go_no_go.door import PARAMETERS, document_of_one, parse
 from safestart.processes.registry import process
 from safestart.processes.start_in_space.spec import SpaceInputs
 from safestart.runtime.progress import Context

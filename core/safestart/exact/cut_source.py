@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Protocol
+from typing import Any, Protocol, Self
 
 from safestart.exact.norm_rows import Blocks
 from safestart.exact.watch import Cuts, Ints, Minima
@@ -36,3 +36,10 @@ class Watched(Protocol):
 
     def __hash__(self) -> int:
         """By identity: caches hold entries per watch."""
+
+
+class Ending(Watched, Protocol):
+    """A watch whose question may end earlier."""
+
+    def until(self, steps: int) -> Self:
+        """The watch of the same question with T at ``steps`` intervals, at most its own."""

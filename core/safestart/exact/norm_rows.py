@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from safestart.exact.limits import AT_END, limit_at
+from safestart.exact.limits import AT_END, Limit, limit_at
 from safestart.exact.question import Question
 from safestart.model.scenario import Floats
 from safestart.optim.prediction import Prediction
+
+if TYPE_CHECKING:
+    from safestart.exact.cut_source import Watched
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,22 +43,25 @@ class Blocks:
 
 def blocks(question: Question, prediction: Prediction, names: Sequence[str], times: Floats) -> Blocks:
     """The limits ``names`` (B) at ``times`` (B,) in [0, T] seconds; ``prediction`` is the question's."""
-    d, count = question.dimensions, question.steps
+    limits = [limit_at(question, name, time) for name, time in zip(names, times.tolist(), strict=True)]
+    return stacked(limits, prediction, names, times)
+
+
+def stacked(limits: Sequence[Limit], prediction: Prediction, names: Sequence[str], times: Floats) -> Blocks:
+    """The same for ``limits`` (B)."""
+    d, count = prediction.dimensions, prediction.steps
     offset = np.zeros((len(times), d + 1))
     start, thrust = np.zeros((len(times), d + 1, 2 * d)), np.zeros((len(times), d + 1, count * d))
-    for b, (name, time) in enumerate(zip(names, times.tolist(), strict=True)):
-        limit = limit_at(question, name, time)
+    for b, (limit, time) in enumerate(zip(limits, times.tolist(), strict=True)):
         offset[b] = limit.limit, *-limit.centre
         start[b, 1:], thrust[b, 1:] = prediction.state_rows(time, limit.matrix)
     return Blocks(times, tuple(names), offset, start, thrust)
 
 
-def end_blocks(question: Question, prediction: Prediction) -> tuple[Floats, Floats, Floats]:
+def end_blocks(watch: Watched) -> tuple[Floats, Floats, Floats]:
     """The limits at the end for every T = k dt, k = 0 .. N, stacked: offset (N+1, 2 d+2), and so start and thrust."""
-    count = question.steps + 1
-    made = blocks(
-        question, prediction, AT_END * count, np.repeat(question.dt * np.arange(count), len(AT_END))
-    )
+    count = watch.question.steps + 1
+    made = watch.blocks(AT_END * count, np.repeat(watch.question.dt * np.arange(count), len(AT_END)))
     return (
         made.offset.reshape(count, -1),
         made.start.reshape(count, -1, made.start.shape[-1]),

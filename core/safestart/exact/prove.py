@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from safestart.errors import invalid
 from safestart.exact.answer import Answer, Multiplier, Verdict
 from safestart.exact.limits import AT_END
-from safestart.exact.question import SPEED_SCALE, Question
+from safestart.exact.question import SPEED_SCALE, Goal, Question
 from safestart.model.scenario import Floats
 from safestart.proofs.statement import SCHEMA, digest_of
 
@@ -48,18 +49,7 @@ def proof_of(question: Question, state: Floats, answer: Answer) -> dict[str, Any
             }
     elif answer.verdict is Verdict.NO_GO:
         document["margin_m"] = min(answer.upper + NO_GO_STAND_BACK_M, 0.5 * answer.upper)
-        latest = question.latest
-        if question.goal is None:
-            document["multipliers"] = [multiplier_of(row, latest) for row in answer.multipliers]
-        else:
-            document["parts"] = [
-                {
-                    "first_step": part.first,
-                    "last_step": part.last,
-                    "multipliers": [multiplier_of(row, latest) for row in part.multipliers],
-                }
-                for part in answer.parts
-            ]
+        document |= refuted_by(answer, question.latest, free=question.goal is not None)
     else:
         raise invalid("answer", "a GO or NO_GO", answer.verdict.value)
     document["digest"] = digest_of(document)
@@ -84,25 +74,40 @@ def question_of(question: Question) -> dict[str, Any]:
             "z0_m": float(shape.z0),
             "hold_radius_m": float(shape.hold_radius),
         },
-        **_limits(question),
+        **limits_of(question.goal, question.hold, question.speed_limit),
+        **({"keep_out_m": float(question.keep_out)} if question.keep_out > 0.0 else {}),
     }
 
 
-def _limits(question: Question) -> dict[str, Any]:
-    """The question's demands beyond the corridor."""
+def limits_of(goal: Goal | None, hold: Sequence[float], speed_limit: float | None) -> dict[str, Any]:
+    """The demands of a question at its end and on the speed, in the document's form."""
     out: dict[str, Any] = {}
-    if question.goal is not None:
-        out["earliest_step"] = question.goal.earliest
+    if goal is not None:
+        out["earliest_step"] = goal.earliest
         out["goal"] = {
-            "hold_m": [float(e) for e in question.hold],
-            "radius_m": float(question.goal.radius),
-            "rest_m_s": float(question.goal.rest),
+            "hold_m": [float(e) for e in hold],
+            "radius_m": float(goal.radius),
+            "rest_m_s": float(goal.rest),
         }
-    if question.speed_limit is not None:
-        out["speed_limit"] = {"most_m_s": float(question.speed_limit), "scale_s": SPEED_SCALE}
-    if question.keep_out > 0.0:
-        out["keep_out_m"] = float(question.keep_out)
+    if speed_limit is not None:
+        out["speed_limit"] = {"most_m_s": float(speed_limit), "scale_s": SPEED_SCALE}
     return out
+
+
+def refuted_by(answer: Answer, latest: float, *, free: bool) -> dict[str, Any]:
+    """The evidence of a NO_GO: multipliers, or parts for the ends where the end is ``free``."""
+    if not free:
+        return {"multipliers": [multiplier_of(row, latest) for row in answer.multipliers]}
+    return {
+        "parts": [
+            {
+                "first_step": part.first,
+                "last_step": part.last,
+                "multipliers": [multiplier_of(row, latest) for row in part.multipliers],
+            }
+            for part in answer.parts
+        ]
+    }
 
 
 def multiplier_of(row: Multiplier, latest: float) -> dict[str, Any]:

@@ -105,7 +105,16 @@ class Search:
         self.rounds += 1
         constant, rows = self._stacked()
         scale, norms, within = question.thrust_scale, len(self.blocks.names), question.thrust_set
-        found = solve(constant, rows, scale, question.channels, norms, fine=fine, within=within)
+        found = solve(
+            constant,
+            rows,
+            scale,
+            question.channels,
+            norms,
+            fine=fine,
+            within=within,
+            components=question.dimensions,
+        )
         if found.thrust is None or found.weights is None:
             return f"the solver stopped with {found.status} in round {self.rounds}"
         self.flown, self.load = found.thrust, found.weights[: len(self.times)]

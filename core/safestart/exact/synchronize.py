@@ -17,11 +17,11 @@ import numpy as np
 
 from safestart.exact.answer import GUARD, Answer, Evidence, Part, Verdict
 from safestart.exact.arrival import arrival_of
+from safestart.exact.cut_source import Ending
 from safestart.exact.limits import AT_END
 from safestart.exact.norm_rows import end_blocks
-from safestart.exact.question import Question
 from safestart.exact.search import Search
-from safestart.exact.watch import Watch, watch_of
+from safestart.exact.watch import Watch
 from safestart.model.scenario import Bools, Floats
 
 # Refuted ends are solved only to a tenth of their margin: the verdict is certain, and the worst end sets the bound.
@@ -29,7 +29,24 @@ _SHARE = 0.1
 
 
 def synchronize(watch: Watch, state: Floats, tolerance: float, *, verdict_only: bool = False) -> Answer:
-    """Answer `synchronize` for one start ``state`` (2 d,), as :func:`safestart.exact.decide.decide` does."""
+    """Answer `synchronize` for one start ``state`` (2 d,), as :func:`safestart.exact.decide.decide` does.
+
+    A GO says what holds after its end, where that is proved.
+    """
+    answer = ended(watch, state, tolerance, verdict_only=verdict_only)
+    if answer.verdict is not Verdict.GO or answer.thrust is None:
+        return answer
+    question, end = watch.question, len(answer.thrust)
+    last = watch.until(end).prediction.flight(state, answer.thrust)[-1, -1]
+    arrival = arrival_of(question, last, end * question.dt)
+    if arrival is None and verdict_only:
+        # The flight that proves the verdict first may end by a face; the best one ends well inside.
+        return synchronize(watch, state, tolerance)
+    return replace(answer, arrival=arrival)
+
+
+def ended(watch: Ending, state: Floats, tolerance: float, *, verdict_only: bool = False) -> Answer:
+    """The same, whatever comes after the end, for any watch that can end earlier."""
     ends = _Ends(watch, state)
     reason = ""
     while (steps := ends.most_hopeful()) is not None:
@@ -42,28 +59,19 @@ def synchronize(watch: Watch, state: Floats, tolerance: float, *, verdict_only: 
         ends.note(steps, search)
         if ends.lower > GUARD:
             break
-    answer = ends.answer(reason)
-    if answer.verdict is not Verdict.GO or answer.thrust is None:
-        return answer
-    question, end = watch.question, len(answer.thrust)
-    last = watch.until(end).prediction.flight(state, answer.thrust)[-1, -1]
-    arrival = arrival_of(question, last, end * question.dt)
-    if arrival is None and verdict_only:
-        # The flight that proves the verdict first may end by a face; the best one ends well inside.
-        return synchronize(watch, state, tolerance)
-    return replace(answer, arrival=arrival)
+    return ends.answer(reason)
 
 
 @lru_cache(maxsize=4)
-def end_rows(question: Question) -> tuple[Floats, Floats, Floats]:
+def end_rows(watch: Ending) -> tuple[Floats, Floats, Floats]:
     """The rows of the limits at every end, kept between calls."""
-    return end_blocks(question, watch_of(question).prediction)
+    return end_blocks(watch)
 
 
 class _Ends:
     """Bounds for each end T = k dt: ``upper`` (K + 1,) in metres, and the multipliers that prove it."""
 
-    def __init__(self, watch: Watch, state: Floats) -> None:
+    def __init__(self, watch: Ending, state: Floats) -> None:
         question = watch.question
         goal = question.goal
         self.watch, self.state = watch, state
@@ -101,7 +109,7 @@ class _Ends:
     def _carried(self, evidence: Evidence) -> Floats:
         """Bounds (K + 1,) on the margins of all ends from the multipliers of one, with its end rows moved to theirs."""
         question = self.watch.question
-        d, columns, faces = question.dimensions, self.last * question.dimensions, len(evidence.faces)
+        d, columns, faces = question.dimensions, self.last * question.channels, len(evidence.faces)
         names, cone = evidence.blocks.names, question.dimensions + 1
         at_end = np.array([name in AT_END for name in names], dtype=bool)
         holds = np.concatenate([np.ones(faces), np.tile(np.r_[1.0, np.zeros(d)], len(names))])
@@ -112,12 +120,12 @@ class _Ends:
         rows = np.zeros((int(path.sum()), columns))
         rows[:, : evidence.rows.shape[1]] = evidence.rows[path]
         end = evidence.weights[faces:].reshape(-1, cone)[at_end].ravel()
-        offset, start, thrust = end_rows(question)
+        offset, start, thrust = end_rows(self.watch)
         pull = weights @ rows + np.einsum("kbc,b->kc", thrust, end)
-        reach = np.sqrt(np.square(pull.reshape(self.last + 1, -1, d)).sum(axis=-1)).sum(axis=-1)
+        reach = question.thrust_set.support(pull.reshape(self.last + 1, -1, question.channels))
         level = weights @ evidence.constant[path] + offset @ end + (start @ self.state) @ end
         total = weights @ holds[path] + float(end[::cone].sum())
-        level += question.scenario.chaser.max_acceleration * reach
+        level += question.thrust_scale * reach
         out: Floats = np.divide(level, total, out=np.full(self.last + 1, np.inf), where=total > 0.0)
         return out
 

@@ -140,6 +140,30 @@ class KeplerOrbit:
         change = pace * (2.0 * e + e * e)
         return pace**2 * near**3, most * slope, most * (change * slope + most * bend)
 
+    def further_bounds(self) -> tuple[float, float]:
+        """Bounds on the sizes of the fifth derivative of nu, rad/s^5, and the third of mu / r^3, 1/s^5."""
+        e = self.eccentricity
+        most, near = self.rate_bounds()[0], 1.0 + e
+        pace = self.mean_motion / (1.0 - e * e) ** 1.5
+        a, b, c, d = (pace * (2.0 * e + e * e * 2.0 ** (j - 1)) for j in (1, 2, 3, 4))
+        turn = a**4 + 11.0 * most * a * a * b + 4.0 * (most * b) ** 2 + 7.0 * most**2 * a * c + most**3 * d
+        slope = 3.0 * pace**2 * near**2 * e
+        bend = 3.0 * pace**2 * (2.0 * near * e * e + near * near * e)
+        twist = 3.0 * pace**2 * (2.0 * e**3 + 6.0 * near * e * e + near * near * e)
+        tide = (a * a + most * b) * slope + 3.0 * most * a * bend + most * most * twist
+        return most * turn, most * tide
+
+    def pulls(self, times: Floats) -> tuple[Floats, Floats, Floats]:
+        """nu' (rad/s), nu'' (rad/s^2) and mu / r^3 (1/s^2), each (...)."""
+        w = self.rate(times)
+        e = self.eccentricity
+        if self.circular:
+            return w, np.zeros(w.shape), w * w
+        pace = self.mean_motion / (1.0 - e * e) ** 1.5
+        rho = np.sqrt(w / pace)
+        sine = np.sin(self.true_anomaly + self.turned(times))
+        return w, -2.0 * pace * e * sine * rho * w, pace * pace * rho**3
+
     def rotation(self, times: Floats) -> Floats:
         """(..., 3, 3): inertial coordinates to LVLH coordinates."""
         angle = self.turned(times)

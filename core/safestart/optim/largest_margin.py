@@ -48,15 +48,16 @@ def solve(
     *,
     fine: bool = True,
     within: UnitSet = BALL,
+    components: int = 0,
 ) -> Solved:
     """Solve for J rows: ``constant`` (J,) = offset + start . x0 in m, ``thrust`` (J, N d) in m per m/s^2.
 
     The last ``blocks`` (d + 1) rows are norm limits. The weights prove their bound at any accuracy; without ``fine``
     the solver stops some iterations earlier, some 1e-5 m from the optimum. With another set ``within`` thrusts are
-    a_max times its points, ``dimensions`` its channels.
+    a_max times its points, ``dimensions`` its channels, and ``components`` d of the norms.
     """
     rows, columns = thrust.shape
-    count, cone = columns // dimensions, dimensions + 1
+    count, cone = columns // dimensions, (components or dimensions) + 1
     plain = rows - blocks * cone
     scaled = a_max * thrust
     program = ConeProgram(thrust=columns, margin=1)

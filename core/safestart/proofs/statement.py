@@ -122,7 +122,7 @@ def read(document: Any) -> Stated:
         start=_start(start, d),
         claim=_claim(document, go),
         thrust=_thrust(evidence, earliest, steps, d) if go else [],
-        parts=[] if go else parts_of(parts, (earliest, steps), faces, limits, dt * steps),
+        parts=[] if go else parts_of(parts, (earliest, steps), faces, limits, dt * steps, d),
         arrival=_arrival(document["arrival"]) if "arrival" in document else None,
     )
 

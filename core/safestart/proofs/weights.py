@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -40,6 +40,11 @@ class Limits:
     keep_out: fmpq | None
 
     @property
+    def norms(self) -> tuple[str, ...]:
+        """Names of the limits that the question has."""
+        return (AT_END if self.hold is not None else ()) + (("speed",) if self.most is not None else ())
+
+    @property
     def rest_scale(self) -> fmpq:
         """Seconds that convert the speed at the end into metres."""
         return self.radius / self.rest
@@ -64,9 +69,9 @@ def limits_of(question: Any, d: int, free: bool) -> Limits:
 
 
 def parts_of(
-    rows: list[Any], ends: tuple[int, int], faces: Mapping[str, Any], limits: Limits, horizon: fmpq
+    rows: list[Any], ends: tuple[int, int], faces: Collection[str], limits: Limits, horizon: fmpq, d: int
 ) -> list[tuple[int, int, list[Weight]]]:
-    """Yield the parts, which together must cover the ends (first, last) without a gap."""
+    """The parts, which together must cover the ends (first, last) without a gap; ``faces`` by name, d dimensions."""
     out, covered = [], ends[0]
     for row in rows:
         fields(row, "parts", ("first_step", "last_step", "multipliers"))
@@ -75,18 +80,17 @@ def parts_of(
             raise ProofRejected(
                 f"parts: required the steps {ends[0]}..{ends[1]} in turn, received {first}..{last}"
             )
-        out.append((first, last, _weights(part(row, "multipliers", list), faces, limits, horizon)))
+        out.append((first, last, _weights(part(row, "multipliers", list), faces, limits, horizon, d)))
         covered = last + 1
     if covered != ends[1] + 1:
         raise ProofRejected(f"parts: required all steps {ends[0]}..{ends[1]}, received up to {covered - 1}")
     return out
 
 
-def _weights(rows: list[Any], faces: Mapping[str, Any], limits: Limits, horizon: fmpq) -> list[Weight]:
+def _weights(rows: list[Any], faces: Collection[str], limits: Limits, horizon: fmpq, d: int) -> list[Weight]:
     if not 1 <= len(rows) <= _MOST_MULTIPLIERS:
         raise ProofRejected(f"multipliers: required 1..{_MOST_MULTIPLIERS}, received {len(rows)}")
-    norms = (AT_END if limits.hold is not None else ()) + (("speed",) if limits.most is not None else ())
-    d, out = len(faces["hold_plane"][0]), []
+    norms, out = limits.norms, []
     for row in rows:
         face, value = row.get("face") if isinstance(row, Mapping) else None, number(row, "value", 0.0)
         if not isinstance(face, str) or (face not in faces and face not in norms):

@@ -56,7 +56,7 @@ class NoisyFlights:
             _CODES[variant],
         )
         offsets = np.ascontiguousarray(program.faces.offsets)
-        self._tail = (*program.fixed, offsets, program.low, program.high, program.give)
+        self._tail = (program.fixed, offsets, program.low, program.high, program.give)
 
     def fly(
         self, start: Floats, attitudes: Floats, rates: Floats, navigation: Floats, sizes: Floats

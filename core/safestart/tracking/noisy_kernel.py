@@ -143,14 +143,7 @@ def fly_noisy(  # type: ignore[no-untyped-def]
     variant,
     navigation,
     sizes,
-    a_rr,
-    motion,
-    reach,
-    push,
-    cost,
-    tau,
-    normals,
-    limits,
+    fixed,
     offsets,
     low,
     high,
@@ -160,10 +153,11 @@ def fly_noisy(  # type: ignore[no-untyped-def]
 
     ``truth`` (K + 1, 3, 3) and ``rates`` (K + 1, 3): the attitude as it is and the inertial rate as it is believed.
     ``navigation`` (K + 1, 6): errors of what is measured; ``sizes`` (K,): factor on each impulse. ``gain`` (6, 6) is
-    the filter's. A step without a plan that keeps every row, those of this node and the next among them, follows the
-    last plan (HARD), or the one of least violation.
+    the filter's, ``fixed`` the program's (:class:`Fixed`). A step without a plan that keeps every row, those of this
+    node and the next among them, follows the last plan (HARD), or the one of least violation.
     """
-    steps, total, n = len(truth) - 1, len(push), cost.shape[0] - 3
+    motion, push, normals = fixed.motion, fixed.push, fixed.normals
+    steps, total, n = len(truth) - 1, len(push), fixed.cost.shape[0] - 3
     count, faces = len(high), len(normals)
     rows, shift = np.empty((n, count)), np.empty((6, count))
     hessian, slope = np.empty((n, n)), np.empty((n, 6))
@@ -187,9 +181,7 @@ def fly_noisy(  # type: ignore[no-untyped-def]
         if k == steps:
             break
         predict(truth[k], rates[k], inertia, inverse, orbit, period, attitudes)
-        assemble(
-            attitudes, a_rr, motion, reach, push, cost, tau, normals, limits, rows, shift, hessian, slope
-        )
+        assemble(attitudes, fixed, rows, shift, hessian, slope)
         status, _ = solve_from(rows, shift, hessian, slope, low, high, estimate, z, dual)
         outside = overstepped(attitudes, a, normals, offsets, estimate) > _FIXED
         if status != SOLVED or outside:

@@ -11,7 +11,7 @@ from fastapi import Request
 from fastapi.responses import Response, StreamingResponse
 from starlette.types import Receive, Scope, Send
 
-from safestart.processes.go_no_go.door import OneStart, cost
+from safestart.processes.door import OneStart, cost
 from safestart.runtime.progress import Context
 from safestart_service.access.gate import caller
 from safestart_service.computing.light import Left

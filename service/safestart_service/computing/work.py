@@ -12,7 +12,7 @@ from uuid import uuid4
 import orjson
 
 from safestart.processes.base import ProcessSpec
-from safestart.processes.go_no_go.door import OneStart, document_of_one
+from safestart.processes.door import OneStart, document_of_one
 from safestart.processes.registry import process
 from safestart.runtime.access import Caller, Role
 from safestart.runtime.progress import Context

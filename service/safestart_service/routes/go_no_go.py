@@ -10,12 +10,14 @@ from fastapi.responses import Response
 from starlette.types import Scope
 
 from safestart.errors import NotFound
+from safestart.processes import door
+from safestart.processes.door import OneStart
 from safestart.processes.flat import described
-from safestart.processes.go_no_go import door, run
-from safestart.processes.go_no_go.door import OneStart
+from safestart.processes.go_no_go import run
 from safestart.processes.go_no_go.method_registry import RENAMED
 from safestart.processes.go_no_go.one_start import GoNoGoAnswer
 from safestart.processes.go_no_go.spec import SPEC, GoNoGoInputs, GoNoGoOutputs
+from safestart.processes.start_in_space.missions import MISSIONS
 from safestart.processes.start_in_space.one_start import SpaceAnswer
 from safestart.processes.start_in_space.spec import SPEC as SPACE
 from safestart.processes.start_in_space.spec import SpaceInputs, SpaceOutputs
@@ -125,7 +127,8 @@ async def go_no_go_proof(_query: Annotated[GoNoGoQuery, Query()]) -> Response:
     operation_id="goNoGoMany",
     summary="Go/no-go for many starts",
     openapi_extra=json_body(
-        {SPEC.id: GoNoGoInputs, SPACE.id: SpaceInputs}, {SPEC.id: SPEC.example, SPACE.id: SPACE.example}
+        {SPEC.id: GoNoGoInputs, SPACE.id: SpaceInputs},
+        {SPEC.id: SPEC.example, SPACE.id: SPACE.example, **MISSIONS},
     ),
     responses={
         200: content(

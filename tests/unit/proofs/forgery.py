@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -58,3 +58,51 @@ def assert_every_digit_counts(check: Check, document: Document, number: int) -> 
         if other != document:
             with pytest.raises(ProofRejected):
                 check(other)
+
+
+def places(value: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[tuple[Any, ...], Any]]:
+    """Every object, list and leaf with where it stands."""
+    yield path, value
+    if isinstance(value, dict):
+        for key, inside in value.items():
+            yield from places(inside, (*path, key))
+    if isinstance(value, list):
+        for k, inside in enumerate(value[:3]):
+            yield from places(inside, (*path, k))
+
+
+def put(made: Document, path: tuple[Any, ...], value: Any) -> None:
+    inside: Any = made
+    for key in path[:-1]:
+        inside = inside[key]
+    inside[path[-1]] = value
+
+
+def assert_all_is_read(check: Check, document: Document, without: tuple[str, ...] = ()) -> None:
+    """A field of another type, one that is missing, one too many: refused at every place of the document.
+
+    ``without`` are fields that a document need not have: less is claimed, and proved, then.
+    """
+    for path, value in places(document):
+        if not path or path[0] == "digest":
+            continue
+        for other in (None, "x", True, [], {}, float(10**300), -1e300):
+            if other == "x" and path[-1] == "name":
+                # A face that no multiplier names may have any name.
+                continue
+            forged = copy.deepcopy(document)
+            put(forged, path, other)
+            with pytest.raises(ProofRejected):
+                check(sealed(forged))
+        if isinstance(value, dict):
+            for key in {*value, "more"} - {*without}:
+                forged = copy.deepcopy(document)
+                inside: Any = forged
+                for step in path:
+                    inside = inside[step]
+                if key == "more":
+                    inside["more"] = 1
+                else:
+                    del inside[key]
+                with pytest.raises(ProofRejected):
+                    check(sealed(forged))

@@ -10,10 +10,30 @@ No input affects the corridor rows at steps 0 and 1, which are checked separatel
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from safestart.control.tracking_mpc.active_set import add_scaled
+from safestart.model.scenario import Floats
 from safestart.runtime.kernels import compiled
+
+
+class Fixed(NamedTuple):
+    """What is the same in every step: the condensed prediction, its cost, and the rows' normals.
+
+    ``a_rr`` (3, 3); ``motion`` (3, 3, 3) is P, Q, R; ``reach`` and ``push`` (N_p, 3, m) give positions and inputs from
+    (e_0, w); ``cost`` (m, m); ``tau`` weighs theta; ``normals`` (F, 3) in body axes; ``limits`` (H, 3) on theta alone.
+    """
+
+    a_rr: Floats
+    motion: Floats
+    reach: Floats
+    push: Floats
+    cost: Floats
+    tau: float
+    normals: Floats
+    limits: Floats
 
 
 @compiled(error_model="numpy", fastmath={"contract", "reassoc", "nsz"})
@@ -54,14 +74,13 @@ def place(source, start, column, rows, shift):  # type: ignore[no-untyped-def]
 
 
 @compiled(error_model="numpy", fastmath={"contract", "reassoc", "nsz"})
-def assemble(  # type: ignore[no-untyped-def]
-    attitudes, a_rr, motion, reach, push, cost, tau, normals, limits, rows, shift, hessian, slope
-):
+def assemble(attitudes, fixed, rows, shift, hessian, slope):  # type: ignore[no-untyped-def]
     """Fill ``rows`` (n, R), ``shift`` (6, R), ``hessian`` (n, n) and ``slope`` (n, 6).
 
     A row's value is rows' z + shift' x_0, the gradient at z = 0 is slope x_0. ``attitudes`` (N_p + 2, 3, 3) are those
-    at this step and after it; ``motion`` (3, 3, 3) is P, Q, R; ``limits`` (H, 3) are the rows on theta alone.
+    at this step and after it.
     """
+    a_rr, motion, reach, push, cost, tau, normals, limits = fixed
     total, m, faces = len(push), cost.shape[0], len(normals)
     free = m - 6
     start = np.empty((6, 3))

@@ -8,7 +8,7 @@ import numpy as np
 
 from safestart.control.controller import Command
 from safestart.control.tracking_mpc import equilibrium
-from safestart.control.tracking_mpc.assemble import assemble
+from safestart.control.tracking_mpc.assemble import Fixed, assemble
 from safestart.control.tracking_mpc.condensed import Condensed, condense
 from safestart.control.tracking_mpc.sampled import Sampled
 from safestart.control.tracking_mpc.step_kernel import SOLVED, feasible_starts, soften, solve_from
@@ -79,7 +79,7 @@ class Program:
         n, size = 3 * tuning.n_c + 3, len(self.high)
         self.rows, self.shift = np.empty((n, size)), np.empty((6, size))
         self.hessian, self.slope = np.empty((n, n)), np.empty((n, 6))
-        self.fixed = (
+        self.fixed = Fixed(
             np.ascontiguousarray(motion.a[:3, :3]),
             np.array([motion.p, motion.q, motion.r]),
             self.condensed.reach,
@@ -100,7 +100,7 @@ class Program:
         if attitudes.shape[1:] != (3, 3) or len(attitudes) < self.ahead:
             raise invalid("attitudes", f"at least {self.ahead} rotations (3, 3)", attitudes.shape)
         attitudes = np.ascontiguousarray(attitudes[: self.ahead])
-        assemble(attitudes, *self.fixed, self.rows, self.shift, self.hessian, self.slope)
+        assemble(attitudes, self.fixed, self.rows, self.shift, self.hessian, self.slope)
 
     def fixed_violation(self, attitudes: Floats, states: Floats) -> Floats:
         """(...), m: largest violation of the corridor by LVLH states (..., 6), this step and the next; <= 0 inside."""

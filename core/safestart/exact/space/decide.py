@@ -10,6 +10,7 @@ from safestart.exact.decide import answer_of, outside
 from safestart.exact.search import Search
 from safestart.exact.space.question import SpaceQuestion
 from safestart.exact.space.watch import space_watch_of
+from safestart.exact.synchronize import ended
 from safestart.model.scenario import Floats, number
 
 
@@ -25,6 +26,8 @@ def decide_in_space(
     if state.shape != (6,) or not np.isfinite(state).all() or float(np.abs(state).max()) > 1e6:
         raise invalid("state", "six finite numbers within 1e6: position and velocity", state)
     number("tolerance", tolerance, 1e-6, 1e3)
+    if question.goal is not None:
+        return ended(space_watch_of(question), state, tolerance, verdict_only=verdict_only)
     search = Search(space_watch_of(question), state)
     if search.distance_now < -GUARD:
         return outside(search)

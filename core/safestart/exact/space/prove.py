@@ -13,16 +13,19 @@ from safestart.attitude.torque_free import TorqueFree
 from safestart.attitude.turning import SmoothAttitude
 from safestart.errors import invalid
 from safestart.exact.answer import Answer, Verdict
-from safestart.exact.prove import GO_STAND_BACK_M, NO_GO_STAND_BACK_M, multiplier_of
+from safestart.exact.prove import GO_STAND_BACK_M, NO_GO_STAND_BACK_M, limits_of, refuted_by
 from safestart.exact.space.question import SpaceQuestion
 from safestart.model.scenario import Floats
 from safestart.proofs.space.statement import SCHEMA
 from safestart.proofs.statement import digest_of
 
 
-def proof_in_space(question: SpaceQuestion, state: Floats, answer: Answer) -> dict[str, Any]:
+def proof_in_space(
+    question: SpaceQuestion, state: Floats, answer: Answer, half: Floats | None = None
+) -> dict[str, Any]:
     """JSON-able proof of a GO or NO_GO for the start ``state`` (6,); see :func:`safestart.exact.prove.proof_of`.
 
+    ``half`` (6,) are the half-widths of a box of starts, for an answer of :mod:`safestart.exact.space.start_box`.
     Raises ``InvalidInput`` for an UNDECIDED answer.
     """
     start = np.asarray(state, dtype=np.float64)
@@ -32,12 +35,17 @@ def proof_in_space(question: SpaceQuestion, state: Floats, answer: Answer) -> di
         "question": question_of(question),
         "start": {"frame": "lvlh", "position_m": start[:3].tolist(), "velocity_m_s": start[3:].tolist()},
     }
+    if half is not None:
+        document["start"] |= {
+            "position_half_width_m": half[:3].tolist(),
+            "velocity_half_width_m_s": half[3:].tolist(),
+        }
     if answer.verdict is Verdict.GO and answer.thrust is not None:
         document["margin_m"] = max(answer.lower - GO_STAND_BACK_M, 0.5 * answer.lower)
         document["thrust_m_s2" if question.thrust.kind == "ball" else "throttle"] = answer.thrust.tolist()
     elif answer.verdict is Verdict.NO_GO:
         document["margin_m"] = min(answer.upper + NO_GO_STAND_BACK_M, 0.5 * answer.upper)
-        document["multipliers"] = [multiplier_of(row, question.latest) for row in answer.multipliers]
+        document |= refuted_by(answer, question.latest, free=question.goal is not None)
     else:
         raise invalid("answer", "a GO or NO_GO", answer.verdict.value)
     document["digest"] = digest_of(document)
@@ -53,7 +61,7 @@ def question_of(question: SpaceQuestion) -> dict[str, Any]:
     if limit.kind == "thrusters":
         thrust["directions"] = [[float(e) for e in direction] for direction in limit.directions]
     return {
-        "kind": "stay",
+        "kind": question.kind,
         "dt_s": float(question.dt),
         "steps": question.steps,
         "orbit": {
@@ -72,6 +80,7 @@ def question_of(question: SpaceQuestion) -> dict[str, Any]:
             for face in question.faces
         ],
         "thrust": thrust,
+        **limits_of(question.goal, (question.goal and question.goal.hold) or (), question.speed_limit),
     }
 
 

@@ -1,4 +1,5 @@
-"""The question `stay` in space: a thrust history that keeps every face's distance positive at all times of [0, T]?
+"""The questions in space: a thrust history that keeps every face's distance positive at all times of [0, T], and
+brings the chaser to rest against the turning body at T where it is asked to?
 
 Faces are half-spaces normal . p <= offset, fixed in the turning body or in LVLH. The motion is linear, the attitude a
 known function of time and the set of thrusts convex, so the largest margin is a convex problem, as for the planar
@@ -11,6 +12,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
@@ -24,7 +26,8 @@ from safestart.dynamics.cwh import Cwh
 from safestart.dynamics.motion import RelativeMotion
 from safestart.dynamics.yamanaka_ankersen import YamanakaAnkersen
 from safestart.errors import invalid
-from safestart.exact.question import MAX_STEPS, MAX_TIME
+from safestart.exact.limits import AT_END, SPEED
+from safestart.exact.question import MAX_STEPS, MAX_TIME, Goal
 from safestart.model.orbit import KeplerOrbit
 from safestart.model.scenario import MAX_RANGE, CorridorShape, Floats, number
 from safestart.optim.thrust_shapes import BALL, CUBE, SIMPLEX, UnitSet
@@ -49,6 +52,10 @@ class SpaceQuestion:
 
     Faces: 1 to 32 with different names and nonzero normals; the faces of each frame have a point in common. A table of
     attitudes reaches the horizon.
+
+    ``goal`` makes it `synchronize`: at T, any number of intervals from ``goal.earliest`` to ``steps``, the chaser is at
+    rest against the turning body in a ball around ``goal.hold`` (body frame, m). ``speed_limit`` (m/s) holds for the
+    LVLH velocity at all times.
     """
 
     orbit: KeplerOrbit
@@ -57,9 +64,9 @@ class SpaceQuestion:
     thrust: ThrustLimit
     dt: float = 2.0
     steps: int = 30
+    goal: Goal | None = None
+    speed_limit: float | None = None
     dimensions: ClassVar[int] = 3
-    goal: ClassVar[None] = None
-    speed_limit: ClassVar[None] = None
 
     def __post_init__(self) -> None:
         number("dt", self.dt, 0.0, MAX_TIME, open_low=True)
@@ -71,11 +78,28 @@ class SpaceQuestion:
             raise invalid("steps", f"an integer in [1, {MAX_STEPS}]", self.steps)
         number("horizon", self.steps * self.dt, 0.0, MAX_TIME, open_low=True)
         _check_faces(self.faces)
+        if self.speed_limit is not None:
+            number("speed_limit", self.speed_limit, 1e-3, 1000.0)
+        if self.goal is not None:
+            _check_goal(self.goal, self.faces, self.steps)
+        norms = (AT_END if self.goal is not None else ()) + ((SPEED,) if self.speed_limit is not None else ())
+        if any(face.name in norms for face in self.faces):
+            raise invalid("faces", f"names other than {', '.join(norms)}", [face.name for face in self.faces])
         inner = self.attitude.inertial if isinstance(self.attitude, InLvlh) else self.attitude
         if isinstance(self.attitude, InLvlh) and self.attitude.orbit != self.orbit:
             raise invalid("attitude", "one seen from LVLH on the question's orbit", "another orbit")
         if isinstance(inner, Table):
             inner.reaches(self.horizon)
+
+    @property
+    def kind(self) -> str:
+        """``stay`` or ``synchronize``."""
+        return "stay" if self.goal is None else "synchronize"
+
+    @property
+    def plain(self) -> bool:
+        """Whether this is `stay` without a speed limit, so that only faces count."""
+        return self.goal is None and self.speed_limit is None
 
     @property
     def motion(self) -> RelativeMotion:
@@ -145,7 +169,20 @@ def five_faces(shape: CorridorShape, axis: Vector = (0.0, 1.0, 0.0)) -> tuple[Fa
     return tuple(out)
 
 
-def _check_faces(faces: Sequence[Face]) -> None:
+def _check_goal(goal: Goal, faces: Sequence[Face], steps: int) -> None:
+    number("earliest", goal.earliest, 1, steps)
+    hold = goal.hold
+    if hold is None or len(hold) != 3 or not all(map(math.isfinite, hold)):
+        raise invalid("hold", "three numbers: a point of the body frame", hold)
+    outside = [
+        face.name for face in faces if face.frame == "body" and np.dot(face.normal, hold) > face.offset
+    ]
+    if outside:
+        raise invalid("hold", f"a point inside the faces {', '.join(outside)}", hold)
+
+
+@lru_cache(maxsize=64)
+def _check_faces(faces: tuple[Face, ...]) -> None:
     if not 1 <= len(faces) <= MOST_FACES:
         raise invalid("faces", f"1 to {MOST_FACES} faces", len(faces))
     names = [face.name for face in faces]

@@ -8,13 +8,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from copy import copy
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
 
 from safestart.constraints.cubic import dips
-from safestart.exact.norm_rows import Blocks
-from safestart.exact.space.bends import bend_of
+from safestart.exact import speed
+from safestart.exact.limits import AT_END, Limit
+from safestart.exact.norm_rows import Blocks, stacked
+from safestart.exact.space.bends import of_distance, of_speed, rates_of
+from safestart.exact.space.limits import limit_at, speed_room
 from safestart.exact.space.question import SpaceQuestion
 from safestart.exact.watch import Cuts, Ints, Minima
 from safestart.model.scenario import Floats
@@ -32,11 +37,12 @@ class SpaceWatch:
     in m/s^2, else points of the unit set.
     """
 
-    rounding = 1e-12
-    """The attitude's formulas lose one digit more than a planar turn."""
-
     def __init__(self, question: SpaceQuestion) -> None:
         self.question = question
+        # The attitude's formulas lose one digit more than a planar turn; the end's speed grows with the turn's.
+        self.rounding = 1e-12
+        if question.goal is not None:
+            self.rounding *= 1.0 + question.goal.scale * question.attitude.rate_bounds()[0]
         faces = question.faces
         given = np.array([face.normal for face in faces])
         lengths = np.sqrt(np.square(given).sum(axis=1))
@@ -73,6 +79,8 @@ class SpaceWatch:
             intervals.append(np.full(len(own), k))
         tau, self._interval = np.concatenate(taus), np.concatenate(intervals)
         times = question.dt * self._interval + tau
+        if question.speed_limit is not None:
+            self._pulls = question.orbit.pulls(times)
         segments = np.nonzero(self._interval[1:] == self._interval[:-1])[0]
         self._first, self._last = segments, segments + 1
         self._length = (tau[1:] - tau[:-1])[segments]
@@ -83,6 +91,25 @@ class SpaceWatch:
         self._slope_first, self._slope_last = slopes[self._first], slopes[self._last]
         if len(knots):
             self._slope_last = self._turning(times, np.nextafter(times, -np.inf))[self._last]
+
+    def until(self, steps: int) -> SpaceWatch:
+        """The watch of the same question with T at ``steps`` intervals, at most its own: views of the same tables."""
+        out = copy(self)
+        goal = self.question.goal and replace(self.question.goal, earliest=1)
+        out.question = replace(self.question, steps=steps, goal=goal)
+        out.prediction = self.prediction.until(steps)
+        points = int(np.searchsorted(self._interval, steps))
+        segments = int(np.searchsorted(self._last, points))
+        for name in ("_interval", "_phi", "_held", "_normals"):
+            setattr(out, name, getattr(self, name)[:points])
+        for name in ("_first", "_last", "_length", "_begin", "_slope_first", "_slope_last"):
+            setattr(out, name, getattr(self, name)[:segments])
+        if self.question.speed_limit is not None:
+            w, change, tide = self._pulls
+            out._pulls = w[:points], change[:points], tide[:points]
+        if self._pushes is not None:
+            out._pushes = self._pushes[:steps]
+        return out
 
     def _tables(self, tau: Floats, times: Floats) -> tuple[Floats, Floats]:
         """Transition (P, 6, 6) and held thrust (P, 6, 3) from each point's node to the point."""
@@ -134,9 +161,16 @@ class SpaceWatch:
         closing = (self._normals @ velocity[:, :, None])[..., 0]
         begin = closing[self._first] + (self._slope_first @ position[self._first][:, :, None])[..., 0]
         end = closing[self._last] + (self._slope_last @ position[self._last][:, :, None])[..., 0]
-        span = -self._length[:, None]
+        span, push = self._length[:, None, None], self.accelerations(thrust)
         value = np.stack([distance[self._first], distance[self._last]], axis=1)
-        low, at = dips(value, np.stack([span * begin, span * end], axis=1))
+        slope = -span * np.stack([begin, end], axis=1)
+        limit = self.question.speed_limit
+        if limit is not None:
+            left, rate = speed_room(limit, self._pulls, flown, push[self._interval])
+            ends = np.stack([self._first, self._last], axis=1)
+            value = np.concatenate([value, left[ends][..., None]], axis=2)
+            slope = np.concatenate([slope, span * rate[ends][..., None]], axis=2)
+        low, at = dips(value, slope)
         low, at = low[:, 0], at[:, 0]
         fence = np.full((1, low.shape[1]), np.inf)
         before, after = np.concatenate([fence, low[:-1]]), np.concatenate([low[1:], fence])
@@ -144,10 +178,19 @@ class SpaceWatch:
         times = self._begin[index] + self._length[index] * at[index, face]
         furthest = math.sqrt(float(np.square(position).sum(axis=1).max()))
         fastest = math.sqrt(float(np.square(velocity).sum(axis=1).max()))
-        push = math.sqrt(float(np.square(self.accelerations(thrust)).sum(axis=1).max()))
+        most = math.sqrt(float(np.square(push).sum(axis=1).max()))
         turning = self._turn_bounds if self._in_body.any() else (0.0, 0.0, 0.0, 0.0)
-        bend = bend_of(self.question.orbit, turning, 0.5 * self._longest, furthest, fastest, push)
-        lowest = float(low.min()) - bend * self._longest**4 / 384.0
+        rates = rates_of(self.question.orbit, 0.5 * self._longest, furthest, fastest, most)
+        share = self._longest**4 / 384.0
+        lowest = float(low[:, : len(self.names)].min()) - of_distance(rates, turning) * share
+        if limit is not None:
+            slowest = float(low[:, -1].min()) - of_speed(rates) * share
+            lowest = min(lowest, float(speed.metres(limit, np.array(slowest))))
+            low[:, -1] = speed.metres(limit, low[:, -1])
+        if self.question.goal is not None:
+            lowest = min(
+                lowest, *(self._limit(name, self.question.horizon).left(flown[-1]) for name in AT_END)
+            )
         return Minima(lowest, np.minimum(times, self.question.horizon), face, low[index, face])
 
     def cuts(self, times: Floats, faces: Ints) -> Cuts:
@@ -158,15 +201,26 @@ class SpaceWatch:
             turn = self.question.attitude.rotation(times[body])
             directions[body] = (directions[body][:, None, :] @ turn)[:, 0]
         start, thrust = self.prediction.position_rows(times, directions)
-        if self._pushes is not None:
-            by_interval = thrust.reshape(len(times), self.question.steps, 3)
-            thrust = np.einsum("jka,kab->jkb", by_interval, self._pushes).reshape(len(times), -1)
-        return Cuts(times, faces, self.offsets[faces], start, thrust)
+        return Cuts(times, faces, self.offsets[faces], start, self._by_channels(thrust))
+
+    def _by_channels(self, thrust: Floats) -> Floats:
+        """Rows (..., N 3) over accelerations as rows (..., N channels) over points."""
+        if self._pushes is None:
+            return thrust
+        by_interval = thrust.reshape(-1, self.question.steps, 3)
+        found = np.einsum("jka,kab->jkb", by_interval, self._pushes)
+        out: Floats = found.reshape(*thrust.shape[:-1], self.question.steps * self.question.channels)
+        return out
+
+    def _limit(self, name: str, time: float) -> Limit:
+        question = self.question
+        return limit_at(question.attitude, question.goal, question.speed_limit, name, time)
 
     def blocks(self, names: Sequence[str], times: Floats) -> Blocks:
-        """None: the question has no norm limits."""
-        width = self.question.steps * self.question.channels
-        return Blocks(times, tuple(names), np.zeros((0, 4)), np.zeros((0, 4, 6)), np.zeros((0, 4, width)))
+        """Rows of the norm limits ``names`` (B) at ``times`` (B,)."""
+        limits = [self._limit(name, time) for name, time in zip(names, times.tolist(), strict=True)]
+        made = stacked(limits, self.prediction, names, times)
+        return replace(made, thrust=self._by_channels(made.thrust))
 
 
 @lru_cache(maxsize=16)

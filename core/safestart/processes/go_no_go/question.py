@@ -7,6 +7,7 @@ from dataclasses import replace
 from safestart.errors import InvalidInput, invalid
 from safestart.exact.answer import Answer, Verdict
 from safestart.exact.question import SPEED_SCALE, Goal, Question
+from safestart.exact.space.question import SpaceQuestion
 from safestart.processes.go_no_go.spec import GoNoGoInputs
 from safestart.processes.wire import DT_S
 
@@ -45,12 +46,13 @@ def with_arrival(question: Question, answers: list[Answer]) -> list[Answer]:
 
 def sentence(question: Question, answer: Answer) -> str:
     """The verdict in words."""
-    return _told(question, answer) + (
+    return told(question, answer) + (
         "; the hold plane implies the keep-out radius" if question.keep_out > 0.0 else ""
     )
 
 
-def _told(question: Question, answer: Answer) -> str:
+def told(question: Question | SpaceQuestion, answer: Answer) -> str:
+    """The verdict in words, without the keep-out radius."""
     if answer.verdict is Verdict.UNDECIDED:
         return f"undecided: {answer.reason}; margin between {answer.lower:.3g} and {answer.upper:.3g} m"
     span, spare, short = question.horizon, f"{answer.lower:.2f} m", f"{-answer.upper:.2f} m"

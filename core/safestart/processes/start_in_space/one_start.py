@@ -9,9 +9,10 @@ from pydantic import Field
 
 from safestart.processes.base import WireModel
 from safestart.processes.flat import Flat, Parameter
+from safestart.processes.go_no_go.question_fields import QuestionKind
 from safestart.processes.sharding import load
 from safestart.processes.start_in_space.parts import FiveFaces, SpaceStart
-from safestart.processes.start_in_space.spec import SPEC, SpaceInputs, SpaceOutputs
+from safestart.processes.start_in_space.spec import SPEC, SpaceFlight, SpaceInputs, SpaceOutputs
 from safestart.runtime.progress import Context
 
 _WHOLE = Flat(SpaceInputs, {"starts": SpaceStart})
@@ -20,7 +21,7 @@ PARAMETERS: dict[str, Parameter] = _WHOLE.parameters | _FIVE.parameters
 """Flat names; the five faces come as their own parameters or, like any others, as the JSON of ``corridor``."""
 _ARRAYS = (
     *("verdict", "margin_m", "model_error_m", "violated_faces", "position_m", "velocity_m_s"),
-    *("reason", "proof"),
+    *("reason", "end_s", "flight", "proof"),
 )
 
 
@@ -35,6 +36,8 @@ class SpaceAnswer(WireModel):
     position_m: list[float] = Field(description="The start, LVLH, m.")
     velocity_m_s: list[float] = Field(description="The start, LVLH, m/s.")
     faces: list[str] = Field(description="Names of the faces.")
+    end_s: float | None = Field(description="When the flight of a GO ends (synchronize), s.")
+    flight: SpaceFlight | None = Field(None, description="The flight of a GO (flights=true).")
     proof: dict[str, Any] | None = Field(
         None, description="Proof document for `safestart verify`, if requested."
     )
@@ -42,7 +45,7 @@ class SpaceAnswer(WireModel):
         None, description="Where a service gives the proof document alone; null for UNDECIDED."
     )
     method: Literal["exact", "auto"]
-    question: Literal["stay"]
+    question: QuestionKind
 
 
 def parse(values: Mapping[str, Any]) -> SpaceInputs:

@@ -14,6 +14,7 @@ from safestart.attitude.table import Table
 from safestart.attitude.turning import SmoothAttitude
 from safestart.constraints.thrust_limit import ThrustLimit, ball
 from safestart.errors import InvalidInput, invalid
+from safestart.exact.question import Goal
 from safestart.exact.space.question import Face, SpaceQuestion, five_faces, starts_in_lvlh
 from safestart.model.orbit import KeplerOrbit
 from safestart.model.scenario import Floats
@@ -64,13 +65,19 @@ def question_of(inputs: SpaceInputs) -> SpaceQuestion:
         attitude = _attitude(inputs, orbit)
     with _named("thrust", _THRUST):
         thrust = _thrust(inputs)
+    goal, span = None, inputs.horizon_s
+    if inputs.question == "synchronize":
+        goal, span = Goal(inputs.ball_radius_m, inputs.rest_speed_m_s, _hold(inputs)), inputs.within_s
     try:
-        return SpaceQuestion(orbit, attitude, _faces(inputs), thrust, DT_S, round(inputs.horizon_s / DT_S))
+        return SpaceQuestion(
+            orbit, attitude, _faces(inputs), thrust, DT_S, round(span / DT_S), goal, inputs.speed_limit_m_s
+        )
     except InvalidInput as error:
         places = {
             "faces": "corridor.faces",
             "normal": "corridor.faces.normal",
             "offset": "corridor.faces.offset_m",
+            "hold": "hold_m",
         }
         field = str(error.field)
         place = "attitude.times_s" if field == "times" else places.get(field, field)
@@ -137,6 +144,26 @@ def _faces(inputs: SpaceInputs) -> tuple[Face, ...]:
         return tuple(Face(e.name, _three(e.normal), e.offset_m, e.frame) for e in said.faces)
     with _named("corridor", {}):
         return five_faces(said.shape(), _three(said.axis))
+
+
+def _hold(inputs: SpaceInputs) -> tuple[float, float, float] | None:
+    if inputs.hold_m is not None:
+        return _three(inputs.hold_m)
+    if isinstance(inputs.corridor, Faces):
+        raise invalid("hold_m", "the hold point where the corridor is given by faces", None)
+    plane = _faces(inputs)[0]
+    length, away = math.hypot(*inputs.corridor.axis), inputs.corridor.r_h_m
+    hold = _three([away * e / length for e in inputs.corridor.axis])
+    if float(np.dot(plane.normal, hold)) > plane.offset:
+        # Rounding of the turned normal put it outside: a hair further.
+        hold = _three([(1.0 + 1e-12) * e for e in hold])
+    return hold
+
+
+def half_of(inputs: SpaceInputs) -> Floats | None:
+    """Half-widths (6,) of the box of starts, m and m/s; None where the starts are known."""
+    half = np.repeat([inputs.position_half_width_m, inputs.velocity_half_width_m_s], 3)
+    return half if half.any() else None
 
 
 def _thrust(inputs: SpaceInputs) -> ThrustLimit:

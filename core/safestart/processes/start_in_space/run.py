@@ -10,9 +10,13 @@ from safestart.exact.space.decide import decide_in_space
 from safestart.exact.space.model_error import model_error
 from safestart.exact.space.prove import proof_in_space
 from safestart.exact.space.question import SpaceQuestion
+from safestart.exact.space.start_box import decide_from_box
 from safestart.exact.space.watch import space_watch_of
+from safestart.model.scenario import Floats
 from safestart.processes.base import ProcessOutput
-from safestart.processes.start_in_space.question import question_of, states_of
+from safestart.processes.go_no_go import question as asked
+from safestart.processes.start_in_space.flights import curves
+from safestart.processes.start_in_space.question import half_of, question_of, states_of
 from safestart.processes.start_in_space.spec import MOST_PROOFS, SpaceInputs
 from safestart.processes.wire import finite
 from safestart.runtime.progress import Context
@@ -20,27 +24,33 @@ from safestart.runtime.progress import Context
 
 def run(inputs: SpaceInputs, context: Context) -> ProcessOutput:
     """Answer for every start."""
-    if inputs.proofs and len(inputs.starts) > MOST_PROOFS:
-        raise invalid("proofs", f"at most {MOST_PROOFS} starts", len(inputs.starts))
+    for name in ("proofs", "flights"):
+        if getattr(inputs, name) and len(inputs.starts) > MOST_PROOFS:
+            raise invalid(name, f"at most {MOST_PROOFS} starts", len(inputs.starts))
     question = question_of(inputs)
     states = states_of(inputs, question)
+    half = half_of(inputs)
+    if half is not None and not question.plain:
+        raise invalid("question", "stay without a speed limit where half-widths are given", question.kind)
     watch = space_watch_of(question)
     answers = []
     for k, state in enumerate(states):
-        answers.append(decide_in_space(question, state))
+        answers.append(
+            decide_in_space(question, state) if half is None else decide_from_box(question, state, half)
+        )
         context.step(k + 1, len(states), "starts")
     errors = [model_error(question, state) for state in states]
     distances = (watch.offsets - states[:, :3] @ watch.normals.T).tolist()
     proof: list[dict[str, Any] | None] | None = None
     if inputs.proofs:
         proof = [
-            None if answer.verdict is Verdict.UNDECIDED else proof_in_space(question, state, answer)
+            None if answer.verdict is Verdict.UNDECIDED else proof_in_space(question, state, answer, half)
             for state, answer in zip(states, answers, strict=True)
         ]
     return ProcessOutput(
         {
             "method": inputs.method,
-            "question": "stay",
+            "question": question.kind,
             "faces": list(watch.names),
             "verdict": [answer.verdict.value for answer in answers],
             "margin_m": [finite(answer.margin_m) for answer in answers],
@@ -52,24 +62,44 @@ def run(inputs: SpaceInputs, context: Context) -> ProcessOutput:
             "position_m": states[:, :3].tolist(),
             "velocity_m_s": states[:, 3:].tolist(),
             "reason": [
-                _sentence(question, answer, error) for answer, error in zip(answers, errors, strict=True)
+                _sentence(question, half, answer, error)
+                for answer, error in zip(answers, errors, strict=True)
             ],
+            "end_s": [_end(question, answer) for answer in answers] if question.goal else None,
+            "flight": [
+                None
+                if answer.verdict is not Verdict.GO or answer.thrust is None
+                else curves(question, state, answer.thrust)
+                for state, answer in zip(states, answers, strict=True)
+            ]
+            if inputs.flights
+            else None,
             "proof": proof,
         }
     )
 
 
-def _sentence(question: SpaceQuestion, answer: Answer, error: float) -> str:
+def _end(question: SpaceQuestion, answer: Answer) -> float | None:
+    if answer.verdict is not Verdict.GO or answer.thrust is None:
+        return None
+    return len(answer.thrust) * question.dt
+
+
+def _sentence(question: SpaceQuestion, half: Floats | None, answer: Answer, error: float) -> str:
     """The verdict in words, with a warning where the linear model's own error may be larger than the margin."""
+    told = asked.told(question, answer) if half is None else _from_box(question, answer)
     if abs(answer.margin_m) < error:
-        return f"{_told(question, answer)}; the linear model itself may be off by about {error:.2g} m"
-    return _told(question, answer)
+        return f"{told}; the linear model itself may be off by about {error:.2g} m"
+    return told
 
 
-def _told(question: SpaceQuestion, answer: Answer) -> str:
+def _from_box(question: SpaceQuestion, answer: Answer) -> str:
     span = question.horizon
     if answer.verdict is Verdict.UNDECIDED:
-        return f"undecided: {answer.reason}; margin between {answer.lower:.3g} and {answer.upper:.3g} m"
+        return f"undecided: {answer.reason}"
     if answer.verdict is Verdict.GO:
-        return f"a thrust history keeps {answer.lower:.2f} m to every face for {span:g} s"
-    return f"no thrust history stays for {span:g} s: each is at some time at least {-answer.upper:.2f} m outside a face"
+        return f"one thrust history keeps {answer.lower:.2f} m to every face for {span:g} s, from all starts of the box"
+    return (
+        f"from no start of the box any thrust history stays for {span:g} s: each is at some time at least "
+        f"{-answer.upper:.2f} m outside a face"
+    )

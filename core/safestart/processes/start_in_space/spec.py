@@ -9,6 +9,8 @@ from pydantic import Field
 from safestart.model.scenario import MAX_ACCELERATION, MAX_MEAN_MOTION, MIN_ACCELERATION
 from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.costs import FIRST_S, program_s
+from safestart.processes.go_no_go.question_fields import QuestionKind
+from safestart.processes.start_in_space.missions import MISSIONS
 from safestart.processes.start_in_space.parts import (
     AttitudeInput,
     CorridorChoice,
@@ -16,9 +18,10 @@ from safestart.processes.start_in_space.parts import (
     OrbitInput,
     SpaceStart,
     ThrustInput,
+    Vector,
 )
 from safestart.processes.views import Column, Facts, Findings, Layer, Picture
-from safestart.processes.wire import Horizon
+from safestart.processes.wire import Horizon, Triple
 
 MOST_STARTS = 1000
 MOST_PROOFS = 100
@@ -60,40 +63,103 @@ class SpaceInputs(WireModel):
     method: Literal["exact", "auto"] = Field(
         "exact", description="Cone programs, proved either way; both the same."
     )
+    question: QuestionKind = Field(
+        "stay",
+        description="stay: inside all faces at all times of horizon_s. synchronize: in addition at rest against the "
+        "turning body inside a ball around the hold point at the end, at some time up to within_s; what comes after is "
+        "not asked.",
+    )
     horizon_s: Horizon = Field(60.0, description="How long to stay, s.")
+    within_s: Horizon = Field(200.0, description="Latest end of synchronize, s.")
+    hold_m: Vector | None = Field(
+        None,
+        description="Hold point, body frame, m; absent: on the axis of the five faces, at the hold radius.",
+    )
+    ball_radius_m: float = Field(0.5, ge=0.001, le=1000, description="Ball around the hold point, m.")
+    rest_speed_m_s: float = Field(
+        0.05,
+        ge=1e-4,
+        le=100,
+        description="Largest speed against the turning body that counts as at rest, m/s.",
+    )
+    speed_limit_m_s: float | None = Field(
+        None, ge=0.001, le=1000, description="Largest LVLH speed at all times, m/s; absent: none."
+    )
+    position_half_width_m: float = Field(
+        0.0,
+        ge=0,
+        le=1000,
+        description="Half-width of a box of starts along the LVLH axes, m (stay): GO is one thrust history for all of "
+        "them, NO_GO none for any.",
+    )
+    velocity_half_width_m_s: float = Field(
+        0.0, ge=0, le=10, description="Half-width of the box in velocity, m/s (stay)."
+    )
+    flights: bool = Field(False, description="Return the flight of every GO as curves; at most 100 starts.")
     proofs: bool = Field(
         False, description="Return proof documents for `safestart verify`; at most 100 starts."
     )
+
+
+class SpaceFlight(WireModel):
+    """Curves over ``time_s``, four instants for each 2 s; vectors as rows."""
+
+    time_s: list[float]
+    lvlh_m: list[list[float]] = Field(description="Position in LVLH, m.")
+    lvlh_m_s: list[list[float]] = Field(description="Velocity in LVLH, m/s.")
+    body_m: list[list[float]] = Field(description="Position in the body frame, m.")
+    body_m_s: list[list[float]] = Field(description="Velocity against the turning body, in its axes, m/s.")
+    attitude_wxyz: list[list[float]] = Field(description="From LVLH to the body, scalar first.")
+    thrust_m_s2: list[list[float]] = Field(description="Acceleration in LVLH, held over 2 s, m/s^2.")
+    distance_m: list[list[float]] = Field(description="Distance to each face, m; negative: outside.")
+    delta_v_m_s: float
 
 
 class SpaceOutputs(WireModel):
     """Arrays over the starts, in their order; margins in metres."""
 
     method: Literal["exact", "auto"]
-    question: Literal["stay"]
+    question: QuestionKind
     faces: list[str] = Field(description="Names of the faces.")
     verdict: list[Literal["GO", "NO_GO", "UNDECIDED"]]
     margin_m: list[float | None] = Field(
-        description="Proved bound on the margin (distance to every face), m: from below for GO, from above for NO_GO."
+        description="Proved bound on the margin (distance to every face; limits in metres, see docs), m: from below "
+        "for GO, from above for NO_GO."
     )
     model_error_m: list[float] = Field(
         description="Estimate of what two bodies with J2 would change over the horizon, m; where it exceeds the "
         "margin, the reason says so."
     )
     violated_faces: list[list[str]] = Field(description="Faces that the start itself is outside of.")
-    position_m: list[list[float]] = Field(description="Starts, LVLH, m.")
-    velocity_m_s: list[list[float]] = Field(description="Starts, LVLH, m/s.")
+    position_m: list[Triple] = Field(description="Starts, LVLH, m.")
+    velocity_m_s: list[Triple] = Field(description="Starts, LVLH, m/s.")
     reason: list[str] = Field(description="The verdict in a sentence.")
+    end_s: list[float | None] | None = Field(
+        None,
+        description="When the flight of a GO is at rest in the hold ball (synchronize), s; null for the others.",
+    )
+    flight: list[SpaceFlight | None] | None = Field(
+        None, description="The flights of the GOs, when asked for; null for the others."
+    )
     proof: list[dict[str, Any] | None] | None = Field(
         None, description="Proof documents for `safestart verify`, when asked for; null for UNDECIDED."
     )
+
+
+def _cost(inputs: SpaceInputs) -> float:
+    synchronize = inputs.question == "synchronize"
+    one = 3.0 * program_s(inputs.within_s if synchronize else inputs.horizon_s)
+    if inputs.position_half_width_m or inputs.velocity_half_width_m_s:
+        one *= 10.0
+    return FIRST_S + (4.0 if synchronize else 1.0) * one * len(inputs.starts)
 
 
 SPEC = ProcessSpec(
     id="start-in-space",
     title="Go/no-go for any start, tumble, orbit and corridor",
     description=(
-        "Whether any thrust history keeps the chaser inside the faces at all times of the horizon: proved either way "
+        "Whether any thrust history keeps the chaser inside the faces at all times of the horizon, and brings it to "
+        "rest against the turning body at the end where asked to: proved either way "
         "for any start, a spin, a torque-free body or a table of attitudes, a circular or an elliptic orbit, faces in "
         "the body frame or LVLH, and thrust from a ball, a box or thrusters. The motion is linear in the distance."
     ),
@@ -101,7 +167,7 @@ SPEC = ProcessSpec(
     outputs=SpaceOutputs,
     run="safestart.processes.start_in_space.run:run",
     light=True,
-    cost=lambda inputs: FIRST_S + 3.0 * program_s(inputs.horizon_s) * len(inputs.starts),
+    cost=_cost,
     states="starts",
     tables=(
         Table(
@@ -114,6 +180,7 @@ SPEC = ProcessSpec(
                 "velocity_m_s",
                 "violated_faces",
                 "reason",
+                "end_s",
             ),
         ),
     ),
@@ -127,6 +194,7 @@ SPEC = ProcessSpec(
                 Column("error of the model [m]", "model_error_m"),
                 Column("why", "reason"),
                 Column("faces violated at the start", "violated_faces"),
+                Column("at rest after [s]", "end_s"),
             ),
         ),
         Facts((Column("Method", "method"), Column("Question", "question"), Column("Faces", "faces"))),
@@ -149,6 +217,7 @@ SPEC = ProcessSpec(
         ),
     ),
     keywords=("certificate", "go/no-go", "torque-free", "elliptic orbit"),
+    extensions={"safestart:examples": MISSIONS},
     example={
         "starts": [{"position_m": [2, 25, 1], "velocity_m_s": [0, 0, 0], "frame": "body"}],
         "attitude": {

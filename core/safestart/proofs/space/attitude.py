@@ -16,8 +16,9 @@ from typing import NamedTuple
 from flint import arb, arb_mat, arb_poly, fmpq
 
 from safestart.proofs.space.orbit import Orbit
+from safestart.proofs.space.parts import Attitude
 from safestart.proofs.space.series import Series, folded, picard, rest
-from safestart.proofs.space.statement import Attitude, SpaceStated
+from safestart.proofs.space.statement import SpaceStated
 from safestart.proofs.strict import ProofRejected
 
 _ORDER, _SHARE, _MOST = 22, 16.0, 50_000
@@ -25,18 +26,19 @@ Matrix = list[list[arb_poly]]
 
 
 class Piece(NamedTuple):
-    """C over [begin, begin + length] s."""
+    """C over [begin, begin + length] s; ``spin`` is the rate of what C turns against at its end, rad/s, body axes."""
 
     begin: fmpq
     length: fmpq
     turn: Matrix
+    spin: list[arb]
 
 
 class Course:
     """The attitude over all intervals of a statement."""
 
     def __init__(self, stated: SpaceStated, orbit: Orbit) -> None:
-        self.dt, self.orbit = stated.dt, orbit
+        self.dt, self.orbit, self._inertial = stated.dt, orbit, stated.attitude.inertial
         made = {"spin": _spun, "table": _tabulated, "torque_free": _free}[stated.attitude.kind]
         inertial = stated.attitude.inertial
         self.pieces: list[list[Piece]] = []
@@ -64,6 +66,15 @@ class Course:
                 break
         x = arb((time - piece.begin) / piece.length)
         return arb_mat(3, 3, [p(x) for row in piece.turn for p in row])
+
+    def end(self, k: int) -> tuple[arb_mat, list[arb]]:
+        """C (3, 3) at the end of interval k, and the body's rate against LVLH just before, rad/s, body axes."""
+        piece, time = self.pieces[k][-1], self.dt * (k + 1)
+        turn = arb_mat(3, 3, [p(arb(1)) for row in piece.turn for p in row])
+        if not self._inertial:
+            return turn, piece.spin
+        pace = self.orbit.rate_at(time)
+        return turn, [piece.spin[i] - pace * turn[i, 2] for i in range(3)]
 
 
 def _marks(
@@ -115,7 +126,12 @@ def _spun(stated: SpaceStated, orbit: Orbit) -> Iterator[list[Piece]]:
     axis, rate = _unit(said.axis), arb(said.rate)
     for k in range(stated.steps):
         yield [
-            Piece(begin, length, _rodrigues(axis, arb(said.phase) + rate * arb(begin), rate, length))
+            Piece(
+                begin,
+                length,
+                _rodrigues(axis, arb(said.phase) + rate * arb(begin), rate, length),
+                [rate * e for e in axis],
+            )
             for begin, length in _marks(stated, k, orbit, abs(float(rate)), [])
         ]
 
@@ -152,7 +168,7 @@ def _tabulated(stated: SpaceStated, orbit: Orbit) -> Iterator[list[Piece]]:
                 index += 1
             axis, rate, first = turns[index]
             turn = _rodrigues(axis, rate * arb(begin - times[index]), rate, length)
-            out.append(Piece(begin, length, _times_exact(turn, first)))
+            out.append(Piece(begin, length, _times_exact(turn, first), [rate * e for e in axis]))
         yield out
 
 
@@ -190,7 +206,7 @@ def _free(stated: SpaceStated, orbit: Orbit) -> Iterator[list[Piece]]:
         for begin, length in _marks(stated, k, orbit, 4.0 * float(body.quick.upper()) * speed, []):
             flown = body.flown(state, length)
             state = [p(arb(1)) for p in flown]
-            out.append(Piece(begin, length, [flown[3:6], flown[6:9], flown[9:12]]))
+            out.append(Piece(begin, length, [flown[3:6], flown[6:9], flown[9:12]], state[:3]))
         yield out
 
 

@@ -1,4 +1,4 @@
-"""The checker of proofs in space: the thrust history flown, or the multipliers summed, in ball arithmetic."""
+"""The checker of proofs in space: the thrust history flown in ball arithmetic; ``refute.py`` sums multipliers."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from flint import arb, arb_mat, arb_poly, fmpq
 
 from safestart.proofs.single import Verified
 from safestart.proofs.space.attitude import Course, Piece
-from safestart.proofs.space.motion import Held, Motion, Stretch
+from safestart.proofs.space.motion import Motion, Stretch
 from safestart.proofs.space.orbit import Orbit
+from safestart.proofs.space.refute import Refutation
 from safestart.proofs.space.series import Series, between, fresh_budget, pieces_of, require_positive
 from safestart.proofs.space.statement import SpaceStated, read
 from safestart.proofs.space.wording import lines
@@ -25,23 +26,32 @@ def check(document: Any) -> Verified:
     with precise(_PRECISION):
         orbit = Orbit(stated.mean_motion, stated.eccentricity, stated.true_anomaly)
         course, motion = Course(stated, orbit), Motion(orbit, stated.dt)
+        pieces = 0
         if stated.verdict == "GO":
             pieces = _fly(stated, course, motion)
         else:
-            pieces = 0
-            _refute(stated, course, motion)
+            Refutation(stated, course, motion).check()
     return Verified(stated.verdict, float(document["margin_m"]), pieces, lines(stated))
 
 
 def _fly(stated: SpaceStated, course: Course, motion: Motion) -> int:
-    """Every thrust can be had and every distance is >= the claim > 0 at all times; the number of pieces it took."""
-    state, budget = [arb(e) for e in stated.start], fresh_budget()
+    """Every thrust can be had and every margin is >= the claim > 0 at all times; the number of pieces it took.
+
+    From a box of starts: the middle flown, and beside it how the state moves with each number of the start.
+    """
+    wide = [i for i in range(6) if stated.half[i] > 0]
+    columns = [[arb(e) for e in stated.start]]
+    columns += [[arb(stated.half[i]) if i == j else arb(0) for j in range(6)] for i in wide]
+    still, budget = [[arb(0)] * 3] * len(wide), fresh_budget()
     for k, entry in enumerate(stated.history):
-        push = _push(stated, course, k, entry)
-        stretches = motion.over(k, [state], [push])
+        stretches = motion.over(k, columns, [_push(stated, course, k, entry), *still])
         for piece in course.pieces[k]:
             _keeps(stated, piece, stretches, stated.dt * k, budget)
-        state = [p(arb(1)) for p in stretches[-1].flown[0]]
+        if stated.limits.most is not None:
+            _holds_back(stated, stretches, stated.dt * k, budget)
+        columns = [[p(arb(1)) for p in each] for each in stretches[-1].flown]
+    if stated.limits.hold is not None:
+        _ends(stated, course, columns[0])
     return pieces_of(budget)
 
 
@@ -82,19 +92,20 @@ def _keeps(
         last = min(piece.begin + piece.length, begin + stretch.begin + stretch.length)
         if first >= last:
             continue
-        position = [
-            between(
-                p, arb((first - begin - stretch.begin) / stretch.length), arb((last - first) / stretch.length)
-            )
-            for p in stretch.flown[0][:3]
-        ]
-        body = _in_body(piece, position, first, last)
+        start, width = (
+            arb((first - begin - stretch.begin) / stretch.length),
+            arb((last - first) / stretch.length),
+        )
+        flown = [[between(p, start, width) for p in each[:3]] for each in stretch.flown]
+        body = [_in_body(piece, position, first, last) for position in flown]
         for name, face in stated.faces.items():
-            at = body if face.frame == "body" else position
             length = arb(sum((e * e for e in face.normal), fmpq(0))).sqrt()
-            used = sum((arb(e) * p for e, p in zip(face.normal, at, strict=True)), arb_poly([0]))
-            room = (arb(face.offset) - used) * (1 / length) - claim
-            require_positive(room, name, first, last - first, budget)
+            along = [
+                sum((arb(e) * p for e, p in zip(face.normal, at, strict=True)), arb_poly([0])) * (1 / length)
+                for at in (body if face.frame == "body" else flown)
+            ]
+            room = arb(face.offset) / length - along[0] - claim
+            require_positive(room, f"distance to {name}", first, last - first, budget, along[1:])
 
 
 def _in_body(piece: Piece, position: Series, first: fmpq, last: fmpq) -> Series:
@@ -108,52 +119,35 @@ def _in_body(piece: Piece, position: Series, first: fmpq, last: fmpq) -> Series:
     return out
 
 
-def _refute(stated: SpaceStated, course: Course, motion: Motion) -> None:
-    """Weighted distances whose sum no thrust history brings above the claim < 0."""
-    total = bound = arb(0)
-    sorted_in: dict[int, list[tuple[fmpq, arb_mat]]] = {}
-    for time, name, value in stated.weights:
-        face = stated.faces[name]
-        share = arb(value) / arb(sum((e * e for e in face.normal), fmpq(0))).sqrt()
-        normal = arb_mat(1, 3, [share * arb(e) for e in face.normal])
-        if face.frame == "body":
-            normal = normal * course.at(time)
-        k = min(int((time / stated.dt).floor()), stated.steps - 1)
-        covector = arb_mat(1, 6, [-normal[0, i] for i in range(3)] + [arb(0)] * 3)
-        sorted_in.setdefault(k, []).append((time - stated.dt * k, covector))
-        total, bound = total + arb(value), bound + share * arb(face.offset)
-    carried = arb_mat(1, 6)
-    for k in reversed(range(max(sorted_in) + 1)):
-        held = Held(motion, k)
-        phi, push = held.at(stated.dt)
-        pull, carried = carried * push, carried * phi
-        for s, covector in sorted_in.get(k, []):
-            phi, push = held.at(s)
-            pull, carried = pull + covector * push, carried + covector * phi
-        bound += _most(stated, course, k, pull)
-    bound += (carried * arb_mat(6, 1, [arb(e) for e in stated.start]))[0, 0]
-    claim = arb(stated.claim)
-    if not (total > 0 and bound < 0 and bound <= claim * total and claim < 0):
-        raise ProofRejected(
-            "sum of weighted distances <= margin_m < 0 for every thrust: the bound is "
-            f"{float(bound):.9g} m over weights {float(total):.9g}, the claim {float(claim):.9g} m"
+def _holds_back(stated: SpaceStated, stretches: list[Stretch], begin: fmpq, budget: list[int]) -> None:
+    """|v| <= most - claim / scale at all times, squared."""
+    limit = arb(stated.limits.most or 0) - arb(stated.claim) / arb(stated.limits.scale)
+    if not limit >= 0:
+        raise ProofRejected("margin_m: required at most scale_s times the speed limit")
+    for stretch in stretches:
+        square = sum((p * p for p in stretch.flown[0][3:]), arb_poly([0]))
+        require_positive(
+            limit * limit - square, "margin of speed", begin + stretch.begin, stretch.length, budget
         )
 
 
-def _most(stated: SpaceStated, course: Course, k: int, pull: arb_mat) -> arb:
-    """Largest pull . u over the thrusts of interval k."""
-    limit = stated.thrust
-    bounds = [arb(e) for e in limit.bounds]
-    if limit.frame == "body":
-        pull = pull * course.at(stated.dt * k).transpose()
-    along = [pull[0, i] for i in range(3)]
-    if limit.kind == "ball":
-        return bounds[0] * sum((e.abs_upper() ** 2 for e in along), arb(0)).sqrt()
-    if limit.kind == "box":
-        return sum((bound * e.abs_upper() for bound, e in zip(bounds, along, strict=True)), arb(0))
-    most = arb(0)
-    for bound, direction in zip(bounds, limit.directions, strict=True):
-        size = arb(sum((e * e for e in direction), fmpq(0))).sqrt()
-        push = bound * sum((arb(e) * p for e, p in zip(direction, along, strict=True)), arb(0)) / size
-        most = most.max(push)
-    return most
+def _ends(stated: SpaceStated, course: Course, state: list[arb]) -> None:
+    """At the end the margin of the ball around the hold point and of the rest against the body is >= the claim."""
+    limits, claim, last = stated.limits, arb(stated.claim), len(stated.history)
+    turn, w = course.end(last - 1)
+    body = [sum((turn[i, j] * state[j] for j in range(3)), arb(0)) for i in range(3)]
+    speed = [sum((turn[i, j] * state[3 + j] for j in range(3)), arb(0)) for i in range(3)]
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        speed[i] = speed[i] - (w[j] * body[k] - w[k] * body[j])
+    away = [e - arb(h) for e, h in zip(body, limits.hold or [], strict=True)]
+    for name, used in (("hold", _size(away)), ("rest", arb(limits.rest_scale) * _size(speed))):
+        room = arb(limits.radius) - used
+        if not room >= claim:
+            raise ProofRejected(
+                f"margin of {name} >= margin_m at the end, t = {float(arb(stated.dt * last)):.9g} s: it is "
+                f"{float(room):.9g} m, the claim {float(claim):.9g} m"
+            )
+
+
+def _size(vector: list[arb]) -> arb:
+    return sum((e * e for e in vector), arb(0)).sqrt()

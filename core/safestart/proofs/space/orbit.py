@@ -64,6 +64,13 @@ class Orbit:
         rho = 1 + self.e * z[0]
         return self.pace * rho * rho
 
+    def rate_at(self, time: fmpq) -> arb:
+        """w, rad/s."""
+        if self.circular:
+            return self.pace
+        rho = 1 + self.e * self.at(time)[0]
+        return self.pace * rho * rho
+
     def turn(self, begin: fmpq, length: fmpq) -> Series:
         """cos and sin of nu(t) - nu(0), by which LVLH has turned since t = 0, over a piece."""
         c, s = self.series(begin, length)

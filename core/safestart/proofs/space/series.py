@@ -48,23 +48,37 @@ def between(series: arb_poly, begin: arb, width: arb) -> arb_poly:
     return series(arb_poly([begin, width]))
 
 
-def require_positive(series: arb_poly, name: str, begin: fmpq, length: fmpq, budget: list[int]) -> None:
-    """Prove that a series is >= 0 on [0, 1]; raise :class:`ProofRejected` where it is not, or not shown in time.
+def require_positive(
+    series: arb_poly, name: str, begin: fmpq, length: fmpq, budget: list[int], less: Sequence[arb_poly] = ()
+) -> None:
+    """Prove that a series, less the sizes of those in ``less``, is >= 0 on [0, 1].
 
-    ``budget`` holds the number of pieces that are left. Around the middle of a piece the Bernstein coefficients of the
-    cubic bound it, and the sizes of the other coefficients what is left.
+    Raises :class:`ProofRejected` where it is not, or not shown in time. ``budget`` holds the number of pieces that are
+    left. Around the middle of a piece the Bernstein coefficients of the cubic bound it, and the sizes of the other
+    coefficients what is left.
     """
     work = [(fmpq(1, 2), fmpq(1, 2))]
     while work:
         centre, half = work.pop()
         budget[0] -= 1
-        a = between(series, arb(centre), arb(half)).coeffs()
+        here, sizes = between(series, arb(centre), arb(half)), arb(0)
+        for each in less:
+            part = between(each, arb(centre), arb(half))
+            first, *others = [*part.coeffs(), arb(0)]
+            over = sum((c.abs_upper() for c in others), arb(0))
+            if abs(first) > over:
+                here = here - part if first > 0 else here + part
+            else:
+                # It may change its sign here: at the middle its size counts, and over the piece what it grows by.
+                here, sizes = here - first.abs_upper(), sizes + over
+        a = here.coeffs()
         a0, a1, a2, a3 = [*a, *[arb(0)] * 4][:4]
-        level = a0 - sum((c.abs_upper() for c in a[4:]), arb(0))
+        level = a0 - sizes - sum((c.abs_upper() for c in a[4:]), arb(0))
         if a0 < 0 or budget[0] < 0:
             at = begin + length * centre
             raise ProofRejected(
-                f"distance to {name} >= margin_m at t = {int(at.p) / int(at.q):.9g} s: short by {-float(a0):.9g} m"
+                f"{name} >= margin_m at t = {int(at.p) / int(at.q):.9g} s: short by {-float(a0):.9g} (m for a "
+                "distance, m^2/s^2 for a speed)"
                 + ("" if a0 < 0 else f", not settled after {_MOST_PIECES} pieces")
             )
         bends = (a2 - a1 - a3, a3 - (a1 + a2) / 3, (a1 - a2) / 3 - a3, a1 + a2 + a3)

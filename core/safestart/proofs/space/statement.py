@@ -3,68 +3,34 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any
 
 from flint import fmpq
 
+from safestart.proofs.space.parts import Attitude, Face, Thrust, attitude_of, faces_of, thrust_of
 from safestart.proofs.statement import DOCUMENT, check_seal
-from safestart.proofs.strict import LARGEST, ProofRejected, exact, fields, number, part, shown, vector
+from safestart.proofs.strict import LARGEST, ProofRejected, fields, number, part, shown, vector
+from safestart.proofs.weights import Limits, Weight, limits_of, parts_of
 
 SCHEMA = "safestart-proof/2"
-_MOST_STEPS, _MOST_FACES, _MOST_THRUSTERS, _MOST_MULTIPLIERS = 400, 32, 32, 20_000
-_FRAMES = ("lvlh", "body")
-
-
-@dataclass(frozen=True, slots=True)
-class Attitude:
-    """How the body turns, and whether what it turns against is inertial; what its ``kind`` does not use is empty."""
-
-    kind: str
-    inertial: bool
-    axis: list[fmpq]
-    rate: fmpq
-    phase: fmpq
-    inertia: list[list[fmpq]]
-    rate_vector: list[fmpq]
-    times: list[fmpq]
-    quaternions: list[list[fmpq]]
-
-
-@dataclass(frozen=True, slots=True)
-class Face:
-    """normal . p <= offset in ``frame``."""
-
-    normal: list[fmpq]
-    offset: fmpq
-    frame: str
-
-
-@dataclass(frozen=True, slots=True)
-class Thrust:
-    """``kind`` ball, box or thrusters; bounds in m/s^2, ``directions`` of thrusters, axes of ``frame``."""
-
-    kind: str
-    bounds: list[fmpq]
-    directions: list[list[fmpq]]
-    frame: str
-
-    @property
-    def channels(self) -> int:
-        """Numbers that make one thrust."""
-        return len(self.directions) if self.kind == "thrusters" else 3
+_MOST_STEPS = 400
+_QUESTION = ("kind", "dt_s", "steps", "orbit", "attitude", "faces", "thrust")
+_BOX = ("position_half_width_m", "velocity_half_width_m_s")
 
 
 @dataclass(frozen=True, slots=True)
 class SpaceStated:
     """A document's statement: question, start (6 numbers), claim (m), and the evidence.
 
-    ``history`` (N, channels) for GO: m/s^2 for a ball, else shares of the bounds. ``weights`` (time, face, value) for
-    NO_GO.
+    ``half`` (6) are the half-widths of the box of starts, 0 where the start is known. The end is any of the steps
+    ``earliest`` .. ``steps``; both are equal if it is fixed. ``history`` (k, channels) for GO: m/s^2 for a ball, else
+    shares of the bounds. For NO_GO ``parts`` (first, last, weights), each against the ends first .. last, together
+    against all ends in question.
     """
 
     verdict: str
     dt: fmpq
+    earliest: int
     steps: int
     mean_motion: fmpq
     eccentricity: fmpq
@@ -72,10 +38,12 @@ class SpaceStated:
     attitude: Attitude
     faces: dict[str, Face]
     thrust: Thrust
+    limits: Limits
     start: list[fmpq]
+    half: list[fmpq]
     claim: fmpq
     history: list[list[fmpq]]
-    weights: list[tuple[fmpq, str, fmpq]]
+    parts: list[tuple[int, int, list[Weight]]]
 
 
 def read(document: Any) -> SpaceStated:
@@ -85,22 +53,30 @@ def read(document: Any) -> SpaceStated:
     if verdict not in ("GO", "NO_GO"):
         raise ProofRejected(f"verdict: required GO or NO_GO, received {shown(verdict)}")
     question = document.get("question")
-    thrust = _thrust(part(question, "thrust", dict))
-    proved_by = "multipliers"
+    kind = part(question, "kind", str)
+    if kind not in ("stay", "synchronize"):
+        raise ProofRejected(f"kind: required stay or synchronize, received {shown(kind)}")
+    free, thrust = kind == "synchronize", thrust_of(part(question, "thrust", dict))
+    proved_by = "parts" if free else "multipliers"
     if verdict == "GO":
         proved_by = "thrust_m_s2" if thrust.kind == "ball" else "throttle"
     fields(document, "document", (*DOCUMENT, proved_by))
-    fields(question, "question", ("kind", "dt_s", "steps", "orbit", "attitude", "faces", "thrust"))
-    if question["kind"] != "stay":
-        raise ProofRejected(f"kind: required stay, received {shown(question['kind'])}")
+    ends = ("earliest_step", "goal") if free else ()
+    fields(question, f"question ({kind})", (*_QUESTION, *ends), ("speed_limit",))
     steps, dt = part(question, "steps", int), number(question, "dt_s", 1e-6, 3600.0)
     if not 1 <= steps <= _MOST_STEPS:
         raise ProofRejected(f"steps: required 1..{_MOST_STEPS}, received {steps}")
     orbit = part(question, "orbit", dict)
     fields(orbit, "orbit", ("mean_motion_rad_s", "eccentricity", "true_anomaly_rad"))
-    faces = _faces(part(question, "faces", list))
+    earliest = part(question, "earliest_step", int) if free else steps
+    if not 1 <= earliest <= steps:
+        raise ProofRejected(f"earliest_step: required 1..{steps}, received {earliest}")
+    faces, limits = faces_of(part(question, "faces", list)), limits_of(question, 3, free)
+    if any(name in faces for name in limits.norms):
+        raise ProofRejected(f"faces: required names other than {', '.join(limits.norms)}")
     start = document["start"]
-    fields(start, "start", ("frame", "position_m", "velocity_m_s"))
+    known = not (isinstance(start, dict) and _BOX[0] in start)
+    fields(start, "start", ("frame", "position_m", "velocity_m_s", *(() if known else _BOX)))
     if start["frame"] != "lvlh":
         raise ProofRejected(f"start: required the frame lvlh, received {shown(start['frame'])}")
     claim = number(document, "margin_m", -LARGEST)
@@ -108,159 +84,34 @@ def read(document: Any) -> SpaceStated:
         raise ProofRejected(
             f"margin_m: required > 0 for GO and < 0 for NO_GO, received {shown(document['margin_m'])}"
         )
+    half = [fmpq(0)] * 6
+    if not known:
+        half = [e for key in _BOX for e in vector(start[key], key, 3)]
+        if any(e < 0 for e in half) or free or limits.most is not None:
+            raise ProofRejected(f"{_BOX[0]}: required half-widths >= 0, and stay without a speed limit")
     evidence = part(document, proved_by, list)
+    rows = evidence if free else [{"first_step": steps, "last_step": steps, "multipliers": evidence}]
     return SpaceStated(
         verdict=verdict,
         dt=dt,
+        earliest=earliest,
         steps=steps,
         mean_motion=number(orbit, "mean_motion_rad_s", 0.0, 0.01),
         eccentricity=number(orbit, "eccentricity", 0.0, 0.9),
         true_anomaly=number(orbit, "true_anomaly_rad", -1e4, 1e4),
-        attitude=_attitude(part(question, "attitude", dict), dt * steps),
+        attitude=attitude_of(part(question, "attitude", dict), dt * steps),
         faces=faces,
         thrust=thrust,
+        limits=limits,
         start=vector(start["position_m"], "position_m", 3) + vector(start["velocity_m_s"], "velocity_m_s", 3),
+        half=half,
         claim=claim,
-        history=_history(evidence, steps, thrust) if verdict == "GO" else [],
-        weights=[] if verdict == "GO" else _weights(evidence, faces, dt * steps),
+        history=_history(evidence, earliest, steps, thrust) if verdict == "GO" else [],
+        parts=[] if verdict == "GO" else parts_of(rows, (earliest, steps), faces, limits, dt * steps, 3),
     )
 
 
-def _frame(document: Any, name: str) -> str:
-    frame = part(document, "frame", str)
-    if frame not in _FRAMES:
-        raise ProofRejected(f"{name}: required the frame lvlh or body, received {shown(frame)}")
-    return str(frame)
-
-
-def _faces(rows: list[Any]) -> dict[str, Face]:
-    if not 1 <= len(rows) <= _MOST_FACES:
-        raise ProofRejected(f"faces: required 1..{_MOST_FACES}, received {len(rows)}")
-    out: dict[str, Face] = {}
-    for row in rows:
-        fields(row, "faces", ("name", "normal", "offset_m", "frame"))
-        name, normal = part(row, "name", str), vector(row["normal"], "normal", 3)
-        if name in out or not 0 < len(name) <= 40:
-            raise ProofRejected(
-                f"faces: required names of 1 to 40 characters, each once, received {shown(name)}"
-            )
-        if sum((e * e for e in normal), fmpq(0)) == 0:
-            raise ProofRejected(f"faces: required a normal that is not 0 for {shown(name)}")
-        out[name] = Face(normal, number(row, "offset_m", -1e12, 1e12), _frame(row, "faces"))
-    return out
-
-
-def _thrust(said: Any) -> Thrust:
-    kind = part(said, "kind", str)
-    names: tuple[str, ...] = ("kind", "a_max_m_s2")
-    if kind in ("box", "thrusters"):
-        names += ("frame",)
-    if kind == "thrusters":
-        names += ("directions",)
-    elif kind not in ("ball", "box"):
-        raise ProofRejected(f"thrust: required ball, box or thrusters, received {shown(kind)}")
-    fields(said, "thrust", names)
-    rows = part(said, "directions", list) if kind == "thrusters" else []
-    if len(rows) > _MOST_THRUSTERS:
-        raise ProofRejected(f"directions: required at most {_MOST_THRUSTERS}, received {len(rows)}")
-    directions = [vector(row, "directions", 3) for row in rows]
-    if any(sum((e * e for e in row), fmpq(0)) == 0 for row in directions):
-        raise ProofRejected("directions: required vectors that are not 0")
-    size = {"ball": 1, "box": 3}.get(kind, len(directions))
-    given = part(said, "a_max_m_s2", list)
-    if len(given) != size:
-        raise ProofRejected(f"a_max_m_s2: required {size} numbers, received {len(given)}")
-    bounds = [exact(value, "a_max_m_s2", 0.0, 1e3) for value in given]
-    return Thrust(kind, bounds, directions, "lvlh" if kind == "ball" else _frame(said, "thrust"))
-
-
-def _attitude(said: Any, horizon: fmpq) -> Attitude:
-    kind = part(said, "kind", str)
-    zero = fmpq(0)
-    if kind == "spin":
-        fields(said, "attitude", ("kind", "axis", "axis_frame", "rate_rad_s", "phase_rad"))
-        axis = vector(said["axis"], "axis", 3)
-        if sum((e * e for e in axis), zero) == 0:
-            raise ProofRejected("axis: required a vector that is not 0")
-        rate, phase = number(said, "rate_rad_s", -10.0, 10.0), number(said, "phase_rad", -1e7, 1e7)
-        return Attitude(kind, _inertial(said, "axis_frame"), axis, rate, phase, [], [], [], [])
-    if kind == "torque_free":
-        fields(said, "attitude", ("kind", "inertia_kg_m2", "attitude_wxyz", "body_rate_rad_s", "reference"))
-        if not _inertial(said, "reference"):
-            raise ProofRejected("reference: required inertial, received lvlh")
-        rows = part(said, "inertia_kg_m2", list)
-        if len(rows) != 3:
-            raise ProofRejected("inertia_kg_m2: required three rows")
-        inertia = [
-            [exact(e, "inertia_kg_m2", -1e13, 1e13) for e in part({"row": r}, "row", list)] for r in rows
-        ]
-        _is_body(inertia)
-        rate_vector = vector(said["body_rate_rad_s"], "body_rate_rad_s", 3)
-        if sum((e * e for e in rate_vector), zero) > 100:
-            raise ProofRejected("body_rate_rad_s: required at most 10 rad/s")
-        quaternions = [_quaternion(said["attitude_wxyz"])]
-        return Attitude(kind, True, [], zero, zero, inertia, rate_vector, [], quaternions)
-    if kind != "table":
-        raise ProofRejected(f"attitude: required spin, torque_free or table, received {shown(kind)}")
-    fields(said, "attitude", ("kind", "times_s", "attitude_wxyz", "reference"))
-    times = [exact(t, "times_s", -LARGEST) for t in part(said, "times_s", list)]
-    quaternions = [_quaternion(entry) for entry in part(said, "attitude_wxyz", list)]
-    rising = all(a < b for a, b in pairwise(times))
-    if not 2 <= len(times) == len(quaternions) or not rising or times[0] > 0 or times[-1] < horizon:
-        raise ProofRejected(
-            "times_s: required rising times from 0 or before to the end, and as many quaternions"
-        )
-    for a, b in pairwise(quaternions):
-        # At most 90 degrees: cos^2 of half of it is 1/2.
-        along = sum((p * q for p, q in zip(a, b, strict=True)), zero)
-        sizes = sum((e * e for e in a), zero) * sum((e * e for e in b), zero)
-        if 2 * along * along < sizes * fmpq(999_999, 1_000_000):
-            raise ProofRejected("attitude_wxyz: required at most 90 degrees between two entries")
-    return Attitude(kind, _inertial(said, "reference"), [], zero, zero, [], [], times, quaternions)
-
-
-def _inertial(said: Any, key: str) -> bool:
-    reference = part(said, key, str)
-    if reference not in ("inertial", "lvlh"):
-        raise ProofRejected(f"{key}: required inertial or lvlh, received {shown(reference)}")
-    return bool(reference == "inertial")
-
-
-def _quaternion(value: Any) -> list[fmpq]:
-    q = vector(value, "attitude_wxyz", 4)
-    if sum((e * e for e in q), fmpq(0)) == 0:
-        raise ProofRejected("attitude_wxyz: required four numbers, not all 0")
-    return q
-
-
-def _is_body(inertia: list[list[fmpq]]) -> None:
-    """Symmetric and positive: what else it is does not matter to the equations."""
-    if any(len(row) != 3 for row in inertia) or any(
-        inertia[i][j] != inertia[j][i] for i in range(3) for j in range(i)
-    ):
-        raise ProofRejected("inertia_kg_m2: required a symmetric tensor of three rows")
-    (a, b, c), (_, d, e), (_, _, f) = inertia
-    minors = (a, a * d - b * b, a * (d * f - e * e) - b * (b * f - e * c) + c * (b * e - d * c))
-    if not all(minor > 0 for minor in minors):
-        raise ProofRejected("inertia_kg_m2: required a positive tensor")
-
-
-def _history(rows: list[Any], steps: int, thrust: Thrust) -> list[list[fmpq]]:
-    if len(rows) != steps:
-        raise ProofRejected(f"thrusts: required {steps}, received {len(rows)}")
+def _history(rows: list[Any], earliest: int, steps: int, thrust: Thrust) -> list[list[fmpq]]:
+    if not earliest <= len(rows) <= steps:
+        raise ProofRejected(f"thrusts: required {earliest} to {steps}, received {len(rows)}")
     return [vector(row, "thrust", thrust.channels) for row in rows]
-
-
-def _weights(rows: list[Any], faces: dict[str, Face], horizon: fmpq) -> list[tuple[fmpq, str, fmpq]]:
-    if not 1 <= len(rows) <= _MOST_MULTIPLIERS:
-        raise ProofRejected(f"multipliers: required 1..{_MOST_MULTIPLIERS}, received {len(rows)}")
-    out = []
-    for row in rows:
-        fields(row, "multipliers", ("time_s", "face", "value"))
-        time, face, value = number(row, "time_s", 0.0), part(row, "face", str), number(row, "value", 0.0)
-        if face not in faces or time > horizon:
-            raise ProofRejected(
-                f"multipliers: required a face and a time of the question, received {shown(row, 90)}"
-            )
-        out.append((time, face, value))
-    return out

@@ -6,18 +6,17 @@ import math
 
 from flint import fmpq
 
-from safestart.proofs.space.statement import Attitude, SpaceStated
+from safestart.proofs.space.parts import Attitude
+from safestart.proofs.space.statement import SpaceStated
 
 _AXES = {"lvlh": "LVLH", "body": "the body frame"}
 
 
 def lines(stated: SpaceStated) -> tuple[str, ...]:
     """The statement, a line for each part of it."""
-    found = "a thrust history keeps" if stated.verdict == "GO" else "no thrust history keeps more than"
-    span = _double(stated.dt * stated.steps)
     return (
-        f"{found} the margin, the least of the distances to the nearest face",
-        f"stay: inside all faces at all times for {stated.steps} steps of {_number(stated.dt)} s ({span:g} s)",
+        _found(stated),
+        *_asked(stated),
         "thrust held in LVLH axes over each step, motion in space",
         *(
             f"face {name!a}: {_vector(face.normal)} . p <= {_number(face.offset)} m for p in {_AXES[face.frame]}"
@@ -27,9 +26,50 @@ def lines(stated: SpaceStated) -> tuple[str, ...]:
         f"orbit: mean motion {_number(stated.mean_motion)} rad/s, eccentricity {_number(stated.eccentricity)}, true "
         f"anomaly {_number(stated.true_anomaly)} rad ({_degrees(stated.true_anomaly)} deg) at t = 0",
         _thrust(stated),
-        f"start, position in LVLH: {_vector(stated.start[:3])} m",
-        f"start, velocity in LVLH: {_vector(stated.start[3:])} m/s",
+        f"start, position in LVLH: {_vector(stated.start[:3])}{_around(stated.half[:3])} m",
+        f"start, velocity in LVLH: {_vector(stated.start[3:])}{_around(stated.half[3:])} m/s",
     )
+
+
+def _found(stated: SpaceStated) -> str:
+    go, box = stated.verdict == "GO", any(stated.half)
+    found = "a thrust history keeps" if go else "no thrust history keeps more than"
+    if box:
+        found = (
+            "one thrust history keeps, from every start of the box,"
+            if go
+            else "from no start of the box a thrust history keeps more than"
+        )
+    limits, least = stated.limits, "the distance to the nearest face"
+    also = [] if limits.most is None else [f"{_number(limits.scale)} s times the speed left to the limit"]
+    if limits.hold is not None:
+        scale = f"{_number(limits.radius)} / {_number(limits.rest)}"
+        also += [
+            "at the end the distance to the edge of the hold ball",
+            f"{scale} s times the speed left to rest",
+        ]
+    return f"{found} the margin, the least of {', '.join([least, *also])}"
+
+
+def _asked(stated: SpaceStated) -> list[str]:
+    limits, dt = stated.limits, _number(stated.dt)
+    first, last = (f"{_double(stated.dt * k):g} s" for k in (stated.earliest, stated.steps))
+    if limits.hold is None:
+        out = [f"stay: inside all faces at all times for {stated.steps} steps of {dt} s ({last})"]
+    else:
+        out = [
+            f"synchronize: inside all faces at all times until the end, which is any of the steps {stated.earliest} to "
+            f"{stated.steps} of {dt} s ({first} to {last})",
+            f"at the end: within {_number(limits.radius)} m of {_vector(limits.hold)} m in the body frame, at most "
+            f"{_number(limits.rest)} m/s against the turning body",
+        ]
+    if limits.most is not None:
+        out.append(f"speed: at most {_number(limits.most)} m/s in LVLH at all times")
+    return out
+
+
+def _around(half: list[fmpq]) -> str:
+    return f" +- {_vector(half)}" if any(half) else ""
 
 
 def _attitude(said: Attitude) -> list[str]:
