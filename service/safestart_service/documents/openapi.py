@@ -37,6 +37,7 @@ ANSWERS: tuple[type[BaseModel], ...] = (
     schemas.Partial,
     schemas.Health,
     schemas.Readiness,
+    schemas.CallerDocument,
     schemas.KeyList,
     schemas.NewKeyDocument,
     schemas.KeyDocument,
