@@ -1,7 +1,7 @@
 """Benchmarks: each of ours beside its peer, in one run. ``safestart bench`` runs them in this order."""
 
 BENCHMARKS = (
-    "certificate",
+    "certified",
     "reach",
     "level_set",
     "closed_loop",

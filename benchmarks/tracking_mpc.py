@@ -17,14 +17,16 @@ import numpy as np
 
 from benchmarks.timing import median_seconds
 from safestart.campaign.case import Case
+from safestart.control.tracking_mpc.assemble import assemble
 from safestart.control.tracking_mpc.controller import Program
 from safestart.control.tracking_mpc.sampled import Sampled
-from safestart.control.tracking_mpc.step_kernel import INFEASIBLE, SOLVED, solve_from, step
+from safestart.control.tracking_mpc.step_kernel import INFEASIBLE, SOLVED, solve_from
 from safestart.control.tracking_mpc.theta_set import theta_set
 from safestart.control.tracking_mpc.tumble import Tumble
 from safestart.control.tracking_mpc.tuning import DockingCorridor, Tuning
 from safestart.processes.tracking_mpc.noisy import flights_of, one
 from safestart.processes.tracking_mpc.spec import TrackingMpcInputs
+from safestart.runtime.kernels import compiled
 from safestart.tracking.any_history import AnyHistory
 from safestart.tracking.certificate import recursion, shifts_needed
 from safestart.tracking.flight import fly
@@ -34,6 +36,15 @@ INPUTS = TrackingMpcInputs.model_validate({})
 INERTIA: Any = tuple(tuple(row) for row in INPUTS.inertia_kg_m2)
 RATE = math.radians(3.53)
 STARTS = ((1.5, 2.5, 1.5), (4.0, 6.0, 2.0), (-3.0, 8.0, 1.0))
+
+
+@compiled(error_model="numpy")
+def step(  # type: ignore[no-untyped-def]
+    attitudes, fixed, start, spots, held, low, high, state, rows, shift, hessian, slope, z, dual
+):
+    """One step as compiled flights take it: assembly and solution; returns (status, steps)."""
+    assemble(attitudes, fixed, start, spots, held, rows, shift, hessian, slope)
+    return solve_from(rows, shift, hessian, slope, low, high, state, z, dual)
 
 
 def case(tuning: Tuning, rate: Any = (0.0, RATE, RATE), window: int = 320) -> tuple[Program, Any, Tumble]:
@@ -60,7 +71,7 @@ def steps(rounds: int = 20) -> dict[str, float]:
                 begin = time.perf_counter()
                 status, _ = step(
                     ahead,
-                    *mpc.fixed,
+                    mpc.fixed,
                     mpc.start,
                     mpc.spots,
                     mpc.held,

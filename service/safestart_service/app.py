@@ -29,6 +29,7 @@ from safestart_service.routes import (
     landing,
     operations,
     processes,
+    provenance,
     results,
 )
 from safestart_service.state import Services, attach
@@ -95,6 +96,7 @@ def create_app(
         processes.router,
         jobs.router,
         results.router,
+        provenance.router,
         events.router,
         landing.router,
         operations.router,

@@ -32,8 +32,8 @@ POINT = ("omega_t_deg_s", "a_max_m_s2", "mean_motion_rad_s")
 
 _SEEN = """() => {
   const fields = {};
-  for (const field of document.querySelectorAll("#controls input[id], #controls select[id], #x_m, #y_m")) {
-    if (field.id !== "stored") fields[field.id] = field.validity.badInput ? "no number" : field.value;
+  for (const field of document.querySelectorAll("#controls [name], #start [name]")) {
+    fields[field.id] = field.validity.badInput ? "no number" : field.value;
   }
   const map = document.getElementById("map"), shown = !map.hidden && !map.classList.contains("old");
   const trace = (name) => shown ? (map.data ?? []).find((one) => one.name === name) ?? null : null;

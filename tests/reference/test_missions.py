@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from safestart.processes.execute import execute
+from safestart.processes.start_in_space.missions import MISSIONS
 from safestart.proofs.checker import check
 from safestart.runtime.progress import Context
 
@@ -141,3 +142,34 @@ def test_a_grapple_on_a_spinning_axis() -> None:
         **common,
     )
     assert (along["verdict"], across["verdict"]) == ("GO", "NO_GO")
+
+
+FIGURES = {
+    "envisat": 20.078,
+    "envisat-tumbling": 1.000,
+    "r-bar": 3.000,
+    "v-bar": 17.265,
+    "transfer-perigee": 25.423,
+    "transfer-apogee": 23.282,
+    "molniya-perigee": 7.118,
+    "spinning-axis": 11.125,
+}
+"""Margins, m, as docs/theory/space.md has them."""
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_examples_have_the_documented_margins_and_their_flights_keep_them(name: str) -> None:
+    assert set(FIGURES) == set(MISSIONS)
+    asked = MISSIONS[name] | {"proofs": True, "flights": True}
+    found = execute("start-in-space", asked, Context()).document["outputs"]
+    assert check(json.loads(json.dumps(found["proof"][0]))).verdict == found["verdict"][0] == "GO"
+    assert found["margin_m"][0] == pytest.approx(FIGURES[name], abs=2e-3)
+    flight = found["flight"][0]
+    assert len(flight["time_s"]) == len(flight["distance_m"]) == len(flight["attitude_wxyz"])
+    assert min(map(min, flight["distance_m"])) >= found["margin_m"][0] - 1e-6
+    assert flight["lvlh_m"][0] == found["position_m"][0]
+    if "hold_m" in asked:
+        assert math.dist(flight["body_m"][-1], asked["hold_m"]) < 1e-6
+        assert math.hypot(*flight["body_m_s"][-1]) < 1e-6
+    else:
+        assert flight["time_s"][-1] == asked.get("horizon_s", 60)

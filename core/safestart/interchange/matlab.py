@@ -23,7 +23,9 @@ def matlab_of(columns: Mapping[str, Any]) -> bytes:
     for name, column in columns.items():
         array = np.atleast_1d(np.asarray(column))
         text = array.dtype.kind == "U"
-        found[name] = (array.astype(object) if text else array.astype(np.float64)).reshape(len(array), -1)
+        found[name] = (array.astype(object) if text else array.astype(np.float64)).reshape(
+            len(array), array.size // max(len(array), 1)
+        )
     # It takes files too, whatever its stubs say.
     savemat(cast(Any, sink), found, do_compression=True, long_field_names=True)
     return b"MATLAB 5.0 MAT-file, safestart".ljust(_HEAD) + sink.getvalue()[_HEAD:]

@@ -13,6 +13,8 @@ from safestart.dynamics.cwh import transition_matrix
 from safestart.errors import invalid
 from safestart.model.scenario import MAX_MEAN_MOTION, Floats, number
 
+_UP = 1.0 + 1e-15
+
 if TYPE_CHECKING:
     from safestart.missed_burn.earth import Earth
 
@@ -178,13 +180,12 @@ def duration_of(question: Question, kind: str, burn: int, last: float) -> float:
     """Length of a case's drift from the planned time of its burn, s: the horizon, after a burn that ends ``last`` s
     late, and at least until the next burn, which may be late."""
     times, late = [made.time for made in question.plan.burns], question.failures.late
-    length = question.horizon + last
     if kind == "start":
-        length = max(question.horizon, late)
-    elif kind == "made" and burn + 1 < len(times):
-        length = max(question.horizon, times[burn + 1] - times[burn] + late)
-    # Longer than the rounding of the sums.
-    return length * (1.0 + 1e-15)
+        return max(question.horizon, late)
+    # Sums are rounded up.
+    if kind == "made" and burn + 1 < len(times):
+        return max(question.horizon, (times[burn + 1] - times[burn] + late) * _UP)
+    return (question.horizon + last) * _UP if last > 0.0 else question.horizon
 
 
 def longest_drift(question: Question, burn: int) -> float:

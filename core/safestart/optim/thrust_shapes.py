@@ -6,6 +6,7 @@ weighted by it. A program has the points as its variable ``thrust``, ordered by 
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import Protocol
 
 import numpy as np
@@ -56,10 +57,10 @@ class Ball:
         return bound(constant, rows, weights, scale, channels)
 
 
-class _Polytope:
+class _Polytope(ABC):
+    @abstractmethod
     def support(self, pulls: Floats) -> Floats:
         """See :class:`UnitSet`."""
-        raise NotImplementedError
 
     def bound(self, constant: Floats, rows: Floats, weights: Floats, scale: float, channels: int) -> float:
         """See :class:`UnitSet`."""

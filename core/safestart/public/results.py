@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from safestart.errors import invalid
-from safestart.processes.registry import PROCESS_IDS, process
-from safestart.processes.tables import Rows, columns_of, tables_of
+from safestart.processes.registry import process
+from safestart.processes.tables import Rows, typed_tables
 from safestart.public.shown import frame_of, html_of
 from safestart.records.artifact import Artifact
 
@@ -45,23 +45,20 @@ class Result:
 
     def tables(self) -> dict[str, Rows]:
         """The tables of the outputs by name, the first the most important; each a list of rows."""
-        # A newer service may run processes that are unknown here; their lists of objects are tables too.
-        known = process(self.process_id).tables if self.process_id in PROCESS_IDS else ()
-        return tables_of(self.outputs, known)
+        return {name: table.as_rows() for name, table in typed_tables(self.document).items()}
 
     def to_dataframe(self, table: str = "") -> pd.DataFrame:
         """A table as a pandas data frame, by default the first.
 
         Raises ``InvalidInput`` for an unknown table, ``Unavailable`` if pandas is not installed.
         """
-        tables = self.tables()
+        tables = typed_tables(self.document)
         name = table or next(iter(tables), "")
         if name not in tables:
             raise invalid(
                 "table", f"one of {', '.join(tables)}" if tables else "a process with tables", table
             )
-        rows = tables[name]
-        return frame_of({column: [row.get(column) for row in rows] for column in columns_of(rows)})
+        return frame_of(tables[name].cells)
 
     def save(self, folder: str | os.PathLike[str]) -> list[Path]:
         """Write the document (``result.json``) and the files into a folder; returns the paths."""

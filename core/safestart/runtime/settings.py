@@ -194,7 +194,7 @@ def _file(kind: type[BaseSettings]) -> TomlConfigSettingsSource:
     named = os.environ.get("SAFESTART_CONFIG")
     folder = _place(user_config_path)
     path = Path(named) if named else folder / "safestart.toml" if folder else None
-    if named and path is not None and not path.is_file():
+    if named and not os.path.isfile(named):  # Path raises on a name that is too long
         raise invalid("SAFESTART_CONFIG", "the path of a TOML file", named)
     try:
         return TomlConfigSettingsSource(kind, toml_file=path or ())

@@ -60,7 +60,7 @@ class NoisyFlights:
         )
         offsets = np.ascontiguousarray(program.faces.offsets)
         self._tail = (
-            *program.fixed,
+            program.fixed,
             program.tuning.input_limit == "ball",
             offsets,
             program.low,

@@ -131,16 +131,7 @@ def fly_noisy(  # type: ignore[no-untyped-def]
     variant,
     navigation,
     sizes,
-    weights,
-    flat,
-    motion,
-    reach,
-    push,
-    cost,
-    tau,
-    normals,
-    sides,
-    limits,
+    fixed,
     ball,
     offsets,
     low,
@@ -151,10 +142,12 @@ def fly_noisy(  # type: ignore[no-untyped-def]
 
     ``truth`` (K + 1, 3, 3) and ``rates`` (K + 1, 3): the attitude as it is and the inertial rate as it is believed.
     ``navigation`` (K + 1, 6): errors of what is measured; ``sizes`` (K,): factor on each input. ``gain`` (6, 6) is
-    the filter's. A step without a plan that keeps every row, those of this node and the next among them, follows the
-    last plan (HARD), or the one of least violation.
+    the filter's, ``fixed`` the program's (:class:`Fixed`); ``ball``: its inputs lie in a ball, else in a box. A step
+    without a plan that keeps every row, those of this node and the next among them, follows the last plan (HARD), or
+    the one of least violation.
     """
-    steps, total, n = len(truth) - 1, len(push), cost.shape[0] - 3
+    weights, push, normals = fixed.weights, fixed.push, fixed.normals
+    steps, total, n = len(truth) - 1, len(push), fixed.cost.shape[0] - 3
     count, faces = len(high), len(normals)
     rows, shift = np.empty((n, count)), np.empty((6, count))
     hessian, slope = np.empty((n, n)), np.empty((n, 6))
@@ -180,26 +173,7 @@ def fly_noisy(  # type: ignore[no-untyped-def]
         if k == steps:
             break
         predict(truth[k], rates[k], inertia, inverse, orbit, period, attitudes)
-        assemble(
-            attitudes,
-            weights,
-            flat,
-            motion,
-            reach,
-            push,
-            cost,
-            tau,
-            normals,
-            sides,
-            limits,
-            at_start,
-            spots,
-            held,
-            rows,
-            shift,
-            hessian,
-            slope,
-        )
+        assemble(attitudes, fixed, at_start, spots, held, rows, shift, hessian, slope)
         status, _ = solve_from(rows, shift, hessian, slope, low, high, estimate, z, dual)
         outside = overstepped(attitudes, a, fixed_nodes, normals, offsets, estimate) > _FIXED
         if status != SOLVED or outside:

@@ -20,10 +20,18 @@ from safestart_service.http.body import MOST_PARTS, parse_body, require_once
 _QUALIFIED = {"value", "mediaType", "encoding", "schema"}
 
 
+class OutputFormat(WireModel):
+    """The format of one output; a whole result has others, by Accept."""
+
+    mediaType: Literal["application/json"] = "application/json"
+    encoding: Literal["UTF-8", "utf-8"] = "UTF-8"
+
+
 class OutputRequest(WireModel):
-    """How one output is wanted; values only."""
+    """How one output is wanted; JSON values only."""
 
     transmissionMode: Literal["value"] = "value"
+    format: OutputFormat = Field(default_factory=OutputFormat)
 
 
 class ExecuteRequest(WireModel):

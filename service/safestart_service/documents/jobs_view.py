@@ -112,6 +112,7 @@ def _links(job: JobEntry, base: str) -> list[dict[str, str]]:
         link(f"{here}/events", "monitor", "events while it runs", "text/event-stream"),
         link(f"{base}/dashboard/jobs/{job.id}", "alternate", "this job as a page", "text/html"),
         link(f"{base}/processes/{job.process_id}", "up", "its process"),
+        link(f"{here}/prov", "related", "its provenance (PROV-JSON)"),
     ]
     if job.process_id in PROCESS_IDS and process(job.process_id).sharding is not None:
         links.append(link(f"{here}/partial", "partial", "the partial result of the finished shards"))

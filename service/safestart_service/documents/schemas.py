@@ -166,6 +166,13 @@ class Submitted(JobDetail):
     certificate: dict[str, Any] | None = None
 
 
+class JobInputs(BaseModel):
+    """What a job computes, of OGC API - Processes Part 4."""
+
+    inputs: dict[str, Any]
+    outputs: dict[str, dict[str, Any]] = Field(description="The outputs that a result holds, by id.")
+
+
 class JobList(BaseModel):
     """A page of jobs, newest first."""
 

@@ -15,6 +15,8 @@ from enum import Enum, auto
 from http import HTTPStatus
 from typing import Any
 
+from uvicorn.protocols.http.flow_control import FlowControl
+
 from safestart.errors import SafestartError
 from safestart.runtime.logs import about
 from safestart_service.access.nearness import is_local
@@ -43,12 +45,22 @@ class Message(Enum):
     BODY = auto()
 
 
+class Flow(FlowControl):
+    """Reading that stays paused while bytes wait unparsed, whoever asks for more: every handler does."""
+
+    full = False
+
+    def resume_reading(self) -> None:
+        """Read on unless bytes wait."""
+        if not self.full:
+            super().resume_reading()
+
+
 class Protocol(Read):
     """One connection. A head must come within :data:`HEAD_S` of the connection, or of the answer before it."""
 
     _deadline: TimerHandle | None = None
     _message = Message.BETWEEN
-    _parts = 0
     _received = 0
     _seated = False
     _active: Any = None
@@ -62,6 +74,7 @@ class Protocol(Read):
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
         """Wait for the first head if a place is free; otherwise refuse at the first bytes or after a short time."""
         super().connection_made(transport)
+        self.flow: Flow = Flow(transport)
         self._holder = holder(self.client[0] if self.client else "")
         self._seated = self._places.take(self._holder)
         if self._seated:
@@ -84,25 +97,23 @@ class Protocol(Read):
         """A head begins."""
         super().on_message_begin()
         self._message = Message.HEAD
-        self._parts += 1
 
     def on_headers_complete(self) -> None:
         """The head is whole."""
         self._wait_no_longer()
         super().on_headers_complete()
         self._message = Message.BODY
-        self._parts += 1
         self.headers = []  # drop trailers: they do not belong to the head, which is checked already
 
     def on_body(self, body: bytes) -> None:
         """A part of the body."""
-        self._parts += 1
+        self._received = 0
         super().on_body(body)
 
     def on_message_complete(self) -> None:
         """The request is complete."""
         self._message = Message.BETWEEN
-        self._parts += 1
+        self._received = 0
         super().on_message_complete()
 
     def on_response_complete(self) -> None:
@@ -122,33 +133,26 @@ class Protocol(Read):
         self._read_on()
 
     def _read_on(self) -> None:
-        held, at = self._held, 0
-        self._held = b""  # a piece that completes an answer would call this again
-        while at < len(held) and len(self.pipeline) < MOST_AHEAD and not self.transport.is_closing():
-            self._read(held[at : at + _PIECE])
-            at += _PIECE
-        self._held = held[at:]
-        if self._held and not self.transport.is_closing():
+        while self._held and len(self.pipeline) < MOST_AHEAD:
+            piece, self._held = self._held[:_PIECE], self._held[_PIECE:]
+            self._read(piece)
+            if self.transport.is_closing():
+                return
+        self.flow.full = bool(self._held)
+        if self._held:
             self.flow.pause_reading()
 
     def _read(self, data: bytes) -> None:
-        """Count bytes outside bodies that do not end a head: long headers, trailers, chunk extensions.
-
-        A piece in which a head begins or ends does not count.
-        """
-        before = self._parts
+        """Count the bytes since a message or a piece of its body ended: headers, trailers, chunk extensions."""
+        self._received += len(data)
         super().data_received(data)
-        if self._parts != before:
-            self._received = 0
-        elif self._message is not Message.BETWEEN:
-            self._received += len(data)
-            if self._received > MAX_HEAD_BYTES:
-                required = f"at most {MAX_HEAD_BYTES} bytes"
-                self._refuse(
-                    HeadTooLarge(
-                        f"request line and headers: required {required}", field="headers", required=required
-                    )
+        if self._received > MAX_HEAD_BYTES:
+            required = f"at most {MAX_HEAD_BYTES} bytes"
+            self._refuse(
+                HeadTooLarge(
+                    f"request line and headers: required {required}", field="headers", required=required
                 )
+            )
 
     def send_400_response(self, msg: str) -> None:  # noqa: ARG002
         """Answer bytes that are not HTTP; replaces uvicorn's plain-text answer."""
@@ -185,7 +189,6 @@ class Protocol(Read):
             request_id = secrets.token_hex(8)
             log.info("refused: %s", error.detail, extra=about(request=request_id))
             self.transport.write(_answer(error, request_id))
-        self._abandon()
         self.transport.close()
 
     def _start_asgi_task(self, cycle: Any, app: Any) -> None:

@@ -17,6 +17,7 @@ from safestart.processes.go_no_go import run
 from safestart.processes.go_no_go.method_registry import RENAMED
 from safestart.processes.go_no_go.one_start import GoNoGoAnswer
 from safestart.processes.go_no_go.spec import SPEC, GoNoGoInputs, GoNoGoOutputs
+from safestart.processes.start_in_space.missions import MISSIONS
 from safestart.processes.start_in_space.one_start import SpaceAnswer
 from safestart.processes.start_in_space.spec import SPEC as SPACE
 from safestart.processes.start_in_space.spec import SpaceInputs, SpaceOutputs
@@ -126,7 +127,8 @@ async def go_no_go_proof(_query: Annotated[GoNoGoQuery, Query()]) -> Response:
     operation_id="goNoGoMany",
     summary="Go/no-go for many starts",
     openapi_extra=json_body(
-        {SPEC.id: GoNoGoInputs, SPACE.id: SpaceInputs}, {SPEC.id: SPEC.example, SPACE.id: SPACE.example}
+        {SPEC.id: GoNoGoInputs, SPACE.id: SpaceInputs},
+        {SPEC.id: SPEC.example, SPACE.id: SPACE.example, **MISSIONS},
     ),
     responses={
         200: content(

@@ -17,9 +17,11 @@ OPENAPI_TYPE = "application/vnd.oai.openapi+json;version={}"
 CONFORMANCE_REL = "http://www.opengis.net/def/rel/ogc/1.0/conformance"
 PROCESSES_REL = "http://www.opengis.net/def/rel/ogc/1.0/processes"
 JOBS_REL = "http://www.opengis.net/def/rel/ogc/1.0/job-list"
-CLASSES = tuple(
-    f"http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/{name}"
-    for name in ("core", "ogc-process-description", "json", "oas30", "job-list", "dismiss")
+_PART_1 = "http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/"
+_PART_4 = "http://www.opengis.net/spec/ogcapi-processes-4/1.0/conf/"
+CLASSES = (
+    *(_PART_1 + name for name in ("core", "ogc-process-description", "json", "oas30", "job-list", "dismiss")),
+    _PART_4 + "provenance",
 )
 
 
@@ -62,7 +64,7 @@ async def landing(request: Request) -> Response:
     responses={200: answer(Conformance, "Classes.", ETag=TAG), **refusals(304)},
 )
 async def conformance(request: Request) -> Response:
-    """Conformance classes of OGC API - Processes 1.0 that this service implements."""
+    """Conformance classes of OGC API - Processes that this service implements."""
     return tagged(request, {"conformsTo": list(CLASSES)})
 
 

@@ -69,6 +69,7 @@ def readyz(request: Request) -> Response:
 
 @router.get(
     "/caller",
+    operation_id="getCaller",
     summary="Who is asking",
     responses={200: answer(CallerDocument, "The caller, as the audit log names it."), **refusals(503)},
 )

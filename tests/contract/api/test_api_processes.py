@@ -56,6 +56,12 @@ def test_sync_execution_and_output_selection(client):
     assert client.post(url, json={"inputs": inputs}).json()["verdict"] == ["GO"]
     chosen = client.post(url, json={"inputs": inputs, "outputs": {"verdict": {"transmissionMode": "value"}}})
     assert chosen.json() == {"verdict": ["GO"]}
+    as_json = {"verdict": {"format": {"mediaType": "application/json"}}}
+    assert client.post(url, json={"inputs": inputs, "outputs": as_json}).json() == {"verdict": ["GO"]}
+    as_csv = {"verdict": {"format": {"mediaType": "text/csv"}}}
+    assert_problem(client.post(url, json={"inputs": inputs, "outputs": as_csv}), 422, "mediaType")
+    subscriber = {"successUri": "http://127.0.0.1:1/"}
+    assert_problem(client.post(url, json={"inputs": inputs, "subscriber": subscriber}), 422, "subscriber")
     raw = client.post(url, json={"inputs": inputs, "outputs": {"verdict": {}}, "response": "raw"})
     assert raw.json() == ["GO"]
     assert_problem(client.post(url, json={"inputs": inputs, "outputs": {"nope": {}}}), 422, "outputs")

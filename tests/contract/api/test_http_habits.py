@@ -97,7 +97,7 @@ def test_results_by_accept(done):
     assert rows[0] == {
         "engine": "exact",
         "area_m2": "12.5",
-        "cells": "3",
+        "cells": "3.0",
         "confusion.tp": "1",
         "confusion.fp": "0",
         "faces": "left right",

@@ -86,7 +86,15 @@ def test_descriptions_conform(setting):
 def test_claims(setting):
     client, _ = setting
     claimed = {name.rpartition("/")[2] for name in client.get("/conformance").json()["conformsTo"]}
-    assert claimed == {"core", "ogc-process-description", "json", "oas30", "job-list", "dismiss"}
+    assert claimed == {
+        "core",
+        "ogc-process-description",
+        "json",
+        "oas30",
+        "job-list",
+        "dismiss",
+        "provenance",
+    }
     assert client.get("/openapi-3.0.json").json()["openapi"].startswith("3.0"), (
         "what the class oas30 is about"
     )

@@ -5,11 +5,9 @@ from __future__ import annotations
 import json
 import re
 import socket
-from collections import deque
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from functools import partial
-from types import SimpleNamespace
 
 import httpx
 import pytest
@@ -19,8 +17,7 @@ from safestart.errors import InvalidInput
 from safestart_service.access.callers import Callers
 from safestart_service.http.open_files import make_room
 from safestart_service.http.places import Places
-from safestart_service.http.unread import Read
-from safestart_service.http.wire import MAX_HEAD_BYTES, MOST_AHEAD, Protocol, holder
+from safestart_service.http.wire import MOST_AHEAD, holder
 from tests.contract.api.service_client import HEAVY, POINT, assert_problem, service
 from tests.contract.server.raw_http import HOST, PLACES, STREAMS, problem_in, said
 from tests.waiting import PATIENCE_S, until
@@ -86,35 +83,10 @@ def test_answers_that_nobody_reads(address):
         until(lambda: well(address), "a place that an unread answer had")
 
 
-def test_who_reads_slowly_is_waited_for():
-    waiting, later, cut = [9, 5, 5], [], []
-    reader = Read.__new__(Read)
-    reader.flow = SimpleNamespace(pause_writing=lambda: None)
-    reader.loop = SimpleNamespace(call_later=lambda _, look: later.append(look))
-    reader.transport = SimpleNamespace(
-        get_write_buffer_size=lambda: waiting[len(later)], abort=lambda: cut.append(True)
-    )
-    reader.pause_writing()
-    later[0]()
-    assert (len(later), cut) == (2, []), "something was taken: look again"
-    waiting.append(5)
-    later[1]()
-    assert (len(later), cut) == (2, [True])
-
-
 def test_trailers_are_no_headers(address):
     told = said(address, CHUNKED + b"Connection: close\r\n\r\n0\r\nX-Request-ID: from-a-trailer\r\n\r\n")
     assert told.startswith(b"HTTP/1.1 404 ")
     assert b"from-a-trailer" not in told
-
-
-@pytest.mark.parametrize("name", ["0\r\nX-A: ", "2;"])
-def test_what_is_neither_head_nor_body_ends(address, name):
-    """Trailers and chunk extensions without end, on a request that waits for its body."""
-    pieces = (WAITING.replace(b"Content-Length: 9", b"Transfer-Encoding: chunked"), b"\r\n", name.encode())
-    found = said(address, *pieces, *[b"a" * 65_536] * (MAX_HEAD_BYTES // 65_536 * 32))
-    if found:  # data still unsent at the close may cost us the answer
-        problem_in(found, 431)
 
 
 def test_one_answer_to_one_request(address):
@@ -158,22 +130,6 @@ def test_requests_in_a_row_are_answered_in_order(address):
     told = said(address, b"".join(asked) + last).decode()
     assert re.findall(r"x-request-id: (n\d+)", told) == due
     assert told.count("HTTP/1.1 422 ") == 3
-
-
-def test_nobody_makes_us_read_ahead_without_end():
-    """Behind a slow request, unread data waits in its sender's memory."""
-    protocol = Protocol.__new__(Protocol)
-    protocol._held, protocol._seated, fed = b"", True, []
-    protocol.pipeline = deque([None] * MOST_AHEAD)
-    protocol.transport = SimpleNamespace(is_closing=lambda: False)
-    paused = []
-    protocol.flow = SimpleNamespace(pause_reading=lambda: paused.append(True))
-    protocol._read = fed.append
-    protocol.data_received(b"a" * 20_000)
-    assert (fed, paused) == ([], [True])
-    protocol.pipeline.clear()
-    protocol._read_on()
-    assert (b"".join(fed), len(fed), protocol._held) == (b"a" * 20_000, 3, b"")
 
 
 def test_so_many_follow_and_no_more(address):

@@ -47,6 +47,18 @@ def test_renewing_keeps_the_lease(database: Database, jobs: JobRepository) -> No
         assert jobs.claim("other", LEASE_S) is None
 
 
+def test_a_longer_lease_is_not_taken_for_a_clock_set_back(jobs: JobRepository) -> None:
+    """A lease is stored with its own length, and a renewal may change it."""
+    submit(jobs)
+    claim = claimed(jobs, LEASE_S)
+    assert jobs.renew(claim, 5 * LEASE_S) is True
+    assert jobs.claim("other", LEASE_S) is None
+
+
+def told(jobs: JobRepository, job_id: str) -> list[str]:
+    return [event.data["message"] for event in jobs.events(job_id) if event.kind == "log"]
+
+
 def test_an_expired_lease_is_taken_over_and_the_late_writer_is_refused(
     jobs: JobRepository, results: ResultRepository
 ) -> None:
@@ -119,6 +131,7 @@ def test_a_dead_task_process_costs_an_attempt(jobs: JobRepository) -> None:
     assert jobs.restarted(claim, 3) is True
     now = jobs.get(job.id)
     assert (now.attempts, now.progress, now.message) == (2, 0.0, "starting, attempt 2")
+    assert now.eta_s is None
     assert jobs.restarted(claim, 3) is True
     assert jobs.restarted(claim, 3) is False
     jobs.poisoned(claim, 3)
@@ -129,6 +142,8 @@ def test_a_dead_task_process_costs_an_attempt(jobs: JobRepository) -> None:
     assert "3 times its task process died" in ended.problem["detail"]
     assert "worker" not in ended.problem["detail"]
     assert jobs.tallies() == {"lease_losses": 0, "task_deaths": 3, "poisoned": 1}
+    ends = ("starting, attempt 2", "starting, attempt 3", "no attempt is left")
+    assert told(jobs, job.id) == [f"its task process died; {end}" for end in ends]
 
 
 def test_a_job_that_lost_its_worker_and_its_task_processes_says_both(
@@ -138,6 +153,7 @@ def test_a_job_that_lost_its_worker_and_its_task_processes_says_both(
     claimed(jobs)
     lapse(database)
     claim = claimed(jobs)
+    assert told(jobs, job.id) == ["worker worker was lost: its lease ran out; starting, attempt 2"]
     assert jobs.restarted(claim, 3) is True
     assert jobs.restarted(claim, 3) is False
     jobs.poisoned(claim, 3)
@@ -169,15 +185,19 @@ def test_a_job_that_loses_every_worker_fails_as_poison(database: Database, jobs:
     assert jobs.tallies() == {"lease_losses": 1, "task_deaths": 0, "poisoned": 1}
     said = [event.data.get("lost") for event in jobs.events(poison.id) if event.kind == "log"]
     assert said == ["worker"]
-    assert ended.finished_at is not None
+    assert jobs.events(poison.id)[-1].data == {"status": "failed", "message": ended.problem["detail"]}
+    assert (ended.finished_at is not None, ended.owner, ended.lease_expires_at) == (True, None, None)
 
 
 def test_a_released_job_waits_at_its_old_place_and_lost_no_attempt(jobs: JobRepository) -> None:
     first, second = submit(jobs), submit(jobs)
     claim = claimed(jobs)
+    jobs.progress(claim, 50.0, "half", 1.0)
     jobs.release(claim, "the worker stops")
     job = jobs.get(first.id)
     assert (job.status, job.attempts, job.owner) == (JobStatus.ACCEPTED, 0, None)
+    assert (job.progress, job.started_at, job.eta_s) == (0.0, None, None)
+    assert jobs.events(first.id)[-1].data == {"status": "accepted", "message": "the worker stops"}
     assert job.message == "the worker stops"
     assert [jobs.position(item.id) for item in (first, second)] == [1, 2]
     with pytest.raises(LeaseLost):

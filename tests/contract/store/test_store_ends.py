@@ -80,6 +80,24 @@ def test_a_dismissed_job_whose_worker_vanished_ends_when_the_next_one_looks(
     assert jobs.get(job.id).status is JobStatus.DISMISSED
 
 
+def test_a_worker_may_end_its_job_as_dismissed_unasked(jobs: JobRepository) -> None:
+    job = submit(jobs)
+    jobs.dismissed(claimed(jobs))
+    ended = jobs.get(job.id)
+    assert (ended.status, ended.message, ended.cancel_requested) == (JobStatus.DISMISSED, "dismissed", True)
+
+
+@pytest.mark.parametrize(
+    ("problem", "message"),
+    [({"title": "T", "detail": "D"}, "D"), ({"title": "T"}, "T"), ({"status": 500}, "failed")],
+)
+def test_a_failure_says_what_it_can(jobs: JobRepository, problem: dict, message: str) -> None:
+    job = submit(jobs)
+    jobs.fail(claimed(jobs), problem)
+    assert jobs.get(job.id).message == message
+    assert jobs.events(job.id)[-1].data == {"status": "failed", "message": message}
+
+
 def test_an_ended_job_cannot_be_dismissed(jobs: JobRepository) -> None:
     job = submit(jobs)
     jobs.succeed(claimed(jobs), {}, (), {})

@@ -76,6 +76,35 @@ def test_a_waiting_job_knows_when_it_will_start(database: Database, jobs: JobRep
     assert last == Wait(5, pytest.approx(4 * run_s / 2), pytest.approx(4 * run_s / 2 + run_s))
 
 
+def test_the_wait_counts_what_runs_and_what_is_ahead_by_their_processes(
+    database: Database, jobs: JobRepository
+) -> None:
+    for process, run_s in (("short", 1e5), ("long", 4e5)):
+        submit(jobs, process)
+        claim = claimed(jobs)
+        pass_time(database, run_s)
+        jobs.succeed(claim, {}, (), {})
+    for process in ("short", "long"):
+        submit(jobs, process)
+    half, known = claimed(jobs), claimed(jobs)
+    jobs.progress(known, 50.0, "half", 3e5)
+    waiting = [submit(jobs, process, priority=0).id for process in ("short", "new", "long")]
+    jobs.heartbeat("worker", 4, 2)
+    busy = 1e5 / 2 + 3e5  # half of the mean where the job says nothing, else what it says
+    means = {"short": 1e5, "new": (1e5 + 4e5) / 2, "long": 4e5}
+    close = dict(rel=0.0, abs=PATIENCE_S)
+    assert jobs.wait(waiting[0]) == Wait(1, 0.0, pytest.approx(means["short"], **close))
+    assert jobs.wait(waiting[1]) == Wait(2, 0.0, pytest.approx(means["new"], **close))
+    starts = (busy + means["short"] + means["new"]) / 4
+    ends = starts + means["long"]
+    assert jobs.wait(waiting[2]) == Wait(3, pytest.approx(starts, **close), pytest.approx(ends, **close))
+    jobs.succeed(half, {}, (), {})
+    submit(jobs, "new", priority=1)
+    found = jobs.wait(waiting[0])
+    assert found is not None
+    assert (found.position, found.starts_in_s, found.higher, found.turns) == (2, 0.0, 1, 0)
+
+
 def test_a_waiting_job_knows_who_is_ahead_and_why(jobs: JobRepository) -> None:
     flood = [submit(jobs, submitter="a").id for _ in range(3)]
     submit(jobs, submitter="b")

@@ -11,7 +11,7 @@ from safestart.errors import (
 )
 from safestart.store.database import Database
 from safestart.store.jobs.repository import JobRepository
-from safestart.store.records import JobStatus
+from safestart.store.records import Crew, JobStatus
 from tests.contract.store.store_backends import pass_time
 from tests.contract.store.store_jobs import claimed, lapse, submit
 from tests.waiting import PATIENCE_S
@@ -54,8 +54,21 @@ def test_workers_count_while_they_beat(database: Database, jobs: JobRepository) 
     pass_time(database, PATIENCE_S)
     jobs.heartbeat("two", 4, 0)
     assert jobs.workers_alive(within_s=PATIENCE_S) == 1
+    assert jobs.crew(within_s=2 * PATIENCE_S) == Crew(2, 6, 1)
     jobs.farewell("two")
-    assert jobs.workers_alive(within_s=2 * PATIENCE_S) == 1
+    assert jobs.owners_alive(within_s=2 * PATIENCE_S) == ("one",)
+    assert jobs.crew() == Crew(0, 0, 0)
+
+
+def test_workers_silent_for_a_day_are_forgotten_and_no_others(
+    database: Database, jobs: JobRepository
+) -> None:
+    jobs.heartbeat("gone", 1, 0)
+    pass_time(database, 50_000.0)
+    jobs.heartbeat("silent", 1, 0)
+    pass_time(database, 50_000.0)
+    jobs.heartbeat("new", 1, 0)
+    assert sorted(jobs.owners_alive(within_s=1e7)) == ["new", "silent"]
 
 
 def test_finished_shards_are_kept_in_order_and_go_with_the_success(jobs: JobRepository) -> None:
@@ -69,6 +82,17 @@ def test_finished_shards_are_kept_in_order_and_go_with_the_success(jobs: JobRepo
     assert [(shard.number, shard.data) for shard in jobs.shards(job.id)] == [(0, b""), (2, b"again")]
     jobs.succeed(claim, {"outputs": {}}, (), {})
     assert jobs.shards(job.id) == ()
+
+
+def test_a_shard_replaces_its_own_job_s_alone(jobs: JobRepository) -> None:
+    one, two = submit(jobs), submit(jobs)
+    claims = [claimed(jobs), claimed(jobs)]
+    for claim in (*claims, claims[1]):
+        jobs.save_shard(claim, 0, "c", {"of": claim.job_id}, b"")
+    assert jobs.shard_documents(one.id) == ({"of": one.id},)
+    assert jobs.shard_documents(two.id) == ({"of": two.id},)
+    jobs.succeed(claims[1], {}, (), {})
+    assert jobs.shard_documents(one.id) == ({"of": one.id},)
 
 
 def test_a_worker_that_lost_its_lease_adds_no_shard(database: Database, jobs: JobRepository) -> None:

@@ -2,6 +2,7 @@
 
 import json
 
+import numpy as np
 import pytest
 
 from safestart.cli.reproduce.hopping import hopping_document
@@ -15,6 +16,16 @@ def test_hop_time() -> None:
     assert execute("hop-time", {"angle_deg": 0, "rho": 0.7}).document["outputs"]["orbits"] == 0.5
     with pytest.raises(InvalidInput, match=r"up to 147\.19 deg"):
         execute("hop-time", {"angle_deg": 150, "rho": 0.7})
+
+
+@pytest.mark.parametrize(("angle", "rho"), [(0.0, 0.7), (40.0, 0.7), (90.0, 0.3), (140.0, 0.7), (270.0, 0.0)])
+def test_the_path_of_a_hop_leaves_its_share_and_ends_across_its_line(angle: float, rho: float) -> None:
+    path = np.array(execute("hop-time", {"angle_deg": angle, "rho": rho}).document["outputs"]["path"])
+    ahead, below = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+    assert path[0] == pytest.approx([-below, ahead], abs=1e-12)
+    assert path[-1] == pytest.approx([-rho * below, rho * ahead], abs=1e-9)
+    last = (3 * path[-1] - 4 * path[-2] + path[-3]) / 2  # its velocity, to second order
+    assert abs(last @ path[0]) < 1e-3 * np.linalg.norm(last)
 
 
 @pytest.fixture(scope="module")

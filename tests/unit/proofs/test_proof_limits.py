@@ -214,3 +214,17 @@ def test_limits_that_are_not_asked_for_prove_nothing() -> None:
     if rows(made, "speed"):
         with pytest.raises(ProofRejected, match="face of the question"):
             check(made | {"digest": digest_of(made)})
+
+
+def test_the_speed_limit_counts_the_speed_out_of_the_plane() -> None:
+    """A free drift at 0.5 m/s along z: proved below 0.8 m/s, refused at 0.4 m/s, though it stands in the plane."""
+    question = Question(Scenario.of(1.0, 0.05), 2.0, 2, 3, None, 0.8)
+    state = np.array([0.0, 40.0, 0.0, 0.0, 0.0, 0.5])
+    made = json.loads(json.dumps(proof_of(question, state, decide(question, state))))
+    made["thrust_m_s2"], made["margin_m"] = [[0.0, 0.0, 0.0]] * 2, 0.1
+    made["digest"] = digest_of(made)
+    assert check(made).verdict == "GO"
+    made["question"]["speed_limit"]["most_m_s"] = 0.4
+    made["digest"] = digest_of(made)
+    with pytest.raises(ProofRejected, match="speed"):
+        check(made)

@@ -46,6 +46,14 @@ def test_arguments_come_before_the_environment_before_the_file(
     assert settings() is settings()
 
 
+def test_a_name_that_is_too_long_is_no_file(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SAFESTART_CONFIG", "a" * 1000)
+    settings.cache_clear()
+    with pytest.raises(InvalidInput, match="SAFESTART_CONFIG: required the path of a TOML file"):
+        settings()
+    settings.cache_clear()
+
+
 @pytest.mark.parametrize(
     ("name", "value", "required"),
     [

@@ -11,10 +11,33 @@ step N_p the deviation is 0.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from safestart.control.tracking_mpc.active_set import add_scaled
+from safestart.model.scenario import Floats
 from safestart.runtime.kernels import compiled
+
+
+class Fixed(NamedTuple):
+    """What is the same in every step: the motion's maps, the condensed prediction, its cost, and the rows' normals.
+
+    ``weights`` (m,), ``flat`` (2, 6, 3) and ``motion`` (3, 3, 3) are those of :func:`equilibria`; ``reach`` and
+    ``push`` (N_p, 3, c) give positions and inputs from (e_0, w); ``cost`` (c, c); ``tau`` weighs theta; ``normals``
+    (F, 3), ``sides`` (S, 3) and ``limits`` (H, 3), body axes, are the rows on positions, inputs and theta alone.
+    """
+
+    weights: Floats
+    flat: Floats
+    motion: Floats
+    reach: Floats
+    push: Floats
+    cost: Floats
+    tau: float
+    normals: Floats
+    sides: Floats
+    limits: Floats
 
 
 @compiled(error_model="numpy", fastmath={"contract", "reassoc", "nsz"})
@@ -85,32 +108,13 @@ def place(source, start, column, rows, shift):  # type: ignore[no-untyped-def]
 
 
 @compiled(error_model="numpy", fastmath={"contract", "reassoc", "nsz"})
-def assemble(  # type: ignore[no-untyped-def]
-    attitudes,
-    weights,
-    flat,
-    motion,
-    reach,
-    push,
-    cost,
-    tau,
-    normals,
-    sides,
-    limits,
-    start,
-    spots,
-    held,
-    rows,
-    shift,
-    hessian,
-    slope,
-):
+def assemble(attitudes, fixed, start, spots, held, rows, shift, hessian, slope):  # type: ignore[no-untyped-def]
     """Fill ``rows`` (n, R), ``shift`` (6, R), ``hessian`` (n, n) and ``slope`` (n, 6), and the maps of theta.
 
     A row's value is rows' z + shift' x_0, the gradient at z = 0 is slope x_0. ``attitudes`` (N_p + 1 + m, 3, 3) are
-    those at this step and after it; ``sides`` (S, 3) and ``limits`` (H, 3) are the rows on inputs and on theta alone;
-    ``start``, ``spots`` and ``held`` become those of :func:`equilibria`.
+    those at this step and after it; ``start``, ``spots`` and ``held`` become those of :func:`equilibria`.
     """
+    weights, flat, motion, reach, push, cost, tau, normals, sides, limits = fixed
     total, m, faces = len(push), cost.shape[0], len(normals)
     free = m - 6
     equilibria(attitudes, weights, flat, motion, start, spots, held)

@@ -8,7 +8,7 @@ import numpy as np
 
 from safestart.control.controller import Command
 from safestart.control.tracking_mpc import equilibrium
-from safestart.control.tracking_mpc.assemble import assemble
+from safestart.control.tracking_mpc.assemble import Fixed, assemble
 from safestart.control.tracking_mpc.condensed import Condensed, condense
 from safestart.control.tracking_mpc.sampled import Sampled
 from safestart.control.tracking_mpc.step_kernel import SOLVED, feasible_starts, soften, solve_from
@@ -86,7 +86,7 @@ class Program:
             np.empty((total, 3, 3)),
             np.empty((total, 3, 3)),
         )
-        self.fixed = (
+        self.fixed = Fixed(
             motion.weights,
             motion.flat,
             np.array([motion.p, motion.q, motion.r]),
@@ -110,7 +110,7 @@ class Program:
             raise invalid("attitudes", f"at least {self.ahead} rotations (3, 3)", attitudes.shape)
         attitudes = np.ascontiguousarray(attitudes[: self.ahead])
         maps = self.start, self.spots, self.held
-        assemble(attitudes, *self.fixed, *maps, self.rows, self.shift, self.hessian, self.slope)
+        assemble(attitudes, self.fixed, *maps, self.rows, self.shift, self.hessian, self.slope)
 
     def fixed_violation(self, attitudes: Floats, states: Floats) -> Floats:
         """(...), m: largest violation by LVLH states (..., 6) at the nodes that no input reaches; <= 0 inside."""

@@ -1,4 +1,4 @@
-"""One control step, compiled: assembly, solution, and without one the least violation (hard and soft form).
+"""The assembled program of one control step, compiled: its solution, and without one the least violation.
 
 Soft rows may be violated by ``give`` times a common measure t >= 0, in metres. The least t comes from proofs of
 infeasibility: a proof y gives t >= -y'bounds / y'give, the program is solved at that t, and so on (Dinkelbach). Every
@@ -10,7 +10,6 @@ from __future__ import annotations
 import numpy as np
 
 from safestart.control.tracking_mpc.active_set import INFEASIBLE, SOLVED, inverse_factor, minimise
-from safestart.control.tracking_mpc.assemble import assemble
 from safestart.runtime.kernels import compiled
 
 NOT_CONVEX = 3
@@ -74,56 +73,6 @@ def soften(rows, shift, hessian, slope, low, high, give, state, z, dual):  # typ
 
 
 @compiled(error_model="numpy")
-def step(  # type: ignore[no-untyped-def]
-    attitudes,
-    weights,
-    flat,
-    motion,
-    reach,
-    push,
-    cost,
-    tau,
-    normals,
-    sides,
-    limits,
-    start,
-    spots,
-    held,
-    low,
-    high,
-    state,
-    rows,
-    shift,
-    hessian,
-    slope,
-    z,
-    dual,
-):
-    """Assemble and solve; returns (status, steps). See :func:`assemble` and :func:`minimise` for the arrays."""
-    assemble(
-        attitudes,
-        weights,
-        flat,
-        motion,
-        reach,
-        push,
-        cost,
-        tau,
-        normals,
-        sides,
-        limits,
-        start,
-        spots,
-        held,
-        rows,
-        shift,
-        hessian,
-        slope,
-    )
-    return solve_from(rows, shift, hessian, slope, low, high, state, z, dual)
-
-
-@compiled(error_model="numpy")
 def feasible_starts(rows, shift, hessian, slope, low, high, starts):  # type: ignore[no-untyped-def]
     """Status (S,) of every start (S, 6) of one assembled program."""
     out = np.empty(len(starts), np.int64)
@@ -133,4 +82,4 @@ def feasible_starts(rows, shift, hessian, slope, low, high, starts):  # type: ig
     return out
 
 
-__all__ = ["INFEASIBLE", "NOT_CONVEX", "SOLVED", "feasible_starts", "soften", "solve_from", "step"]
+__all__ = ["INFEASIBLE", "NOT_CONVEX", "SOLVED", "feasible_starts", "soften", "solve_from"]

@@ -6,7 +6,7 @@ from pydantic import Field
 
 from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.views import Column, Facts
-from safestart.processes.wire import GridInput, ScenarioInput
+from safestart.processes.wire import GridInput, Pair, ScenarioInput, Triple
 
 
 class AtlasInputs(ScenarioInput):
@@ -28,10 +28,8 @@ class AtlasOutputs(WireModel):
     relative_gap: float = Field(description="(outer - inner) / outer area.")
     deepest_start_m: list[float] = Field(description="Start with the largest margin, body-frame x, y.")
     deepest_margin_m: float
-    inner_polygon_m: list[list[float]] = Field(
-        description="Corners of the polygon of proved GO, counter-clockwise."
-    )
-    half_planes: list[list[float]] = Field(
+    inner_polygon_m: list[Pair] = Field(description="Corners of the polygon of proved GO, counter-clockwise.")
+    half_planes: list[Triple] = Field(
         description="Rows (a, b, c): a x + b y + c bounds the margin of every start, m; negative proves NO_GO."
     )
     verdict_cells: dict[str, int] = Field(description="Cells of the corridor by verdict.")

@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 from safestart.model.scenario import MAX_MEAN_MOTION
 from safestart.processes.base import ProcessSpec, WireModel
 from safestart.processes.views import Column, Rows
-from safestart.processes.wire import Seed
+from safestart.processes.wire import Pair, Seed
 
 Number = Annotated[float, Field(ge=-1e9, le=1e9)]
 Width = Annotated[float, Field(ge=0, le=1e9)]
@@ -138,8 +138,8 @@ class VariantOutput(WireModel):
     )
     code: Literal["ok", "empty", "numerical_failure"]
     area: float | None = Field(description="Area of the outline in the plane.")
-    low: list[float] | None = Field(description="Least values of the two components.")
-    high: list[float] | None
+    low: Pair | None = Field(description="Least values of the two components.")
+    high: Pair | None
     beyond_nominal: float | None = Field(
         description="How far it reaches beyond the nominal set, at most over the directions; not positive: inside."
     )
@@ -150,8 +150,8 @@ class CloudOutput(WireModel):
 
     starts: int
     outside_nominal: int | None = Field(description="Of them, outside the nominal outline: luck, no control.")
-    low: list[float]
-    high: list[float]
+    low: Pair
+    high: Pair
 
 
 class FlownVariantOutput(WireModel):

@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 from safestart.processes.base import ProcessSpec, WireModel
 from safestart.processes.passive_safety.rendezvous import RendezvousInputs, TargetBox
 from safestart.processes.views import Column, Facts, Findings
-from safestart.processes.wire import Seed
+from safestart.processes.wire import Pair, Seed
 
 Minutes = Annotated[float, Field(ge=0.0, le=600.0)]
 Window = Annotated[list[Minutes], Field(min_length=2, max_length=2)]
@@ -95,7 +95,7 @@ class FindingOutput(WireModel):
 class WindowOutput(WireModel):
     """Findings of one abort window."""
 
-    abort_window_min: list[float] | None
+    abort_window_min: Pair | None
     findings: list[FindingOutput]
     run_s: float
 

@@ -7,7 +7,7 @@ from pydantic import Field
 from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.costs import region_s
 from safestart.processes.views import Column, Facts, Layer, Picture
-from safestart.processes.wire import Horizon, ScenarioInput
+from safestart.processes.wire import Horizon, Pair, ScenarioInput
 
 
 class SafeRegionInputs(ScenarioInput):
@@ -20,10 +20,8 @@ class SafeRegionInputs(ScenarioInput):
 class SafeRegionOutputs(WireModel):
     """Corners (x, y) in the body frame, m, counter-clockwise; empty where nothing is left."""
 
-    inner_polygon_m: list[list[float]] = Field(description="Every start inside is proved GO.")
-    outer_polygon_m: list[list[float]] = Field(
-        description="Every start of the corridor outside is proved NO_GO."
-    )
+    inner_polygon_m: list[Pair] = Field(description="Every start inside is proved GO.")
+    outer_polygon_m: list[Pair] = Field(description="Every start of the corridor outside is proved NO_GO.")
     inner_area_m2: float
     outer_area_m2: float
     deepest_start_m: list[float] = Field(description="Start with the largest margin.")

@@ -12,7 +12,7 @@ from safestart.processes.flat import Flat, Parameter
 from safestart.processes.go_no_go.question_fields import QuestionKind
 from safestart.processes.sharding import load
 from safestart.processes.start_in_space.parts import FiveFaces, SpaceStart
-from safestart.processes.start_in_space.spec import SPEC, Method, SpaceInputs, SpaceOutputs
+from safestart.processes.start_in_space.spec import SPEC, Method, SpaceFlight, SpaceInputs, SpaceOutputs
 from safestart.processes.tracking_mpc.controller_input import TrackingAnswer
 from safestart.runtime.progress import Context
 
@@ -22,7 +22,7 @@ PARAMETERS: dict[str, Parameter] = _WHOLE.parameters | _FIVE.parameters
 """Flat names; the five faces come as their own parameters or, like any others, as the JSON of ``corridor``."""
 _ARRAYS = (
     *("verdict", "margin_m", "model_error_m", "violated_faces", "position_m", "velocity_m_s"),
-    *("reason", "end_s", "tracking", "proof"),
+    *("reason", "end_s", "flight", "tracking", "proof"),
 )
 
 
@@ -38,6 +38,7 @@ class SpaceAnswer(WireModel):
     velocity_m_s: list[float] = Field(description="The start, LVLH, m/s.")
     faces: list[str] = Field(description="Names of the faces.")
     end_s: float | None = Field(description="When the flight of a GO ends (synchronize), s.")
+    flight: SpaceFlight | None = Field(None, description="The flight of a GO (flights=true).")
     tracking: TrackingAnswer | None = Field(
         None, description="Method tracking: the controller's flight, beside the exact answer."
     )

@@ -15,6 +15,7 @@ from safestart.exact.space.watch import space_watch_of
 from safestart.model.scenario import Floats
 from safestart.processes.base import ProcessOutput
 from safestart.processes.go_no_go import question as asked
+from safestart.processes.start_in_space.flights import curves
 from safestart.processes.start_in_space.question import half_of, question_of, states_of
 from safestart.processes.start_in_space.spec import MOST_PROOFS, SpaceInputs
 from safestart.processes.wire import finite
@@ -23,8 +24,9 @@ from safestart.runtime.progress import Context
 
 def run(inputs: SpaceInputs, context: Context) -> ProcessOutput:
     """Answer for every start."""
-    if inputs.proofs and len(inputs.starts) > MOST_PROOFS:
-        raise invalid("proofs", f"at most {MOST_PROOFS} starts", len(inputs.starts))
+    for name in ("proofs", "flights"):
+        if getattr(inputs, name) and len(inputs.starts) > MOST_PROOFS:
+            raise invalid(name, f"at most {MOST_PROOFS} starts", len(inputs.starts))
     question = question_of(inputs)
     states = states_of(inputs, question)
     half = half_of(inputs)
@@ -67,6 +69,14 @@ def run(inputs: SpaceInputs, context: Context) -> ProcessOutput:
                 for k, (answer, error) in enumerate(zip(answers, errors, strict=True))
             ],
             "end_s": [_end(question, answer) for answer in answers] if question.goal else None,
+            "flight": [
+                None
+                if answer.verdict is not Verdict.GO or answer.thrust is None
+                else curves(question, state, answer.thrust)
+                for state, answer in zip(states, answers, strict=True)
+            ]
+            if inputs.flights
+            else None,
             "tracking": [said for said, _ in tracking] or None,
             "proof": proof,
         }

@@ -11,6 +11,7 @@ from safestart.model.scenario import MAX_ACCELERATION, MAX_MEAN_MOTION, MIN_ACCE
 from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.costs import FIRST_S, program_s
 from safestart.processes.go_no_go.question_fields import QuestionKind
+from safestart.processes.start_in_space.missions import MISSIONS
 from safestart.processes.start_in_space.parts import (
     AttitudeInput,
     CorridorChoice,
@@ -22,7 +23,7 @@ from safestart.processes.start_in_space.parts import (
 )
 from safestart.processes.tracking_mpc.controller_input import TrackingAnswer
 from safestart.processes.views import Column, Facts, Findings, Layer, Picture
-from safestart.processes.wire import Horizon
+from safestart.processes.wire import Horizon, Triple
 
 MOST_STARTS = 1000
 MOST_PROOFS = 100
@@ -105,6 +106,7 @@ class SpaceInputs(WireModel):
     velocity_half_width_m_s: float = Field(
         0.0, ge=0, le=10, description="Half-width of the box in velocity, m/s (stay)."
     )
+    flights: bool = Field(False, description="Return the flight of every GO as curves; at most 100 starts.")
     proofs: bool = Field(
         False, description="Return proof documents for `safestart verify`; at most 100 starts."
     )
@@ -114,6 +116,20 @@ class SpaceInputs(WireModel):
         if self.tracking is not None and self.method != "tracking":
             raise ValueError(f"tracking: only with method tracking, received {self.method}")
         return self
+
+
+class SpaceFlight(WireModel):
+    """Curves over ``time_s``, four instants for each 2 s; vectors as rows."""
+
+    time_s: list[float]
+    lvlh_m: list[list[float]] = Field(description="Position in LVLH, m.")
+    lvlh_m_s: list[list[float]] = Field(description="Velocity in LVLH, m/s.")
+    body_m: list[list[float]] = Field(description="Position in the body frame, m.")
+    body_m_s: list[list[float]] = Field(description="Velocity against the turning body, in its axes, m/s.")
+    attitude_wxyz: list[list[float]] = Field(description="From LVLH to the body, scalar first.")
+    thrust_m_s2: list[list[float]] = Field(description="Acceleration in LVLH, held over 2 s, m/s^2.")
+    distance_m: list[list[float]] = Field(description="Distance to each face, m; negative: outside.")
+    delta_v_m_s: float
 
 
 class SpaceOutputs(WireModel):
@@ -132,12 +148,15 @@ class SpaceOutputs(WireModel):
         "margin, the reason says so."
     )
     violated_faces: list[list[str]] = Field(description="Faces that the start itself is outside of.")
-    position_m: list[list[float]] = Field(description="Starts, LVLH, m.")
-    velocity_m_s: list[list[float]] = Field(description="Starts, LVLH, m/s.")
+    position_m: list[Triple] = Field(description="Starts, LVLH, m.")
+    velocity_m_s: list[Triple] = Field(description="Starts, LVLH, m/s.")
     reason: list[str] = Field(description="The verdict in a sentence.")
     end_s: list[float | None] | None = Field(
         None,
         description="When the flight of a GO is at rest in the hold ball (synchronize), s; null for the others.",
+    )
+    flight: list[SpaceFlight | None] | None = Field(
+        None, description="The flights of the GOs, when asked for; null for the others."
     )
     tracking: list[TrackingAnswer] | None = Field(
         None, description="Method tracking: the controller's flight from each start, beside the exact answer."
@@ -223,6 +242,7 @@ SPEC = ProcessSpec(
         ),
     ),
     keywords=("certificate", "go/no-go", "torque-free", "elliptic orbit"),
+    extensions={"safestart:examples": MISSIONS},
     example={
         "starts": [{"position_m": [2, 25, 1], "velocity_m_s": [0, 0, 0], "frame": "body"}],
         "attitude": {

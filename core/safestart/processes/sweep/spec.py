@@ -189,8 +189,8 @@ class Cell(WireModel):
     omega_t_deg_s: float
     r0_m: float
     cases: int
-    certified: dict[str, int] = Field(description="Certified starts by certificate.")
-    feasible: dict[str, int] = Field(description="Flights without violation by controller.")
+    certified: dict[CertificateName, int] = Field(description="Certified starts by certificate.")
+    feasible: dict[Controller, int] = Field(description="Flights without violation by controller.")
 
 
 class CaseRecord(WireModel):
@@ -203,7 +203,7 @@ class CaseRecord(WireModel):
     y_m: float
     margin_m: float | None = Field(description="Least face distance of the flight, or proved bound on it.")
     violated_at_s: float | None
-    certified: dict[str, bool | None]
+    certified: dict[CertificateName, bool | None]
 
 
 class SweepOutputs(WireModel):
@@ -217,7 +217,7 @@ class SweepOutputs(WireModel):
     control_steps: dict[str, int]
     fallbacks: dict[str, int] = Field(description="Steps at which a controller had no admissible command.")
     cells: list[Cell] = Field(description="Table 3; empty unless the distribution is a grid.")
-    worst: dict[str, list[CaseRecord]] = Field(
+    worst: dict[Controller, list[CaseRecord]] = Field(
         description="Flights that violated although certified, then those closest to it; trajectories.npz has them."
     )
     false_go: list[CaseRecord] = Field(

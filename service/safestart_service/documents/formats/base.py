@@ -9,9 +9,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from safestart.errors import invalid
-from safestart.processes.base import Table
-from safestart.processes.registry import PROCESS_IDS, process
-from safestart.processes.tables import Rows, tables_of
+from safestart.processes.tables import TypedTable, typed_tables
 from safestart_service.errors import NotAcceptable
 
 Record = dict[str, Any]
@@ -35,9 +33,14 @@ class Format:
     model: type[BaseModel] | None = None
 
 
-def rows_of(record: Record, table: str | None) -> Rows:
-    """Rows of the table of this name, or of the first one; raises ``InvalidInput`` or ``NotAcceptable``."""
-    found = tables_of(record["outputs"], _declared(record))
+def rows_of(record: Record, table: str | None) -> list[dict[str, Any]]:
+    """Rows of a table, as :func:`table_of` finds it."""
+    return table_of(record, table).as_rows()
+
+
+def table_of(record: Record, table: str | None) -> TypedTable:
+    """The table of this name, or the first one; raises ``InvalidInput`` or ``NotAcceptable``."""
+    found = typed_tables(record)
     if not found:
         raise NotAcceptable(
             "this result holds no table; required application/json or application/x-npz",
@@ -49,9 +52,3 @@ def rows_of(record: Record, table: str | None) -> Rows:
     if table not in found:
         raise invalid("table", f"one of {', '.join(found)}", table)
     return found[table]
-
-
-def _declared(record: Record) -> tuple[Table, ...]:
-    """The tables that the process declares; none if the process no longer exists."""
-    process_id = record.get("process", {}).get("id")
-    return process(process_id).tables if process_id in PROCESS_IDS else ()

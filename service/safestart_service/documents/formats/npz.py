@@ -1,6 +1,7 @@
 """NPZ: every numeric output as an array; columns of tables as ``table.column``, with NaN for missing values.
 
-The first file loads NumPy.
+Types are the process's: float64 for numbers, int64 and bool where no value may be missing, else float64. The first
+file loads NumPy.
 """
 
 from __future__ import annotations
@@ -8,7 +9,9 @@ from __future__ import annotations
 import io
 from typing import Any
 
-from safestart.processes.tables import columns_of, tables_of
+from safestart.processes.tables import Kind, typed_tables
+from safestart.processes.tables.columns import output_columns
+from safestart.processes.tables.typed import known_process
 from safestart_service.documents.formats.base import Format, Record
 
 
@@ -22,16 +25,40 @@ def _encode(record: Record, _: str | None) -> bytes:
 
 def arrays_of(record: Record) -> dict[str, Any]:
     """The arrays of a result by name."""
-    outputs = record["outputs"]
     arrays: dict[str, Any] = {}
-    for name, value in outputs.items():
-        if isinstance(value, int | float | list) and (array := _numeric(value)) is not None:
-            arrays[name] = array
-    for name, rows in tables_of(outputs).items():
-        for column in columns_of(rows):
-            if (array := _numeric([row[column] for row in rows])) is not None:
-                arrays[f"{name}.{column}"] = array
+    outputs, spec = record["outputs"], known_process(record)
+    if spec is None:
+        for name, value in outputs.items():
+            if isinstance(value, int | float | list) and (array := _numeric(value)) is not None:
+                arrays[name] = array
+    else:
+        for name, (kind, nullable, deep) in output_columns(spec).items():
+            value = outputs.get(name)
+            if value is None:
+                value = [] if deep else float("nan")
+            if (array := _typed(value, kind, nullable=nullable)) is not None:
+                arrays[name] = array
+    for name, table in typed_tables(record).items():
+        for column, kind in table.kinds.items():
+            if kind is not Kind.TEXT:
+                nullable = column in table.nullable
+                arrays[f"{name}.{column}"] = _typed(table.cells[column], kind, nullable=nullable)
     return arrays
+
+
+def _typed(values: Any, kind: Kind, *, nullable: bool) -> Any:
+    """An array of the type; numbers of cells become rows as long as the longest, None lists that are ragged."""
+    import numpy as np
+
+    if kind is Kind.NUMBERS:
+        width = max((len(row) for row in values if row), default=0)
+        rows = [[*(row or ()), *[None] * (width - len(row or ()))] for row in values]
+        return np.array(rows, dtype=np.float64).reshape(len(values), width)
+    exact = {Kind.FLAG: np.bool_, Kind.INTEGER: np.int64}.get(kind)
+    try:
+        return np.array(values, dtype=np.float64 if nullable or exact is None else exact)
+    except (TypeError, ValueError, OverflowError):
+        return None
 
 
 def _numeric(value: Any) -> Any:

@@ -1,4 +1,4 @@
-"""Outputs as tables: lists of objects, and the tables that a process declares over its other lists.
+"""Tables by the values of outputs: lists of objects, and the tables that a process declares over its other lists.
 
 Lengths do not show which lists belong side by side: the axes of a map often have equal lengths.
 """
@@ -36,7 +36,7 @@ def tables_of(outputs: dict[str, Any], declared: Iterable[Table] = ()) -> dict[s
     return {name: _tidy(rows) for name, rows in found.items()}
 
 
-def columns_of(rows: Rows) -> list[str]:
+def names_of(rows: Rows) -> list[str]:
     """Names of all columns, in the order of their first appearance."""
     return list(dict.fromkeys(name for row in rows for name in row))
 
@@ -92,7 +92,7 @@ def _flat(row: dict[str, Any]) -> dict[str, Any]:
 
 def _tidy(rows: Rows) -> Rows:
     """Drop columns that only mark a missing object whose members have columns."""
-    names = columns_of(rows)
+    names = names_of(rows)
     outer = {name.rpartition(".")[0] for name in names}
     outer |= {name[:place] for name in outer for place, letter in enumerate(name) if letter == "."}
     empty = {name for name in outer & set(names) if all(row.get(name) is None for row in rows)}

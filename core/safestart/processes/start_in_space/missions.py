@@ -1,0 +1,100 @@
+"""Questions of real missions, as inputs of start-in-space; docs/theory/space.md has their sources and answers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+_ENVISAT = [[17023.3, 397.1, -2171.4], [397.1, 124825.7, 344.2], [-2171.4, 344.2, 129112.2]]
+"""kg m^2; Envisat's orbit is nearly circular at about 770 km."""
+_ENVISAT_ORBIT = {"semi_major_axis_m": 7143500.0, "eccentricity": 0.00012, "true_anomaly_deg": 90.0}
+_TRANSFER = {"semi_major_axis_m": 24396000.0, "eccentricity": 0.7283}
+_MOLNIYA = {"semi_major_axis_m": 26600000.0, "eccentricity": 0.74}
+
+
+def _cone(axis: int, sign: float, slope: float, port_m: float, least_m: float) -> dict[str, Any]:
+    """A square cone in LVLH that opens along an axis, cut at ``least_m``."""
+    faces = []
+    for name, other, side in (("a", 1, 1.0), ("b", 1, -1.0), ("c", 2, 1.0), ("d", 2, -1.0)):
+        normal = [0.0, 0.0, 0.0]
+        normal[(axis + other) % 3], normal[axis] = side, -sign * slope
+        faces.append({"name": name, "normal": normal, "offset_m": port_m, "frame": "lvlh"})
+    plane = [0.0, 0.0, 0.0]
+    plane[axis] = -sign
+    faces.append({"name": "plane", "normal": plane, "offset_m": -least_m, "frame": "lvlh"})
+    return {"faces": faces}
+
+
+MISSIONS: dict[str, dict[str, Any]] = {
+    "envisat": {
+        "starts": [{"position_m": [0, 30, 0]}],
+        "attitude": {
+            "kind": "torque_free",
+            "inertia_kg_m2": _ENVISAT,
+            "body_rate_deg_s": [0.0, 0.0, -2.67],
+        },
+        "orbit": _ENVISAT_ORBIT,
+        "a_max_m_s2": 0.1,
+    },
+    "envisat-tumbling": {
+        "starts": [{"position_m": [0, 25, 0], "frame": "body"}],
+        "attitude": {
+            "kind": "torque_free",
+            "inertia_kg_m2": _ENVISAT,
+            "attitude_wxyz": [0.9, 0.1, -0.2, 0.3],
+            "body_rate_deg_s": [0.6, -0.9, -2.4],
+        },
+        "orbit": _ENVISAT_ORBIT,
+        "a_max_m_s2": 0.1,
+        "question": "synchronize",
+        "hold_m": [0, 5, 0],
+        "ball_radius_m": 1.0,
+        "within_s": 60,
+    },
+    "r-bar": {
+        "starts": [{"position_m": [-150, 0, 0], "velocity_m_s": [0.3, 0, 0]}],
+        "attitude": {"kind": "spin", "rate_deg_s": 0.0},
+        "orbit": {"semi_major_axis_m": 6797000.0, "eccentricity": 0.0003},
+        "corridor": _cone(0, -1.0, 0.14054, 0.5, 10.0),
+        "thrust": {"kind": "box", "a_max_m_s2": [0.02, 0.02, 0.02], "frame": "lvlh"},
+        "speed_limit_m_s": 0.6,
+        "horizon_s": 120,
+    },
+    "v-bar": {
+        "starts": [{"position_m": [0, 100, 0]}],
+        "attitude": {"kind": "spin", "rate_deg_s": 0.0},
+        "orbit": {"semi_major_axis_m": 6797000.0, "eccentricity": 0.0003},
+        "corridor": _cone(1, 1.0, 0.17633, 0.5, 2.0),
+        "thrust": {
+            "kind": "thrusters",
+            "directions": [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]],
+            "a_max_m_s2": [0.03, 0.03, 0.03, 0.03, 0.03, 0.03],
+        },
+        "position_half_width_m": 0.5,
+        "velocity_half_width_m_s": 0.01,
+    },
+    "transfer-perigee": {
+        "starts": [{"position_m": [0, 60, 0]}],
+        "attitude": {"kind": "spin", "axis": [1, 0, 1], "axis_frame": "inertial", "rate_deg_s": 2.0},
+        "orbit": _TRANSFER | {"true_anomaly_deg": 0.0},
+        "a_max_m_s2": 0.05,
+    },
+    "transfer-apogee": {
+        "starts": [{"position_m": [0, 60, 0]}],
+        "attitude": {"kind": "spin", "axis": [1, 0, 1], "axis_frame": "inertial", "rate_deg_s": 2.0},
+        "orbit": _TRANSFER | {"true_anomaly_deg": 180.0},
+        "a_max_m_s2": 0.05,
+    },
+    "molniya-perigee": {
+        "starts": [{"position_m": [0, 40, 0], "velocity_m_s": [0.2, 0, 0]}],
+        "attitude": {"kind": "spin", "axis": [1, 0, 1], "axis_frame": "inertial", "rate_deg_s": -3.0},
+        "orbit": _MOLNIYA | {"true_anomaly_deg": 0.0},
+        "a_max_m_s2": 0.05,
+    },
+    "spinning-axis": {
+        "starts": [{"position_m": [0, 20, 4]}],
+        "attitude": {"kind": "spin", "axis": [0, 1, 0.2], "axis_frame": "inertial", "rate_deg_s": 10.0},
+        "orbit": {"semi_major_axis_m": 7180000.0, "eccentricity": 0.0},
+        "corridor": {"axis": [0, 1, 0.2], "c_x": 0.5, "c_z": 0.5},
+        "a_max_m_s2": 0.02,
+    },
+}

@@ -1,0 +1,1 @@
+"""Clients that others wrote or generate, by hand: ``python -m tests.clients``."""
