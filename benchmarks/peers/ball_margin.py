@@ -1,0 +1,278 @@
+"""The largest margin at finitely many rows over thrusts in balls: a compiled primal-dual interior-point method.
+
+Maximise m over points w_k (d,) with |w_k| <= 1, k < N, subject to s_j = c_j + r_j . w - m >= 0, j < J. Multipliers
+z_j of the rows and y_k of the balls, written h_k = 1 - |w_k|^2 >= 0, satisfy at the optimum
+
+    sum_j z_j = 1,    sum_j z_j r_jk = 2 y_k w_k,    z_j s_j = 0,    y_k h_k = 0.
+
+Each round takes a Newton step for these equations with their last two relaxed to a falling target, first towards 0,
+then with the second-order terms of that trial (Mehrotra, SIAM J. Optim. 2, 1992). The blocks 2 y_k I + 4 y_k / h_k
+w_k w_k^T of the balls have closed-form square roots, which leaves a J x J system: J is some twenty, N d may be a
+thousand. All iterates are strictly feasible, and any z > 0 proves a bound, so the method stops when the two are close.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from safestart.runtime.kernels import compiled
+
+SOLVED, SINGULAR, SLOW = 0, 1, 2
+"""Status: within the tolerance; the system of a step was not positive definite; too many iterations."""
+MOST_ITERATIONS = 40
+
+# The share of the way to the boundary that a step goes, and how far below the rows the first margin lies, as a share
+# of the farthest that thrusts can move a row.
+_SHARE, _BELOW = 0.99, 0.3
+_LEAST_CENTERING = 1e-6
+# After a step shorter than this the next one goes for the middle first.
+_SHORT, _RECENTERING = 0.1, 0.5
+# A ball that does not bind has y near 0: its block is taken no flatter than this share of the mean row, or the system's
+# rounding would hide the slacks. It changes the path, not the optimum.
+_LEAST_CURVATURE = 1e-6
+_LEAST_PIVOT = 1e-15
+
+
+@compiled()
+def _dot(a: Any, b: Any, count: int) -> float:
+    # Eight sums side by side: vector instructions without the freedom to reorder, so every processor gives these bits.
+    s0 = s1 = s2 = s3 = s4 = s5 = s6 = s7 = 0.0
+    whole = count - count % 8
+    for i in range(0, whole, 8):
+        s0 += a[i] * b[i]
+        s1 += a[i + 1] * b[i + 1]
+        s2 += a[i + 2] * b[i + 2]
+        s3 += a[i + 3] * b[i + 3]
+        s4 += a[i + 4] * b[i + 4]
+        s5 += a[i + 5] * b[i + 5]
+        s6 += a[i + 6] * b[i + 6]
+        s7 += a[i + 7] * b[i + 7]
+    total = ((s0 + s1) + (s2 + s3)) + ((s4 + s5) + (s6 + s7))
+    for i in range(whole, count):
+        total += a[i] * b[i]
+    return total
+
+
+@compiled()
+def _factor(matrix: Any) -> bool:
+    """Cholesky factor into the lower triangle, in place; False where the matrix is not positive definite."""
+    size = len(matrix)
+    for j in range(size):
+        pivot, least = matrix[j, j], _LEAST_PIVOT * matrix[j, j]
+        for i in range(j):
+            pivot -= matrix[j, i] * matrix[j, i]
+        pivot = max(pivot, least)
+        if not 0.0 < pivot < math.inf:
+            return False
+        pivot = math.sqrt(pivot)
+        matrix[j, j] = pivot
+        for row in range(j + 1, size):
+            value = matrix[row, j]
+            for i in range(j):
+                value -= matrix[row, i] * matrix[j, i]
+            matrix[row, j] = value / pivot
+    return True
+
+
+@compiled()
+def _back(factor: Any, x: Any) -> None:
+    """Solve with the factor, in place."""
+    size = len(x)
+    for j in range(size):
+        value = x[j]
+        for i in range(j):
+            value -= factor[j, i] * x[i]
+        x[j] = value / factor[j, j]
+    for j in range(size - 1, -1, -1):
+        value = x[j]
+        for i in range(j + 1, size):
+            value -= factor[i, j] * x[i]
+        x[j] = value / factor[j, j]
+
+
+@compiled()
+def _pull(rows: Any, ends: Any, z: Any, pull: Any) -> None:
+    """sum_j z_j r_j into ``pull``; row j is 0 from ``ends[j]`` on."""
+    pull[:] = 0.0
+    for j in range(len(rows)):
+        for i in range(ends[j]):
+            pull[i] += z[j] * rows[j, i]
+
+
+@compiled()
+def _reach(pull: Any, d: int) -> float:
+    """Largest pull . w over the balls: the sum of norms."""
+    total = 0.0
+    for k in range(len(pull) // d):
+        square = 0.0
+        for i in range(d * k, d * k + d):
+            square += pull[i] * pull[i]
+        total += math.sqrt(square)
+    return total
+
+
+@compiled()
+def _through_root(v: Any, w: Any, gamma: float, root: float, begin: int, d: int, out: Any) -> None:
+    """B^(-1/2) v for one ball, B = 2 y (I + (2 / h) w w^T): ``root`` (I - ``gamma`` w w^T) v."""
+    along = 0.0
+    for i in range(begin, begin + d):
+        along += v[i] * w[i]
+    along *= gamma
+    for i in range(begin, begin + d):
+        out[i] = root * (v[i] - along * w[i])
+
+
+@compiled()
+def largest_margin(constant: Any, rows: Any, d: int, tolerance: float) -> Any:
+    """Points w (N d,), weights z (J,) of sum 1, status and the number of iterations.
+
+    ``constant`` (J,) in metres, ``rows`` (J, N d) in metres at |w| = 1. Solved: the bound that z proves is within
+    ``tolerance`` (m) of the margin of w.
+    """
+    count, size = rows.shape
+    # No thrust moves a row after its time: what follows its last entry is not computed.
+    ends = np.zeros(count, np.int64)
+    for j in range(count):
+        end = size
+        while end > 0 and rows[j, end - 1] == 0.0:
+            end -= 1
+        ends[j] = (end + d - 1) // d * d
+    balls = size // d
+    w, pull, q, step = np.zeros(size), np.zeros(size), np.zeros(size), np.zeros(size)
+    trial, along = np.zeros(size), np.zeros(size)
+    scaled, system = np.zeros((count, size)), np.zeros((count, count))
+    s, ds, ds_trial, dz, dz_trial = (
+        np.zeros(count),
+        np.zeros(count),
+        np.zeros(count),
+        np.zeros(count),
+        np.zeros(count),
+    )
+    ones, z, best = np.zeros(count), np.full(count, 1.0 / count), np.zeros(count)
+    h, dy, dy_trial, gamma, root = (
+        np.ones(balls),
+        np.zeros(balls),
+        np.zeros(balls),
+        np.zeros(balls),
+        np.zeros(balls),
+    )
+    reach = 1e-300
+    for j in range(count):
+        reach = max(reach, _reach(rows[j], d))
+    margin = constant.min() - _BELOW * reach
+    y = np.full(balls, 0.5 * reach / balls)
+    least = _LEAST_CURVATURE * reach / balls
+    bound, stuck = np.inf, False
+    for iteration in range(MOST_ITERATIONS):
+        # Slacks anew from the point, so that no rounding gathers; then the bound, the margin and the mean product.
+        lowest, product, total, weighted = np.inf, 0.0, 0.0, 0.0
+        for j in range(count):
+            s[j] = constant[j] + _dot(rows[j], w, ends[j]) - margin
+            lowest = min(lowest, s[j])
+            product += z[j] * s[j]
+            total += z[j]
+            weighted += z[j] * constant[j]
+        _pull(rows, ends, z, pull)
+        here = (weighted + _reach(pull, d)) / total
+        if here < bound:
+            bound = here
+            for j in range(count):
+                best[j] = z[j] / total
+        if bound - (margin + lowest) <= tolerance:
+            return w, best, SOLVED, iteration
+        for k in range(balls):
+            product += y[k] * h[k]
+            wide = h[k] + 2.0 * (1.0 - h[k])
+            root[k] = 1.0 / math.sqrt(2.0 * max(y[k], least))
+            gamma[k] = 2.0 / (wide * (1.0 + math.sqrt(h[k] / wide)))
+        product /= count + balls
+        for j in range(count):
+            for k in range(ends[j] // d):
+                _through_root(rows[j], w, gamma[k], root[k], d * k, d, scaled[j])
+            for i in range(j + 1):
+                system[j, i] = _dot(scaled[j], scaled[i], min(ends[i], ends[j]))
+            system[j, j] += s[j] / z[j]
+            ones[j] = 1.0
+        if not (lowest > 0.0 and _factor(system)):
+            return w, best, SINGULAR, iteration
+        _back(system, ones)
+        target, dm = 0.0, 0.0
+        primal, dual = 1.0, 1.0
+        for phase in range(2):
+            # The right-hand sides; in the second phase with the second-order terms of the first one's step.
+            for k in range(balls):
+                missing = target - y[k] * h[k]
+                if phase == 1:
+                    for i in range(d * k, d * k + d):
+                        missing += trial[i] * (2.0 * w[i] * dy_trial[k] + y[k] * trial[i])
+                for i in range(d * k, d * k + d):
+                    q[i] = pull[i] - 2.0 * w[i] * (y[k] + missing / h[k])
+                    if phase == 1:
+                        q[i] -= 2.0 * dy_trial[k] * trial[i]
+                _through_root(q, w, gamma[k], root[k], d * k, d, along)
+                dy[k] = missing / h[k]
+            for j in range(count):
+                dz[j] = target / z[j] - s[j] - _dot(scaled[j], along, ends[j])
+                if phase == 1:
+                    dz[j] -= ds_trial[j] * dz_trial[j] / z[j]
+            _back(system, dz)
+            dm = (1.0 - total - dz.sum()) / ones.sum()
+            for j in range(count):
+                dz[j] += dm * ones[j]
+                for i in range(ends[j]):
+                    along[i] += scaled[j, i] * dz[j]
+            # The step, and how far it stays strictly inside.
+            primal, dual = 1.0, 1.0
+            for k in range(balls):
+                _through_root(along, w, gamma[k], root[k], d * k, d, step)
+                inner, square = 0.0, 0.0
+                for i in range(d * k, d * k + d):
+                    inner += w[i] * step[i]
+                    square += step[i] * step[i]
+                dy[k] += 2.0 * y[k] * inner / h[k]
+                if dy[k] < 0.0:
+                    dual = min(dual, -y[k] / dy[k])
+                if square > 0.0:
+                    # |w + a step| = 1, without cancellation.
+                    radical = math.sqrt(inner * inner + square * h[k])
+                    primal = min(
+                        primal, h[k] / (inner + radical) if inner > 0.0 else (radical - inner) / square
+                    )
+            for j in range(count):
+                ds[j] = _dot(rows[j], step, ends[j]) - dm
+                if ds[j] < 0.0:
+                    primal = min(primal, -s[j] / ds[j])
+                if dz[j] < 0.0:
+                    dual = min(dual, -z[j] / dz[j])
+            if phase == 0:
+                after = 0.0
+                for j in range(count):
+                    after += (z[j] + dual * dz[j]) * (s[j] + primal * ds[j])
+                    ds_trial[j], dz_trial[j] = ds[j], dz[j]
+                for k in range(balls):
+                    left = h[k]
+                    for i in range(d * k, d * k + d):
+                        left -= primal * step[i] * (2.0 * w[i] + primal * step[i])
+                        trial[i] = step[i]
+                    after += (y[k] + dual * dy[k]) * left
+                    dy_trial[k] = dy[k]
+                ratio = min(1.0, after / ((count + balls) * product))
+                target = max(ratio * ratio * ratio, _RECENTERING if stuck else _LEAST_CENTERING) * product
+        primal, dual = min(1.0, _SHARE * primal), min(1.0, _SHARE * dual)
+        stuck = min(primal, dual) < _SHORT
+        margin += primal * dm
+        for j in range(count):
+            z[j] += dual * dz[j]
+        for k in range(balls):
+            square = 0.0
+            for i in range(d * k, d * k + d):
+                w[i] += primal * step[i]
+                square += w[i] * w[i]
+            h[k] = 1.0 - square
+            y[k] += dual * dy[k]
+            if not (h[k] > 0.0 and y[k] > 0.0):
+                return w, best, SINGULAR, iteration
+    return w, best, SLOW, MOST_ITERATIONS
