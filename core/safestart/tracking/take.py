@@ -102,7 +102,8 @@ def _made(approach: Approach, reserve: float) -> tuple[Program, Floats, Floats, 
 
 
 def _flight(approach: Approach, start: Floats, reserve: float) -> Taken:
-    program, attitudes, rates, shifts = _made(approach, reserve)
+    made, attitudes, rates, shifts = _made(approach, reserve)
+    program = made.apart()
     motion, port = program.motion, np.array([0.0, approach.shape.y0, 0.0])
     state = np.array(start, dtype=np.float64)
     states, given, plans, arrived = [state], [], [], None

@@ -1,5 +1,6 @@
 """Go-no-go by the tracking MPC: GO with documents that the checker verifies, never where nothing can stay."""
 
+import numpy as np
 import pytest
 
 from safestart.errors import InvalidInput
@@ -57,18 +58,24 @@ def test_what_it_cannot_take_is_undecided_beside_the_exact_answer():
     ],
 )
 def test_a_freely_tumbling_target(thrust):
-    starts = [
-        {"position_m": [1.5, 4, 1.5]},
-        {"position_m": [2, 9, 1], "frame": "body"},
-        {"position_m": [0, 40, 0]},
-    ]
-    asked = SPACE | {"thrust": thrust, "starts": starts, "proofs": True}
+    starts = [{"position_m": [1.5, 4, 1.5]}, {"position_m": [0, 40, 0]}]
+    asked = SPACE | {"thrust": thrust, "starts": starts, "horizon_s": 24, "proofs": True, "flights": True}
     outputs = execute("start-in-space", asked).document["outputs"]
-    assert outputs["verdict"] == ["GO", "GO", "UNDECIDED"]
-    assert [one["certified"] for one in outputs["tracking"]] == [True, True, False]
-    for proof in outputs["proof"][:2]:
-        assert checker.check(proof).verdict == "GO"
-    assert outputs["proof"][2] is None
+    assert outputs["verdict"] == ["GO", "UNDECIDED"]
+    assert [one["certified"] for one in outputs["tracking"]] == [True, False]
+    shown = checker.check(outputs["proof"][0])
+    assert shown.verdict == "GO"
+    least = np.min(outputs["flight"][0]["distance_m"])
+    assert shown.margin_m - 1e-6 <= outputs["margin_m"][0] <= least
+    assert outputs["proof"][1] is outputs["flight"][1] is None
+
+
+def test_a_start_in_the_body_s_axes():
+    thrust = {"kind": "ball", "a_max_m_s2": 0.1}
+    starts = [{"position_m": [2, 9, 1], "frame": "body"}]
+    outputs = execute("start-in-space", SPACE | {"thrust": thrust, "starts": starts}).document["outputs"]
+    assert outputs["verdict"] == ["GO"]
+    assert outputs["tracking"][0]["certified"]
 
 
 def test_a_corridor_along_another_axis():

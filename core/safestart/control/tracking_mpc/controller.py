@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -77,15 +78,7 @@ class Program:
                 np.zeros(len(theta_high)),
             ]
         )
-        n, size = 3 * tuning.n_c + 3, len(self.high)
-        self.rows, self.shift = np.empty((n, size)), np.empty((6, size))
-        self.hessian, self.slope = np.empty((n, n)), np.empty((n, 6))
-        # Maps of theta: to x_e(0), to positions in the body, to inputs in the body.
-        self.start, self.spots, self.held = (
-            np.empty((6, 3)),
-            np.empty((total, 3, 3)),
-            np.empty((total, 3, 3)),
-        )
+        self._allocate()
         self.fixed = Fixed(
             motion.weights,
             motion.flat,
@@ -98,6 +91,21 @@ class Program:
             sides,
             np.ascontiguousarray(limit.normals),
         )
+
+    def _allocate(self) -> None:
+        """The arrays that a step fills."""
+        n, size, total = 3 * self.tuning.n_c + 3, len(self.high), self.tuning.inputs
+        self.rows, self.shift = np.empty((n, size)), np.empty((6, size))
+        self.hessian, self.slope = np.empty((n, n)), np.empty((n, 6))
+        # Maps of theta: to x_e(0), to positions in the body, to inputs in the body.
+        self.start = np.empty((6, 3))
+        self.spots, self.held = np.empty((total, 3, 3)), np.empty((total, 3, 3))
+
+    def apart(self) -> Program:
+        """The same program with arrays of its own: two threads must not fill the same ones."""
+        other = copy(self)
+        other._allocate()
+        return other
 
     @property
     def ahead(self) -> int:
