@@ -84,7 +84,7 @@ def test_a_method_of_go_no_go(extended: tuple[list[Touched], dict[str, Any]]) ->
     assert found["proof"] == "safestart-proof/1", "of the exact answer: the method has none"
     assert "'reserve'" in found["refused"]
     assert found["parameter"]["schema"]["enum"] == [
-        *("reserve", "certified", "paper", "exact", "auto", "closed_form")
+        *("reserve", "certified", "paper", "exact", "auto", "tracking", "closed_form")
     ]
     assert "reserve: a metre in reserve." in found["parameter"]["description"]
 

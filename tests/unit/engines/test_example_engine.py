@@ -82,4 +82,4 @@ def test_the_api_describes_it(told: dict) -> None:
     }
     assert described["inputs"]["speed"]["schema"]["properties"]["speed_m_s"]["default"] == 3.0
     assert described["inputs"]["engines"]["schema"]["items"]["enum"][-1] == "speed"
-    assert described["inputs"]["engines"]["schema"]["maxItems"] == 8
+    assert described["inputs"]["engines"]["schema"]["maxItems"] == 9
