@@ -23,7 +23,8 @@ from safestart.processes.base import WireModel
 
 Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
 Triple = Annotated[list[float], Field(min_length=3, max_length=3)]
-"""Outputs of a fixed length are columns of their own in tables."""
+PlanarOrSolid = Annotated[list[float], Field(min_length=2, max_length=3)]
+"""Outputs of a bounded length are columns of their own in tables."""
 TumbleRate = Annotated[
     float,
     Field(ge=0.0, le=60.0, description="Tumble rate of the target about LVLH z, deg/s.", examples=[3.0]),

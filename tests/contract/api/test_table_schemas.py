@@ -19,7 +19,7 @@ import polars as pl
 import pyarrow.dataset as ds
 import pyarrow.parquet as pq
 import pytest
-from annotated_types import Ge, Gt, MinLen
+from annotated_types import Ge, Gt, MaxLen, MinLen
 from pydantic import BaseModel
 from scipy.io import loadmat
 
@@ -40,7 +40,8 @@ def made(annotation: Any, *, full: bool) -> Any:
         value = made(kind, full=full)
         if isinstance(value, list) and least:
             inner = get_args(kind)[0]
-            return [made(inner, full=full) for _ in range(least)]
+            most = min((part.max_length for part in flat if isinstance(part, MaxLen)), default=least)
+            return [made(inner, full=full) for _ in range(most if full else least)]
         bounds = [part for part in flat if isinstance(part, Gt | Ge)]
         return value + 1 if bounds and not isinstance(value, bool) else value
     if get_origin(annotation) in (Union, types.UnionType):

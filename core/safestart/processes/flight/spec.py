@@ -12,7 +12,7 @@ from safestart.processes.costs import FIRST_S, program_s
 from safestart.processes.go_no_go.question_fields import QuestionKind
 from safestart.processes.go_no_go.spec import StateInput
 from safestart.processes.views import Column, Findings, Layer, Picture
-from safestart.processes.wire import Horizon, Pair, ScenarioInput
+from safestart.processes.wire import Horizon, PlanarOrSolid, ScenarioInput
 
 
 class FlightInputs(ScenarioInput):
@@ -35,10 +35,10 @@ class FlightOutputs(WireModel):
     verdict: Literal["GO", "NO_GO", "UNDECIDED"] = Field(description="Of the exact question.")
     margin_m: float | None = Field(description="Proved bound: from below for GO, from above for NO_GO.")
     time_s: list[float]
-    body_m: list[Pair] = Field(description="Position in the target's body frame.")
-    lvlh_m: list[Pair] = Field(description="Position in LVLH.")
-    lvlh_m_s: list[Pair] = Field(description="Velocity in LVLH, m/s.")
-    thrust_m_s2: list[Pair] = Field(description="Acceleration in LVLH, held over each interval.")
+    body_m: list[PlanarOrSolid] = Field(description="Position in the target's body frame.")
+    lvlh_m: list[PlanarOrSolid] = Field(description="Position in LVLH.")
+    lvlh_m_s: list[PlanarOrSolid] = Field(description="Velocity in LVLH, m/s.")
+    thrust_m_s2: list[PlanarOrSolid] = Field(description="Acceleration in LVLH, held over each interval.")
     faces: list[str]
     distance_m: list[list[float]] = Field(description="Distance to each face over time; negative: outside.")
     closest_face: str

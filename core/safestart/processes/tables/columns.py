@@ -129,9 +129,12 @@ def _columns(name: str, annotation: Any, path: Path, *, nullable: bool = False) 
             return
         if _scalar(inner) is Kind.TEXT:
             yield Column(name, Kind.TEXT, nullable, path)
-        elif length is not None and length <= MOST_ENTRIES:
-            for place in range(length):
-                yield from _columns(f"{name}.{place}", inner, (*path, place), nullable=nullable)
+        elif length is not None and length[1] <= MOST_ENTRIES:
+            least, most = length
+            for place in range(most):
+                yield from _columns(
+                    f"{name}.{place}", inner, (*path, place), nullable=nullable or place >= least
+                )
         else:
             yield Column(name, Kind.NUMBERS, nullable, path)
         return
@@ -165,14 +168,14 @@ def _plain(annotation: Any) -> tuple[Any, bool]:
     return annotation, False
 
 
-def _length(annotation: Any) -> int | None:
-    """The fixed length of a list; None where it depends on the question."""
+def _length(annotation: Any) -> tuple[int, int] | None:
+    """The least and the most entries of a list; None where they are not bounded."""
     for part in (annotation, *get_args(annotation)):
         if get_origin(part) is Annotated:
             least = [item.min_length for item in _constraints(part) if isinstance(item, MinLen)]
             most = [item.max_length for item in _constraints(part) if isinstance(item, MaxLen)]
-            if least and least == most:
-                return least[0]
+            if least and most:
+                return least[0], most[0]
     return None
 
 
