@@ -7,7 +7,7 @@ from pydantic import Field
 from safestart.model.scenario import MAX_MEAN_MOTION
 from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.views import Column, Facts
-from safestart.processes.wire import Horizon
+from safestart.processes.wire import Horizon, Triple
 
 
 class DriftInputs(WireModel):
@@ -23,7 +23,7 @@ class DriftOutputs(WireModel):
     """A curve over ``time_s`` and its closest point."""
 
     time_s: list[float]
-    position_m: list[list[float]] = Field(description="LVLH, m.")
+    position_m: list[Triple] = Field(description="LVLH, m.")
     closest_m: float = Field(description="Smallest distance to the target's centre.")
     closest_s: float = Field(description="When it is reached.")
 
