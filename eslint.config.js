@@ -40,5 +40,5 @@ export default [
     },
   },
   { files: ["tests/browser/*.js"], languageOptions: { globals: globals.browser } },
-  { files: ["tests/javascript/*.js", "*.js"], languageOptions: { globals: globals.nodeBuiltin } },
+  { files: ["tests/javascript/*.js", "tests/clients/programs/*.mjs", "*.js"], languageOptions: { globals: globals.nodeBuiltin } },
 ];

@@ -58,7 +58,10 @@ export async function drawScene({ view, result, parts }) {
       play.textContent = "Fly it";
     };
     play.addEventListener("click", () => {
-      if (running) return stop();
+      if (running) {
+        stop();
+        return;
+      }
       const from = step >= last ? times[0] : times[step], begun = performance.now();
       play.textContent = "Pause";
       const tick = (at) => {
