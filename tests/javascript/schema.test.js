@@ -41,4 +41,7 @@ test("an object that nothing was typed into is left out, unless it is asked for"
   assert.equal(filled([["a", undefined], ["b", 0]], true, spin), undefined, "nobody began it");
   assert.deepEqual(filled([["a", undefined], ["b", 1]], true, spin), { b: 1 }, "the service says what is missing");
   assert.deepEqual(filled([["a", 2], ["b", 0]], true, spin), { a: 2, b: 0 });
+  const usual = { properties: { tau: { default: 10 } } };
+  assert.equal(filled([["tau", 10]], true, usual), undefined, "a part that is complete without anybody stays absent, too");
+  assert.deepEqual(filled([["tau", 20]], true, usual), { tau: 20 });
 });

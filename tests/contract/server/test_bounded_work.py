@@ -8,7 +8,6 @@ from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
-from types import SimpleNamespace
 
 import httpx
 import psutil
@@ -123,7 +122,7 @@ def test_an_answer_that_takes_too_long(tmp_path: Path, monkeypatch: pytest.Monke
 
         assert refused() < 2.0
         # As if the estimate were wrong; the helper process has its own, so the question goes there by its document.
-        monkeypatch.setattr("safestart_service.computing.dispatch.SPEC", SimpleNamespace(cost=lambda _: 0.1))
+        monkeypatch.setattr("safestart_service.computing.dispatch.cost", lambda _: 0.1)
         slow = {**POINT, "x_m": 5, "y_m": 40, "method": "exact", "horizon_s": 600}
         slow |= {"omega_t_half_width_deg_s": 0.1}  # half a minute
         begun = time.monotonic()

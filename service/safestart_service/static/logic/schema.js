@@ -51,12 +51,11 @@ export function parsed(text) {
 }
 
 /**
- * An object of entries [name, value] without undefined ones; undefined if it is optional and nobody began it: none is left,
- * or one that `schema` requires is missing and all others are as `schema` gives them.
+ * An object of entries [name, value] without undefined ones; undefined if it is optional and nobody began it: all that is
+ * left is as `schema` gives it.
  */
-export function filled(entries, optional, { required = [], properties = {} } = {}) {
-  const there = entries.filter(([, value]) => value !== undefined), names = there.map(([name]) => name);
+export function filled(entries, optional, { properties = {} } = {}) {
+  const there = entries.filter(([, value]) => value !== undefined);
   const begun = there.some(([name, value]) => JSON.stringify(value) !== JSON.stringify(properties[name]?.default));
-  const whole = required.every((name) => names.includes(name));
-  return optional && (!there.length || (!whole && !begun)) ? undefined : Object.fromEntries(there);
+  return optional && !begun ? undefined : Object.fromEntries(there);
 }
