@@ -22,7 +22,9 @@ function group(schema, whole, name, path, given) {
   const example = whole.examples?.[0] ?? {};
   const parts = Object.entries(schema.properties).map(([key, inner]) => {
     const required = schema.required?.includes(key);
-    const known = given?.[key] ?? (path === "" && required ? example[key] : undefined);
+    // What has no value of its own stands as in the example, so that the form as it opens is a question.
+    const bare = required || (inner.default ?? null) === null;
+    const known = given?.[key] ?? (path === "" && bare ? example[key] : undefined);
     return [key, field(inner, whole, key, path ? `${path}.${key}` : key, known), path !== "" || required || key in example || given?.[key] !== undefined];
   });
   const open = parts.filter(([, , first]) => first), rare = parts.filter(([, , first]) => !first);
