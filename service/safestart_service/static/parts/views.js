@@ -21,7 +21,9 @@ const SHORT = 12;
  * the elements are on the page.
  */
 export function shown(result) {
-  const head = [], pictures = [], parts = [], draws = [], views = result.spec["safestart:views"], from = views.findIndex((view) => isLong(view, result));
+  const head = [], pictures = [], parts = [], draws = [], views = result.spec["safestart:views"], long = views.findIndex((view) => isLong(view, result));
+  // A long table that comes first is the finding: its beginning belongs on the first screen.
+  const from = long === 0 && views[0].kind === "rows" ? 1 : long;
   views.forEach((view, k) => KINDS[view.kind]?.(view, result, view.kind === "picture" ? pictures : from < 0 || k < from ? head : parts, draws));
   return { head, pictures, parts, draws };
 }
