@@ -101,7 +101,7 @@ function json(schema, name, path, given) {
 
 /** Mark the field that a problem names, with what is wrong beside it; true if it exists. */
 export function mark(form, name, wrong = "") {
-  for (const old of form.querySelectorAll(".wrong")) old.remove();
+  for (const old of form.querySelectorAll(".field-error")) old.remove();
   for (const old of form.querySelectorAll('[aria-invalid="true"]')) old.removeAttribute("aria-invalid");
   const plain = String(name ?? "").replace(/^inputs\.?/, "");
   for (let path = plain; path; path = path.includes(".") ? path.slice(0, path.lastIndexOf(".")) : "") {
@@ -109,7 +109,7 @@ export function mark(form, name, wrong = "") {
     if (found) {
       found.setAttribute("aria-invalid", "true");
       for (let fold = found.closest("details"); fold; fold = fold.parentElement.closest("details")) fold.open = true;
-      if (wrong) found.closest(".dial, fieldset").append(el("p", { class: "note wrong" }, wrong));
+      if (wrong) found.closest(".dial, fieldset").append(el("p", { class: "note field-error" }, wrong));
       found.scrollIntoView({ block: "center" });
       found.focus?.();
       return true;
