@@ -107,15 +107,19 @@ def asked(document: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _margin(stated: Stated) -> str:
-    limits, least = stated.limits, "the distance to the nearest face"
-    also = [] if limits.most is None else [f"{_number(limits.scale)} s times the speed left to the limit"]
+    least, *also = margin_parts(stated.limits)
+    return f"the least of {', '.join([least, *also])}" if also else least
+
+
+def margin_parts(limits: Any) -> list[str]:
+    """The distances (m) whose least is the margin, in words; ``limits`` has a speed limit and an end, or neither."""
+    parts = ["the distance to the nearest face"]
+    if limits.most is not None:
+        parts.append(f"{_number(limits.scale)} s times the speed left to the limit")
     if limits.hold is not None:
-        scale = f"{_number(limits.radius)} / {_number(limits.rest)}"
-        also += [
-            "at the end the distance to the edge of the hold ball",
-            f"{scale} s times the speed left to rest",
-        ]
-    return f"the least of {least}, {', '.join(also)}" if also else least
+        parts.append("at the end the distance to the edge of the hold ball")
+        parts.append(f"{_number(limits.radius)} / {_number(limits.rest)} s times the speed left to rest")
+    return parts
 
 
 def _asked(stated: Stated) -> list[str]:

@@ -8,6 +8,7 @@ from flint import fmpq
 
 from safestart.proofs.space.parts import Attitude
 from safestart.proofs.space.statement import SpaceStated
+from safestart.proofs.wording import margin_parts
 
 _AXES = {"lvlh": "LVLH", "body": "the body frame"}
 
@@ -40,15 +41,7 @@ def _found(stated: SpaceStated) -> str:
             if go
             else "from no start of the box a thrust history keeps more than"
         )
-    limits, least = stated.limits, "the distance to the nearest face"
-    also = [] if limits.most is None else [f"{_number(limits.scale)} s times the speed left to the limit"]
-    if limits.hold is not None:
-        scale = f"{_number(limits.radius)} / {_number(limits.rest)}"
-        also += [
-            "at the end the distance to the edge of the hold ball",
-            f"{scale} s times the speed left to rest",
-        ]
-    return f"{found} the margin, the least of {', '.join([least, *also])}"
+    return f"{found} the margin, the least of {', '.join(margin_parts(stated.limits))}"
 
 
 def _asked(stated: SpaceStated) -> list[str]:
