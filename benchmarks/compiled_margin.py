@@ -16,11 +16,11 @@ import numpy as np
 import pytest
 
 from benchmarks.exact_answers import draw
-from safestart.optim.ball_margin import SOLVED, largest_margin
 from benchmarks.timing import once
 from safestart.exact import search
 from safestart.exact.decide import decide
 from safestart.model.scenario import Floats
+from safestart.optim.ball_margin import SOLVED, largest_margin
 from safestart.optim.largest_margin import Solved, solve, solve_by_cones
 
 FINE_M, COARSE_M = 1e-8, 2e-5

@@ -124,7 +124,8 @@ def test_the_service_has_a_place_of_its_own_for_the_kernels_of_exact_answers(com
     order = [name for name, _ in instructions]
     volume = next(arguments for name, arguments in instructions if name == "VOLUME")
     compiled = next(arguments for name, arguments in instructions if "kernels.warm" in arguments)
-    assert compiled.startswith("[") and order.index("VOLUME") > instructions.index(("RUN", compiled))
+    assert compiled.startswith("[")
+    assert order.index("VOLUME") > instructions.index(("RUN", compiled))
     environment = " ".join(arguments for name, arguments in instructions if name == "ENV")
     assert f"NUMBA_CACHE_DIR={volume}" in environment
     # Kernels are code: the workers do not run what the process that meets the outside may write.
