@@ -5,6 +5,7 @@ from __future__ import annotations
 from fastapi import APIRouter, Request
 from fastapi.responses import Response
 
+from safestart_service.documents.describe import verdict_words
 from safestart_service.documents.openapi import content, refusals
 from safestart_service.http.answers import root_path
 from safestart_service.pages import render as pages
@@ -62,7 +63,12 @@ async def submit(request: Request) -> Response:
 async def jobs(request: Request) -> Response:
     """Jobs with progress, place in the queue, time left and why they wait."""
     return pages.page(
-        "jobs.html", root=root_path(request), here="/dashboard/jobs", script="jobs.js", plots=False
+        "jobs.html",
+        root=root_path(request),
+        here="/dashboard/jobs",
+        script="jobs.js",
+        plots=False,
+        verdicts=verdict_words(),
     )
 
 

@@ -2,8 +2,10 @@
 
 import { newest } from "../logic/store.js";
 import { duration, moment } from "../logic/words.js";
-import { Problem, call, follow, get, post, remove, root } from "../parts/api.js";
+import { Problem, call, follow, get, remove, root } from "../parts/api.js";
+import { again } from "../parts/bulk.js";
 import { copies } from "../parts/copies.js";
+import { labelled } from "../parts/labels.js";
 import { $, definition, el, fail, loading, status } from "../parts/page.js";
 import { description } from "../parts/process.js";
 import { known, results, verdictBadge } from "../parts/results.js";
@@ -25,17 +27,31 @@ function tell(at, text) {
 }
 
 function title() {
-  $("title").replaceChildren(...[`${job.processID} `, verdict, status(job)].filter(Boolean));
-  document.title = `${job.processID} ${job.status} · safestart`;
+  $("title").replaceChildren(...[`${job.name || job.processID} `, verdict, status(job)].filter(Boolean));
+  $("process").textContent = job.name ? `${job.processID} ` : "";
+  document.title = `${job.name || job.processID} ${job.status} · safestart`;
+}
+
+/** Name, tags and note, unless somebody is writing them. */
+function labels() {
+  if ($("labels").contains(document.activeElement) && $("labels").querySelector("form")) return;
+  $("labels").replaceChildren(labelled(job, fail, (now) => {
+    job = now;
+    title();
+    $("labels").replaceChildren();
+    labels();
+    $("label").focus();
+  }));
 }
 
 function frame() {
   title();
+  labels();
   $("inputs").textContent = JSON.stringify(job.inputs, null, 1);
   const active = isActive();
   $("tools").replaceChildren(...[
     active && !job.dismissal_requested ? el("button", { type: "button", class: "danger", onclick: cancel }, "Cancel") : null,
-    active ? null : el("button", { type: "button", onclick: again }, job.status === "successful" ? "Run again" : "Try again"),
+    active ? null : el("button", { type: "button", onclick: repeat }, job.status === "successful" ? "Run again" : "Try again"),
     el("a", { href: `${root}/dashboard/submit?process=${job.processID}&from=${id}` }, "Change inputs"),
     copies(() => ({ id: job.processID, inputs: job.inputs })),
   ].filter(Boolean));
@@ -122,11 +138,10 @@ async function cancel() {
   }
 }
 
-async function again({ target }) {
+async function repeat({ target }) {
   target.disabled = true;
   try {
-    const next = await post(`/processes/${job.processID}/execution`, { inputs: job.inputs }, { headers: { Prefer: "respond-async" } });
-    location.assign(`${root}/dashboard/jobs/${next.jobID}`);
+    location.assign(`${root}/dashboard/jobs/${await again(job)}`);
   } catch (error) {
     fail($("tools"), error, () => location.reload());
   }

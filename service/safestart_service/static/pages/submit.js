@@ -4,6 +4,7 @@ import { Store } from "../logic/store.js";
 import { call, execute, get, root } from "../parts/api.js";
 import { copies } from "../parts/copies.js";
 import { field, mark } from "../parts/form.js";
+import { labelFields } from "../parts/labels.js";
 import { $, el, fail, loading } from "../parts/page.js";
 import { description } from "../parts/process.js";
 import { firstScreen, known, rest, verdictBadge } from "../parts/results.js";
@@ -11,7 +12,7 @@ import { shown } from "../parts/views.js";
 
 const address = new URLSearchParams(location.search);
 const isLight = (one) => one.jobControlOptions.includes("sync-execute");
-let entry = null;
+let entry = null, labels = null;
 
 // `entered` is the content of the form, `sent` the inputs of the run; the answer is shown while both are equal.
 const store = new Store({ process: null, from: address.get("from"), entered: null, sent: null });
@@ -20,7 +21,7 @@ store.panel({
   poses: ({ process, from }) => process && { process, from },
   asks: async ({ process, from }, signal) => {
     const [spec, job] = await Promise.all([description(process), from ? get(`/jobs/${from}`, { signal }) : null]);
-    return { spec, given: job?.inputs };
+    return { spec, given: job?.inputs, named: job ? { name: job.name, tags: job.tags, note: job.note } : {} };
   },
   shows: showForm,
 });
@@ -42,10 +43,11 @@ function showForm({ state, answer, error }) {
     loading($("form"));
     return;
   }
-  const { spec, given } = answer, schema = whole(spec), light = isLight(spec);
+  const { spec, given, named } = answer, schema = whole(spec), light = isLight(spec);
   $("what").textContent = spec.description;
   entry = field(schema, schema, "", "", given);
-  $("form").replaceChildren(entry.node, el("div", { class: "tools" },
+  labels = labelFields(named);
+  $("form").replaceChildren(entry.node, el("details", { class: "rare", open: !light }, el("summary", {}, `Name, tags and note${light ? " of a queued run" : ""}`), ...labels.nodes), el("div", { class: "tools" },
     el("button", { type: "submit" }, light ? "Run now" : "Submit"),
     light ? el("button", { type: "button", class: "plain", onclick: queue }, "Queue it") : null), copies(() => ({ id: spec.id, inputs: entry.value() })));
 }
@@ -98,7 +100,7 @@ async function queue() {
   loading($("state"), "Sending");
   try {
     const headers = { Prefer: "respond-async" };
-    const { jobID } = await (await call(`/processes/${process}/execution`, { method: "POST", json: { inputs: entry.value() }, headers })).json();
+    const { jobID } = await (await call(`/processes/${process}/execution`, { method: "POST", json: { inputs: entry.value(), ...labels.value() }, headers })).json();
     location.assign(`${root}/dashboard/jobs/${jobID}`);
   } catch (error) {
     for (const button of buttons) button.disabled = false;

@@ -1,6 +1,6 @@
 // Shared by all pages: elements, tables, the states empty, loading and failed, the key dialog.
 
-import { figure } from "../logic/words.js";
+import { figure, moment } from "../logic/words.js";
 import { Problem, hasKey, useKey } from "./api.js";
 
 /** An element with attributes and children; text stays text. */
@@ -64,6 +64,9 @@ export const badge = (about, word, kind) => el("span", { class: `badge ${about}`
 
 /** The words for a job's status; the wire's own stay the classes. */
 const STATUS = { accepted: "waiting", dismissed: "cancelled" };
+
+/** A moment, for people and for programs. */
+export const time = (text) => el("time", { datetime: text }, moment(text));
 
 export const status = (job) => badge("job", job.dismissal_requested && job.status === "running" ? "stopping" : STATUS[job.status] ?? job.status, job.status);
 
