@@ -1,12 +1,12 @@
 // One job: live while it waits or runs, then its results. Everything is on the server and survives a reload.
 
 import { newest } from "../logic/store.js";
-import { duration, moment } from "../logic/words.js";
+import { duration } from "../logic/words.js";
 import { Problem, call, follow, get, remove, root } from "../parts/api.js";
 import { again } from "../parts/bulk.js";
 import { copies } from "../parts/copies.js";
 import { labelled } from "../parts/labels.js";
-import { $, definition, el, fail, loading, status } from "../parts/page.js";
+import { $, definition, el, fail, hour, loading, status, time } from "../parts/page.js";
 import { description } from "../parts/process.js";
 import { known, results, verdictBadge } from "../parts/results.js";
 import { shown } from "../parts/views.js";
@@ -22,7 +22,7 @@ const isActive = () => ["accepted", "running"].includes(job.status);
 
 function tell(at, text) {
   const low = log.scrollTop + log.clientHeight >= log.scrollHeight - 4;
-  log.append(el("p", {}, `${at.slice(11, 19)}  ${text}`));
+  log.append(el("p", {}, hour(at), `  ${text}`));
   if (low) log.scrollTop = log.scrollHeight;
 }
 
@@ -55,7 +55,7 @@ function frame() {
     el("a", { href: `${root}/dashboard/submit?process=${job.processID}&from=${id}` }, "Change inputs"),
     copies(() => ({ id: job.processID, inputs: job.inputs })),
   ].filter(Boolean));
-  const facts = [["Submitted", moment(job.created)], ["Started", moment(job.started)], ["Finished", moment(job.finished)], ["Attempts", String(job.attempts)]];
+  const facts = [["Submitted", time(job.created)], ["Started", time(job.started)], ["Finished", time(job.finished)], ["Attempts", String(job.attempts)]];
   if (job.position) facts.push(["Place in the queue", String(job.position)]);
   if (job.starts_in_s) facts.push(["Starts in about", duration(job.starts_in_s)]);
   const parts = [];

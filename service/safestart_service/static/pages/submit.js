@@ -1,5 +1,6 @@
 // Submit: any process, by a form made from its schema; light ones answer here, others become jobs.
 
+import { estimateWords } from "../logic/estimate.js";
 import { Store } from "../logic/store.js";
 import { call, execute, get, root } from "../parts/api.js";
 import { copies } from "../parts/copies.js";
@@ -9,6 +10,7 @@ import { $, el, fail, loading } from "../parts/page.js";
 import { description } from "../parts/process.js";
 import { firstScreen, known, rest, verdictBadge } from "../parts/results.js";
 import { shown } from "../parts/views.js";
+import { estimated, waiting } from "../parts/waiting.js";
 
 const address = new URLSearchParams(location.search);
 const isLight = (one) => one.jobControlOptions.includes("sync-execute");
@@ -24,6 +26,15 @@ store.panel({
     return { spec, given: job?.inputs, named: job ? { name: job.name, tags: job.tags, note: job.note } : {} };
   },
   shows: showForm,
+});
+
+// How long a run of the form's content would take.
+store.panel({
+  quiet: 400,
+  poses: ({ process, entered }) => (process && entered !== null ? { process, inputs: JSON.parse(entered) } : null),
+  asks: ({ process, inputs }, signal) => estimated(process, inputs, { signal }),
+  // What is wrong with the inputs is told when they are sent.
+  shows: ({ state, answer }) => { if ($("estimate")) $("estimate").textContent = state === "there" ? estimateWords(answer) : ""; },
 });
 
 store.panel({
@@ -49,7 +60,8 @@ function showForm({ state, answer, error }) {
   labels = labelFields(named);
   $("form").replaceChildren(entry.node, el("details", { class: "rare", open: !light }, el("summary", {}, `Name, tags and note${light ? " of a queued run" : ""}`), ...labels.nodes), el("div", { class: "tools" },
     el("button", { type: "submit" }, light ? "Run now" : "Submit"),
-    light ? el("button", { type: "button", class: "plain", onclick: queue }, "Queue it") : null), copies(() => ({ id: spec.id, inputs: entry.value() })));
+    light ? el("button", { type: "button", class: "plain", onclick: queue }, "Queue it") : null), el("p", { class: "note", id: "estimate", role: "status" }), copies(() => ({ id: spec.id, inputs: entry.value() })));
+  store.set({ entered: entered() });
 }
 
 /** One schema of all inputs, from the description's separate schemas. */
@@ -74,7 +86,7 @@ function showAnswer({ state, answer, error, question }) {
   if (state === "failed") {
     fail(place, error, () => store.hasten());
     mark($("form"), error.document?.field, error.message);
-  } else if (state === "asking") loading(place, "Running");
+  } else if (state === "asking") waiting(place, "Running", { id: question.process, inputs: question.inputs });
   else if (state === "none") place.replaceChildren();
   else {
     const result = known(answer.spec, answer.outputs, question.inputs), { head, pictures, parts, draws } = shown(result), [first, ...more] = pictures;
