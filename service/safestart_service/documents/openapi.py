@@ -154,9 +154,8 @@ def build(app: FastAPI) -> dict[str, Any]:
         title=app.title, version=app.version, description=app.description, routes=app.routes
     )
     specs = [process(name) for name in PROCESS_IDS]
-    inputs = [model for spec in specs for model in (spec.inputs, execute_model(spec.id))] + [
-        access_schemas.KeyRequest
-    ]
+    inputs = [model for spec in specs for model in (spec.inputs, execute_model(spec.id))]
+    inputs += [access_schemas.KeyRequest, schemas.JobLabels]
     outputs = [*ANSWERS, *(spec.outputs for spec in specs)]
     components: dict[str, Any] = document.setdefault("components", {}).setdefault("schemas", {})
     described = [

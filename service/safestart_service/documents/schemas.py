@@ -8,6 +8,8 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic.json_schema import SkipJsonSchema
 
+from safestart.processes.base import WireModel
+from safestart.records.labels import NAME_TEXT, NOTE_TEXT, TAGS_TEXT, Name, Note, Tags
 from safestart.store.records import JobStatus
 
 
@@ -124,6 +126,24 @@ class ProcessDescription(ProcessSummary):
     )
 
 
+class Outcome(BaseModel):
+    """The verdict of a result: the worst of its findings."""
+
+    word: str
+    sense: Literal["good", "bad", "open"] = Field(description="open: it decides nothing, or without a proof.")
+    count: int = Field(description="Findings that are as bad.")
+    of: int = Field(description="All findings.")
+    basis: str | None = Field(description="What the verdicts rest on if that is no proof.")
+
+
+class JobLabels(WireModel):
+    """Name, tags and note to write on a job; what is absent or null stays as it is."""
+
+    name: Name | None = Field(None, description=NAME_TEXT, examples=["before the burn of the 12th"])
+    tags: Tags | None = Field(None, description=TAGS_TEXT, examples=[["envisat", "night shift"]])
+    note: Note | None = Field(None, description=NOTE_TEXT)
+
+
 class StatusInfo(BaseModel):
     """statusInfo of OGC API - Processes 1.0, and what users of queues ask for besides."""
 
@@ -148,6 +168,15 @@ class StatusInfo(BaseModel):
     submitter: str | None = Field(description="Id of the submitting key; null without one.")
     dismissal_requested: bool
     problem: dict[str, Any] | None = Field(description="Problem document of a failed job.")
+    name: str = Field(description="What people call the job; may be empty.")
+    tags: list[str]
+    note: str
+    outcome: Outcome | None = Field(
+        description="Verdict of the result; null without one, and for results of earlier versions."
+    )
+    key_inputs: dict[str, str] | None = Field(
+        description="The inputs that make it this run, as text by path; null in a list if they are long."
+    )
     links: list[Link]
 
 
@@ -172,9 +201,10 @@ class JobInputs(BaseModel):
 
 
 class JobList(BaseModel):
-    """A page of jobs, newest first."""
+    """A page of jobs, newest first unless sorted otherwise."""
 
     jobs: list[StatusInfo]
+    total: int = Field(description="Jobs on all pages.")
     links: list[Link]
 
 
