@@ -55,7 +55,7 @@ def soak(
                 continue
             ids.append(
                 platform.submit(
-                    "coverage", TINY | {"omega_t_deg_s": 1 + len(ids) % 500 / 100}, f"k{len(ids)}"
+                    "certificate", TINY | {"omega_t_deg_s": 1 + len(ids) % 500 / 100}, f"k{len(ids)}"
                 )
             )
             if now > last + 60.0:
