@@ -29,6 +29,7 @@ _SPECS = {
     "commit-timeline": "safestart.processes.commit_timeline.spec",
     "hop-time": "safestart.processes.hop_time.spec",
     "hopping": "safestart.processes.hopping.spec",
+    "approach-trade": "safestart.processes.approach_trade.spec",
     "passive-abort": "safestart.processes.passive_abort.spec",
     "backward-variants": "safestart.processes.backward_variants.spec",
     "hold-region": "safestart.processes.hold_region.spec",
