@@ -49,8 +49,29 @@ class Mutant:
     change: str
     code: CodeType
 
+    @property
+    def key(self) -> str:
+        """Of its function."""
+        return f"{self.code.co_filename} {self.name}"
+
     def __str__(self) -> str:
         return f"{self.file}:{self.line} {self.name}: {self.change}"
+
+
+def probed(path: Path) -> Iterator[tuple[str, CodeType]]:
+    """Each function that has mutants, as code that first tells ``builtins.reached`` the function's name."""
+    text = path.read_text(encoding="utf-8")
+    for name, place in _functions(ast.parse(text)):
+        tree = ast.parse(text)
+        function = _at(tree, place)
+        assert isinstance(function, Function)
+        if not _kernel(function):
+            told = ast.parse(f"__import__('builtins').reached({str(path)!r}, {name!r})").body
+            # Behind the docstring, so that it stays one.
+            function.body[ast.get_docstring(function) is not None : 0] = told
+            code = _code(compile(ast.fix_missing_locations(tree), str(path), "exec"), name.split("."))
+            if code is not None:
+                yield name, code
 
 
 def mutants(path: Path, shown: str) -> Iterator[Mutant]:
@@ -59,7 +80,7 @@ def mutants(path: Path, shown: str) -> Iterator[Mutant]:
     for name, place in _functions(tree):
         function = _at(tree, place)
         assert isinstance(function, Function)
-        if any("compiled" in ast.unparse(one) for one in function.decorator_list):
+        if _kernel(function):
             continue
         for number, (node, change) in enumerate(_changes(function)):
             other = copy.deepcopy(tree)
@@ -72,6 +93,10 @@ def mutants(path: Path, shown: str) -> Iterator[Mutant]:
             code = _code(compile(ast.fix_missing_locations(other), str(path), "exec"), name.split("."))
             if code is not None:
                 yield Mutant(shown, name, node.lineno, change, code)
+
+
+def _kernel(function: Function) -> bool:
+    return any("compiled" in ast.unparse(one) for one in function.decorator_list)
 
 
 def _functions(tree: ast.AST, names: tuple[str, ...] = (), place: tuple[int, ...] = ()) -> Iterator[tuple]:

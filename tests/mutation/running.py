@@ -6,6 +6,7 @@ unchanged code.
 
 from __future__ import annotations
 
+import builtins
 import contextlib
 import importlib
 import inspect
@@ -15,20 +16,23 @@ import random
 import select
 import signal
 import sys
-import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from types import CodeType, FunctionType
+from types import FunctionType
 from typing import Any
 
 import pytest
 
-from tests.mutation.mutants import Mutant, mutants
+from tests.mutation.mutants import Mutant, mutants, probed
 
 ROOT = Path(__file__).resolve().parents[2]
-MOST_TEST_S = 30.0
+Tests = list[tuple[int, float]]
+"""Places of tests among those collected, with the seconds that each takes."""
+Owners = dict[str, dict[str, FunctionType]]
+"""Functions by their path within a module, by module."""
+MOST_TEST_S = 15.0
 """Tests of a mutant, quickest first, until they have taken this long without a failure."""
 
 
@@ -54,57 +58,57 @@ class Mutating:
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
-        """All of it."""
-        began = time.monotonic()
+        """All of it; the seconds count from the moment when it is known which tests call which function."""
         owners = {name: _functions_of(name) for name in self._modules}
-        reached = self._reached(session, {code for found in owners.values() for code in found})
+        reached = self._reached(session, owners)
         todo = list(self._mutants(owners))
         self.counted.made = len(todo)
         random.Random(self._seed).shuffle(todo)
+        end = time.monotonic() + self._seconds
         for mutant, function in todo:
-            if time.monotonic() - began > self._seconds:
+            if time.monotonic() > end:
                 break
-            tests = reached.get((function.__code__.co_filename, function.__code__.co_firstlineno), [])
-            self.counted.run += 1
-            if not tests:
-                self.counted.unreached.append(str(mutant))
-                continue
-            limit = 3.0 * sum(one for _, one in tests) + 20.0
-            said = _forked(lambda m=mutant, f=function, t=tests: _killed(session, m, f, t), limit)
-            if said == "survived":
-                self.counted.survived.append(str(mutant))
-                print(f"survived: {mutant}", flush=True)
-            elif said is None:
-                self.counted.late += 1
-                self.counted.killed += 1
-            else:
-                self.counted.killed += 1
+            self._run(session, mutant, function, reached.get(mutant.key, []))
         return True
 
-    def _mutants(self, owners: dict[str, dict[Any, FunctionType]]) -> Iterator[tuple[Mutant, FunctionType]]:
+    def _run(self, session: pytest.Session, mutant: Mutant, function: FunctionType, tests: Tests) -> None:
+        found = self.counted
+        found.run += 1
+        if not tests:
+            found.unreached.append(str(mutant))
+            return
+        limit = 3.0 * sum(one for _, one in tests) + 20.0
+        said = _forked(lambda: _killed(session, mutant, function, tests), limit)
+        if said == "survived":
+            found.survived.append(str(mutant))
+            print(f"survived: {mutant}", flush=True)
+        else:
+            found.killed += 1
+            found.late += said is None
+
+    def _mutants(self, owners: Owners) -> Iterator[tuple[Mutant, FunctionType]]:
         for name, functions in owners.items():
             path = Path(sys.modules[name].__file__ or "")
-            by_name = {function.__qualname__: function for function in functions.values()}
             for mutant in mutants(path, str(path.relative_to(ROOT))):
-                function = by_name.get(mutant.name)
+                function = functions.get(mutant.name)
                 if self._only not in str(mutant) or function is None:
                     continue
                 if len(function.__code__.co_freevars) == len(mutant.code.co_freevars):
                     yield mutant, function
 
-    def _reached(self, session: pytest.Session, codes: set[Any]) -> dict[Any, list[tuple[int, float]]]:
+    def _reached(self, session: pytest.Session, owners: Owners) -> dict[str, Tests]:
         """By function: tests that call it with the seconds that each takes, quickest first."""
-        said = _forked(lambda: _map(session, codes), 3600.0)
+        said = _forked(lambda: _map(session, owners), 3600.0)
         if said is None:
             raise RuntimeError("the tests did not end")
-        out: dict[Any, list[tuple[int, float]]] = {}
+        out: dict[str, Tests] = {}
         for index, (seconds, passed, calls) in enumerate(json.loads(said)):
-            for file, line in calls if passed else []:
-                out.setdefault((file, line), []).append((index, seconds))
+            for key in calls if passed else []:
+                out.setdefault(key, []).append((index, seconds))
         return {key: _quickest(tests) for key, tests in out.items()}
 
 
-def _quickest(tests: list[tuple[int, float]]) -> list[tuple[int, float]]:
+def _quickest(tests: Tests) -> Tests:
     out, total = [], 0.0
     for index, seconds in sorted(tests, key=lambda one: one[1]):
         total += seconds
@@ -114,8 +118,8 @@ def _quickest(tests: list[tuple[int, float]]) -> list[tuple[int, float]]:
     return out
 
 
-def _functions_of(name: str) -> dict[Any, FunctionType]:
-    """Functions written in the module, its methods and properties, by file and line."""
+def _functions_of(name: str) -> dict[str, FunctionType]:
+    """Functions written in the module, its methods and properties, by their path within it."""
     module, found = importlib.import_module(name), {}
 
     def look(owner: Any) -> None:
@@ -125,37 +129,31 @@ def _functions_of(name: str) -> dict[Any, FunctionType]:
             for one in (value, *(getattr(value, part, None) for part in ("fget", "__func__", "__wrapped__"))):
                 one = inspect.unwrap(one) if callable(one) and not inspect.isclass(one) else one
                 if isinstance(one, FunctionType) and one.__module__ == name:
-                    found[(one.__code__.co_filename, one.__code__.co_firstlineno)] = one
+                    found[one.__qualname__] = one
 
     look(module)
     return found
 
 
-def _map(session: pytest.Session, codes: set[Any]) -> str:
-    calls: set[Any] = set()
-
-    def seen(frame: Any, event: str, _: Any) -> None:
-        if event == "call":
-            code: CodeType = frame.f_code
-            key = (code.co_filename, code.co_firstlineno)
-            if key in codes:
-                calls.add(key)
-
+def _map(session: pytest.Session, owners: Owners) -> str:
+    """Seconds, success and called functions of every test, as JSON; runs in a process of its own."""
+    calls: set[str] = set()
+    builtins.reached = lambda file, name: calls.add(f"{file} {name}")  # type: ignore[attr-defined]
+    for name, functions in owners.items():
+        for one, code in probed(Path(sys.modules[name].__file__ or "")):
+            if one in functions and len(functions[one].__code__.co_freevars) == len(code.co_freevars):
+                functions[one].__code__ = code
     failures, out = _failures(session), []
     for number, item in enumerate(session.items):
         calls.clear()
         failures.clear()
         began = time.perf_counter()
-        sys.setprofile(seen)
-        threading.setprofile(seen)
         _run(session, item, session.items[number + 1 : number + 2])
-        sys.setprofile(None)
-        threading.setprofile(None)  # type: ignore[arg-type]
         out.append((time.perf_counter() - began, not failures, sorted(calls)))
     return json.dumps(out)
 
 
-def _killed(session: pytest.Session, mutant: Mutant, function: FunctionType, tests: list) -> str:
+def _killed(session: pytest.Session, mutant: Mutant, function: FunctionType, tests: Tests) -> str:
     function.__code__ = mutant.code
     failures = _failures(session)
     items = [session.items[index] for index, _ in tests]
@@ -192,7 +190,6 @@ def _forked(work: Callable[[], str], limit: float) -> str | None:
         os.dup2(quiet, 1)
         os.dup2(quiet, 2)
         try:
-            os.write(write, b"")
             with os.fdopen(write, "w") as out:
                 out.write(work())
         except BaseException:
