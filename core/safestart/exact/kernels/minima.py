@@ -10,24 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from safestart.constraints.dip import dip
 from safestart.runtime.kernels import compiled
-
-
-@compiled()
-def dip(left: float, right: float, begin: float, end: float) -> Any:
-    """Minimum over [0, 1] of the cubic through ``left``, ``right`` with slopes ``begin``, ``end``, and where it lies.
-
-    :func:`safestart.constraints.cubic.dips` for one sample.
-    """
-    rise = right - left
-    bend = begin + end - 2.0 * rise
-    square = 3.0 * rise - 2.0 * begin - end
-    at = 1.0 if right < left else 0.0
-    if begin < 0.0:
-        below = square + math.sqrt(max(square * square - 3.0 * bend * begin, 0.0))
-        if below > -begin:
-            at = -begin / below
-    return left + at * (begin + at * (square + at * bend)), at
 
 
 @compiled()
