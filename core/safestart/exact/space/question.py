@@ -28,6 +28,7 @@ from safestart.dynamics.yamanaka_ankersen import YamanakaAnkersen
 from safestart.errors import invalid
 from safestart.exact.limits import AT_END, SPEED
 from safestart.exact.question import MAX_STEPS, MAX_TIME, Goal
+from safestart.exact.space.demands import Demands
 from safestart.model.orbit import KeplerOrbit
 from safestart.model.scenario import MAX_RANGE, CorridorShape, Floats, number
 from safestart.optim.thrust_shapes import BALL, CUBE, SIMPLEX, UnitSet
@@ -55,7 +56,7 @@ class SpaceQuestion:
 
     ``goal`` makes it `synchronize`: at T, any number of intervals from ``goal.earliest`` to ``steps``, the chaser is at
     rest against the turning body in a ball around ``goal.hold`` (body frame, m). ``speed_limit`` (m/s) holds for the
-    LVLH velocity at all times.
+    LVLH velocity at all times. ``demands`` hold beside the faces; no linear program answers them.
     """
 
     orbit: KeplerOrbit
@@ -66,6 +67,7 @@ class SpaceQuestion:
     steps: int = 30
     goal: Goal | None = None
     speed_limit: float | None = None
+    demands: Demands = Demands()
     dimensions: ClassVar[int] = 3
 
     def __post_init__(self) -> None:
@@ -85,6 +87,7 @@ class SpaceQuestion:
         norms = (AT_END if self.goal is not None else ()) + ((SPEED,) if self.speed_limit is not None else ())
         if any(face.name in norms for face in self.faces):
             raise invalid("faces", f"names other than {', '.join(norms)}", [face.name for face in self.faces])
+        self.demands.check([*(face.name for face in self.faces), *AT_END, SPEED])
         inner = self.attitude.inertial if isinstance(self.attitude, InLvlh) else self.attitude
         if isinstance(self.attitude, InLvlh) and self.attitude.orbit != self.orbit:
             raise invalid("attitude", "one seen from LVLH on the question's orbit", "another orbit")
@@ -98,8 +101,8 @@ class SpaceQuestion:
 
     @property
     def plain(self) -> bool:
-        """Whether this is `stay` without a speed limit, so that only faces count."""
-        return self.goal is None and self.speed_limit is None
+        """Whether this is `stay` without a speed limit or demands, so that only faces count."""
+        return self.goal is None and self.speed_limit is None and not self.demands
 
     @property
     def motion(self) -> RelativeMotion:

@@ -18,6 +18,7 @@ from safestart.exact.question import Goal
 from safestart.exact.space.question import Face, SpaceQuestion, five_faces, starts_in_lvlh
 from safestart.model.orbit import KeplerOrbit
 from safestart.model.scenario import Floats
+from safestart.processes.start_in_space.demand_parts import demands_of
 from safestart.processes.start_in_space.parts import (
     BallThrust,
     BoxThrust,
@@ -68,9 +69,18 @@ def question_of(inputs: SpaceInputs) -> SpaceQuestion:
     goal, span = None, inputs.horizon_s
     if inputs.question == "synchronize":
         goal, span = Goal(inputs.ball_radius_m, inputs.rest_speed_m_s, _hold(inputs)), inputs.within_s
+    demands = demands_of(inputs.keep_outs, inputs.field_of_view, inputs.plume)
     try:
         return SpaceQuestion(
-            orbit, attitude, _faces(inputs), thrust, DT_S, round(span / DT_S), goal, inputs.speed_limit_m_s
+            orbit,
+            attitude,
+            _faces(inputs),
+            thrust,
+            DT_S,
+            round(span / DT_S),
+            goal,
+            inputs.speed_limit_m_s,
+            demands,
         )
     except InvalidInput as error:
         places = {

@@ -12,6 +12,7 @@ from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.costs import FIRST_S, program_s
 from safestart.processes.go_no_go.question_fields import QuestionKind
 from safestart.processes.start_in_space.missions import MISSIONS
+from safestart.processes.start_in_space.demand_parts import FieldOfViewInput, KeepOutInput, PlumeInput
 from safestart.processes.start_in_space.parts import (
     AttitudeInput,
     CorridorChoice,
@@ -106,6 +107,17 @@ class SpaceInputs(WireModel):
     velocity_half_width_m_s: float = Field(
         0.0, ge=0, le=10, description="Half-width of the box in velocity, m/s (stay)."
     )
+    keep_outs: list[KeepOutInput] = Field(
+        default_factory=list,
+        max_length=8,
+        description="Spheres and boxes that the chaser stays out of, beside the corridor. For keep_outs, field_of_view "
+        "and plume GO is found in a convex part of the demand that restriction names, and its proof shows the demand "
+        "itself; NO_GO only without them or from the start; else UNDECIDED. Not with half-widths or method tracking.",
+    )
+    field_of_view: FieldOfViewInput | None = Field(
+        None, description="A cone about a camera's axis in which the target stays; absent: none."
+    )
+    plume: PlumeInput | None = Field(None, description="No exhaust towards the target near it; absent: none.")
     flights: bool = Field(False, description="Return the flight of every GO as curves; at most 100 starts.")
     proofs: bool = Field(
         False, description="Return proof documents for `safestart verify`; at most 100 starts."
@@ -147,13 +159,18 @@ class SpaceOutputs(WireModel):
         description="Estimate of what two bodies with J2 would change over the horizon, m; where it exceeds the "
         "margin, the reason says so."
     )
-    violated_faces: list[list[str]] = Field(description="Faces that the start itself is outside of.")
+    violated_faces: list[list[str]] = Field(description="Faces, keep-outs and field of view that the start violates.")
     position_m: list[Triple] = Field(description="Starts, LVLH, m.")
     velocity_m_s: list[Triple] = Field(description="Starts, LVLH, m/s.")
     reason: list[str] = Field(description="The verdict in a sentence.")
     end_s: list[float | None] | None = Field(
         None,
         description="When the flight of a GO is at rest in the hold ball (synchronize), s; null for the others.",
+    )
+    restriction: list[list[str]] | None = Field(
+        None,
+        description="With keep_outs, field_of_view or plume: the convex part of each by which a GO was found; empty "
+        "for the others.",
     )
     flight: list[SpaceFlight | None] | None = Field(
         None, description="The flights of the GOs, when asked for; null for the others."
@@ -174,6 +191,8 @@ def _cost(inputs: SpaceInputs) -> float:
     one = 3.0 * program_s(inputs.within_s if synchronize else inputs.horizon_s)
     if inputs.position_half_width_m or inputs.velocity_half_width_m_s:
         one *= 10.0
+    if inputs.keep_outs or inputs.field_of_view or inputs.plume:
+        one *= 6.0
     flight = _FLIGHT_S if inputs.method == "tracking" else 0.0
     return FIRST_S + ((4.0 if synchronize else 1.0) * one + flight) * len(inputs.starts)
 
@@ -204,6 +223,7 @@ SPEC = ProcessSpec(
                 "velocity_m_s",
                 "violated_faces",
                 "reason",
+                "restriction",
                 "end_s",
                 "tracking",
             ),
@@ -219,6 +239,7 @@ SPEC = ProcessSpec(
                 Column("error of the model [m]", "model_error_m"),
                 Column("why", "reason"),
                 Column("faces violated at the start", "violated_faces"),
+                Column("found in", "restriction"),
                 Column("at rest after [s]", "end_s"),
             ),
         ),
