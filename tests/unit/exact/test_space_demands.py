@@ -87,15 +87,21 @@ def least(asked: SpaceQuestion, state: Floats, answer: Answer) -> float:
         (Demands(view=VIEW), {}),
         (Demands(view=replace(VIEW, half_angle=math.radians(12.0), frame="body")), {}),
         (Demands(plume=RULE), {}),
-        (Demands(plume=replace(RULE, half_angle=math.radians(70.0), frame="lvlh", point=(1.0, 2.0, 0.0))), {}),
+        (
+            Demands(plume=replace(RULE, half_angle=math.radians(70.0), frame="lvlh", point=(1.0, 2.0, 0.0))),
+            {},
+        ),
         (Demands(plume=RULE), {"thrust": ThrustLimit("box", (0.1, 0.1, 0.05), frame="body")}),
         (Demands(plume=RULE), {"thrust": ThrustLimit("thrusters", (0.1,) * 6, SIX, "body")}),
         (Demands((PANEL,), replace(VIEW, half_angle=math.radians(50.0)), RULE), {}),
-        (Demands((KeepOut("panel", (3.0, 8.0, 0.0), (2.0,)),), plume=RULE), {"goal": Goal(hold=(0.0, 4.0, 0.0)), "steps": 60}),
+        (
+            Demands((KeepOut("panel", (3.0, 8.0, 0.0), (2.0,)),), plume=RULE),
+            {"goal": Goal(hold=(0.0, 4.0, 0.0)), "steps": 60},
+        ),
         (Demands((PANEL,)), {"speed_limit": 1.0}),
         (Demands((PANEL,)), {"orbit": KeplerOrbit.of(2.4e7, 0.7, 0.3)}),
     ],
-)  # fmt: skip
+)
 def test_a_go_keeps_the_demands_themselves(demands: Demands, changes: dict[str, Any]) -> None:
     asked = question(demands, **changes)
     answer = decide_in_space(asked, START)
@@ -128,7 +134,13 @@ def test_random_cases_claim_nothing_false() -> None:
     rng, seen = np.random.default_rng(3), set()
     for _ in range(40):
         axis = rng.normal(size=3)
-        body = torque_free(((120.0, 2.0, -1.0), (2.0, 100.0, 3.0), (-1.0, 3.0, 60.0)), (1.0, 0.0, 0.0, 0.0), tuple(0.02 * axis), "lvlh", KeplerOrbit(1.1e-3))  # fmt: skip
+        body = torque_free(
+            ((120.0, 2.0, -1.0), (2.0, 100.0, 3.0), (-1.0, 3.0, 60.0)),
+            (1.0, 0.0, 0.0, 0.0),
+            tuple(0.02 * axis),
+            "lvlh",
+            KeplerOrbit(1.1e-3),
+        )
         state = np.concatenate([rng.uniform([-4, 12, -4], [4, 60, 4]), rng.normal(scale=0.1, size=3)])
         centre = tuple((rng.uniform(0.2, 0.9) * state[:3] + rng.normal(scale=3.0, size=3)).tolist())
         size = (4.0,) if rng.random() < 0.5 else (2.0, 4.0, 3.0)
@@ -185,7 +197,9 @@ def test_a_cut_set_holds_its_points_and_its_bound(whole: Any, channels: int) -> 
     pull = rng.normal(size=(1, 6 * channels))
     bound = chosen.bound(np.zeros(1), pull, np.ones(1), 2.0, channels)
     draws = np.concatenate([chosen.repaired(2.0 * rng.normal(size=(6, channels)))[None] for _ in range(4000)])
-    reached = 2.0 * (draws.reshape(4000, 6, channels) * pull.reshape(6, channels)).sum(axis=2).max(axis=0).sum()
+    reached = (
+        2.0 * (draws.reshape(4000, 6, channels) * pull.reshape(6, channels)).sum(axis=2).max(axis=0).sum()
+    )
     assert 0.5 * bound < reached <= bound + 1e-9
     assert bound < whole.bound(np.zeros(1), pull, np.ones(1), 2.0, channels)
 

@@ -160,20 +160,26 @@ FREE = {"kind": "torque_free", "inertia_kg_m2": BODY, "body_rate_deg_s": [1, 0, 
         ({"starts": [{"position_m": [1, 2]}]}, "starts.0.position_m"),
         ({"keep_outs": [{"name": "a", "radius_m": 0}]}, "keep_outs.0.sphere.radius_m"),
         ({"keep_outs": [{"name": "a", "half_widths_m": [1, 2]}]}, "keep_outs.0.box.half_widths_m"),
-        ({"keep_outs": [{"name": "a", "radius_m": 1, "half_widths_m": [1, 2, 3]}]}, "keep_outs.0.sphere.half_widths_m"),
+        (
+            {"keep_outs": [{"name": "a", "radius_m": 1, "half_widths_m": [1, 2, 3]}]},
+            "keep_outs.0.sphere.half_widths_m",
+        ),
         ({"keep_outs": [{"name": "a", "radius_m": 1}] * 2}, "keep_outs"),
         ({"keep_outs": [{"name": "left", "radius_m": 1}]}, "keep_outs"),
         ({"keep_outs": [{"name": "a", "radius_m": 1, "centre_m": [1e6, 0, 0]}]}, "keep_outs.centre_m"),
         ({"field_of_view": {"axis": [0, 0, 0], "half_angle_deg": 10}}, "field_of_view.axis"),
         ({"field_of_view": {"axis": [0, 1, 0], "half_angle_deg": 90}}, "field_of_view.half_angle_deg"),
-        ({"field_of_view": {"axis": [0, 1, 0], "half_angle_deg": 20, "point_m": [1e6, 0, 0]}}, "field_of_view.point_m"),
+        (
+            {"field_of_view": {"axis": [0, 1, 0], "half_angle_deg": 20, "point_m": [1e6, 0, 0]}},
+            "field_of_view.point_m",
+        ),
         ({"plume": {"half_angle_deg": 85, "range_m": 10}}, "plume.half_angle_deg"),
         ({"plume": {"half_angle_deg": 20}}, "plume.range_m"),
         ({"plume": {"half_angle_deg": 20, "range_m": 10}, "position_half_width_m": 1}, "question"),
         ({"plume": {"half_angle_deg": 20, "range_m": 10}, "method": "tracking"}, "plume"),
         ({"starts": [{"position_m": [1, 20_000, 0]}]}, "starts"),
     ],
-)  # fmt: skip
+)
 def test_refusals_name_the_field(changes: dict[str, Any], field: str) -> None:
     with pytest.raises(InvalidInput) as refused:
         answered(**changes)

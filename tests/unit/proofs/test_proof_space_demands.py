@@ -31,11 +31,15 @@ ASKED: dict[str, SpaceQuestion] = {
     "box": question(Demands((BOX,)), steps=12),
     "view": question(Demands(view=VIEW), steps=20),
     "plume": question(Demands(plume=RULE), steps=12),
-    "synchronize": question(Demands((KeepOut("panel", (3.0, 8.0, 0.0), (2.0,)),), plume=RULE), goal=Goal(hold=(0.0, 4.0, 0.0)), steps=40),
+    "synchronize": question(
+        Demands((KeepOut("panel", (3.0, 8.0, 0.0), (2.0,)),), plume=RULE),
+        goal=Goal(hold=(0.0, 4.0, 0.0)),
+        steps=40,
+    ),
     "sphere at the start": question(Demands((replace(PANEL, size=(20.0,)),)), steps=12),
     "box at the start": question(Demands((replace(BOX, size=(6.0, 30.0, 3.0)),)), steps=12),
     "view at the start": question(Demands(view=replace(VIEW, axis=(1.0, 1.0, 0.0))), steps=12),
-}  # fmt: skip
+}
 
 
 @cache
@@ -58,7 +62,13 @@ def test_every_answer_is_accepted_and_said_in_full(kind: str) -> None:
     for name in ASKED[kind].demands.names:
         assert name in said
     if kind == "all":
-        for part in ("sphere of 5.0 m", "half-widths [6.0, 12.0, 3.0] m", "(55 deg)", "(30 deg)", "60.0 m of"):
+        for part in (
+            "sphere of 5.0 m",
+            "half-widths [6.0, 12.0, 3.0] m",
+            "(55 deg)",
+            "(30 deg)",
+            "60.0 m of",
+        ):
             assert part in said
     if "start" in kind:
         assert "the start itself does not keep" in said
@@ -102,7 +112,7 @@ Q = "question."
         ("view at the start", Q + "field_of_view.axis", [0.0, -1.0, 0.0]),
         ("view at the start", "margin_m", -40.0),
     ],
-)  # fmt: skip
+)
 def test_another_demand_is_not_proved(kind: str, key: str, value: Any) -> None:
     parts: list[Any] = [int(e) if e.isdigit() else e for e in key.split(".")]
     forged = document(kind)

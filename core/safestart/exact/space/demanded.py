@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from safestart.exact.answer import GUARD, Answer, Multiplier, Verdict
-from safestart.exact.space.demands import VIEW, Demands
+from safestart.exact.space.demands import NONE, VIEW, Demands
 from safestart.exact.space.question import SpaceQuestion
 from safestart.exact.space.restricted_watch import RestrictedWatch
 from safestart.exact.space.restriction import Course, course_of, cuts_of, plume_kept, walls_of
@@ -30,7 +30,7 @@ def decide_demanded(question: SpaceQuestion, state: Floats, solve: Solve) -> Ans
 
     Beside the answer it gives the best flight's thrust, whatever the verdict.
     """
-    demands, plain = question.demands, replace(question, demands=Demands())
+    demands, plain = question.demands, replace(question, demands=NONE)
     watch = space_watch_of(plain)
     body = question.attitude.rotation(np.zeros(1))[0] @ state[:3]
     name, room = min(demands.rooms(state[:3], body), key=lambda one: one[1], default=("", math.inf))
@@ -60,7 +60,9 @@ def decide_demanded(question: SpaceQuestion, state: Floats, solve: Solve) -> Ans
             plume_kept(demands.plume, watch, turn, latest)[: len(thrust)].all()
         )
         if found.verdict is Verdict.GO and kept:
-            return replace(found, upper=free.upper, iterations=rounds, restriction=restrictions(demands, said))
+            return replace(
+                found, upper=free.upper, iterations=rounds, restriction=restrictions(demands, said)
+            )
         best = max(best, found.lower)
         left = "" if kept else ", or leaves the directions for which the plume's cut holds"
     reason = (
@@ -90,7 +92,9 @@ def restrictions(demands: Demands, course: str) -> tuple[str, ...]:
     """The convex parts in words, one for each demand."""
     out = []
     for one in demands.keep_outs:
-        where = f"half-space per step, {course}" if len(one.size) == 1 else f"a face's side per step, {course}"
+        where = (
+            f"half-space per step, {course}" if len(one.size) == 1 else f"a face's side per step, {course}"
+        )
         out.append(f"{one.name}: {where}")
     if demands.view is not None:
         out.append(f"{VIEW}: pyramid of 16 faces in the cone")

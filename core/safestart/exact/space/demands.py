@@ -51,7 +51,9 @@ class KeepOut:
             number("size", value, 1e-3, MAX_RANGE)
 
     def walls(self, points: Floats) -> tuple[Floats, Floats]:
-        """Half-spaces normal . p <= offset outside of it, next to ``points`` (K, 3), m: unit normals (K, 3), offsets (K,).
+        """Half-spaces normal . p <= offset outside of it, next to ``points`` (K, 3), m.
+
+        Unit normals (K, 3), offsets (K,).
 
         A sphere's touches it below the point; of a box it is the face that the point is furthest beyond.
         """
@@ -93,7 +95,7 @@ class FieldOfView:
         _frame(self.frame)
 
     def walls(self, count: int) -> tuple[Floats, Floats]:
-        """Half-spaces whose meet is a pyramid of ``count`` faces in the cone: unit normals (count, 3), offsets (count,)."""
+        """Half-spaces that meet in a pyramid of ``count`` faces in the cone: unit normals (count, 3), offsets."""
         axis = np.array(self.axis) / math.hypot(*self.axis)
         side = np.cross(axis, np.eye(3)[int(np.argmin(np.abs(axis)))])
         side /= math.hypot(*side.tolist())
@@ -163,3 +165,6 @@ class Demands:
         if self.view is not None:
             regions.append((VIEW, self.view))
         return [(name, one.room(body if one.frame == "body" else lvlh)) for name, one in regions]
+
+
+NONE = Demands()

@@ -28,7 +28,7 @@ from safestart.dynamics.yamanaka_ankersen import YamanakaAnkersen
 from safestart.errors import invalid
 from safestart.exact.limits import AT_END, SPEED
 from safestart.exact.question import MAX_STEPS, MAX_TIME, Goal
-from safestart.exact.space.demands import Demands
+from safestart.exact.space.demands import NONE, Demands
 from safestart.model.orbit import KeplerOrbit
 from safestart.model.scenario import MAX_RANGE, CorridorShape, Floats, number
 from safestart.optim.thrust_shapes import BALL, CUBE, SIMPLEX, UnitSet
@@ -67,7 +67,7 @@ class SpaceQuestion:
     steps: int = 30
     goal: Goal | None = None
     speed_limit: float | None = None
-    demands: Demands = Demands()
+    demands: Demands = NONE
     dimensions: ClassVar[int] = 3
 
     def __post_init__(self) -> None:

@@ -1,10 +1,9 @@
-"""The watch of a question with walls, half-spaces that change from interval to interval, and with cut sets of thrusts."""
+"""The watch of a question with walls, half-spaces that change by interval, and with cut sets of thrusts."""
 
 from __future__ import annotations
 
-from copy import copy
 from dataclasses import dataclass, field, fields
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -91,9 +90,9 @@ class RestrictedWatch(SpaceWatch):
         self.offsets = np.concatenate([base.offsets, levels[0]])
         self.normals = np.concatenate([base.normals, first[0]])
 
-    def until(self, steps: int) -> RestrictedWatch:
+    def until(self, steps: int) -> Self:
         """See :meth:`SpaceWatch.until`."""
-        out: RestrictedWatch = copy(super().until(steps))
+        out = super().until(steps)
         if self._walls:
             out._levels = self._levels[: len(out._times)]
         return out

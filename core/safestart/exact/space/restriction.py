@@ -1,6 +1,6 @@
-"""Convex parts of demands, taken along a course: walls for keep-outs and the view, cuts of the thrusts for the plume.
+"""Convex parts of demands along a course: walls for keep-outs and the view, cuts of the thrusts for the plume.
 
-A flight that keeps the walls keeps the demand, at least as many metres from it. The plume's demand depends on flight and
+A flight that keeps the walls keeps the demand, at least as many metres from it. The plume's depends on flight and
 thrust together: its cuts hold for the directions in which the course sees the target, and :func:`plume_kept` tells
 whether a flight has stayed within them.
 """

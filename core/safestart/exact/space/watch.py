@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from copy import copy
 from dataclasses import replace
 from functools import lru_cache
+from typing import Self
 
 import numpy as np
 
@@ -101,9 +102,10 @@ class SpaceWatch:
     @property
     def sample_times(self) -> Floats:
         """Times (P,) of the samples, s."""
-        return self._times
+        out: Floats = self._times
+        return out
 
-    def until(self, steps: int) -> SpaceWatch:
+    def until(self, steps: int) -> Self:
         """The watch of the same question with T at ``steps`` intervals, at most its own: views of the same tables."""
         out = copy(self)
         goal = self.question.goal and replace(self.question.goal, earliest=1)
@@ -215,7 +217,7 @@ class SpaceWatch:
         start, thrust = self.prediction.position_rows(times, directions)
         return Cuts(times, faces, offset, start, self._by_channels(thrust))
 
-    def _planes(self, times: Floats, faces: Ints) -> tuple[Floats, Floats]:
+    def _planes(self, times: Floats, faces: Ints) -> tuple[Floats, Floats]:  # noqa: ARG002
         """Unit normals (J, 3) in their own frames and offsets (J,) of faces (J,) at times (J,)."""
         return self._own[faces], self.offsets[faces]
 

@@ -90,12 +90,18 @@ def demands_of(
             for one in keep_outs
         )
         part = "field_of_view."
-        seen = view and FieldOfView(
-            _three(view.axis), math.radians(view.half_angle_deg), _three(view.point_m), view.frame
+        seen = (
+            None
+            if view is None
+            else FieldOfView(
+                _three(view.axis), math.radians(view.half_angle_deg), _three(view.point_m), view.frame
+            )
         )
         part = "plume."
-        rule = plume and Plume(
-            math.radians(plume.half_angle_deg), plume.range_m, _three(plume.point_m), plume.frame
+        rule = (
+            None
+            if plume is None
+            else Plume(math.radians(plume.half_angle_deg), plume.range_m, _three(plume.point_m), plume.frame)
         )
     except InvalidInput as error:
         field = str(error.field)
@@ -106,4 +112,3 @@ def demands_of(
 def _three(values: Sequence[float]) -> tuple[float, float, float]:
     x, y, z = (float(e) for e in values)
     return x, y, z
-

@@ -38,7 +38,9 @@ class KeepOut:
         if len(self.size) == 1:
             return [[_dot(away, away) - (arb(self.size[0]) + claim) ** 2]]
         return [
-            [sign * e - (arb(half) + claim)] for e, half in zip(away, self.size, strict=True) for sign in (1, -1)
+            [sign * e - (arb(half) + claim)]
+            for e, half in zip(away, self.size, strict=True)
+            for sign in (1, -1)
         ]
 
 
@@ -88,7 +90,12 @@ class Demands:
         return bool(self.regions) or self.plume is not None
 
     def keep(
-        self, p: dict[str, Series], push: dict[str, Series], claim: arb, span: tuple[fmpq, fmpq], budget: list[int]
+        self,
+        p: dict[str, Series],
+        push: dict[str, Series],
+        claim: arb,
+        span: tuple[fmpq, fmpq],
+        budget: list[int],
     ) -> None:
         """Positions and thrust by frame, over begin and length ``span`` in s; raises :class:`ProofRejected`."""
         for name, region in self.regions.items():
@@ -127,7 +134,9 @@ def demands_of(question: Any, taken: set[str]) -> Demands:
             fields(row, "keep_outs", ("name", "centre_m", "radius_m" if round_ else "half_widths_m", "frame"))
             name = part(row, "name", str)
             if name in regions or name in taken or name in KEYS or not 0 < len(name) <= 40:
-                raise ProofRejected(f"keep_outs: required names that nothing else has, received {shown(name)}")
+                raise ProofRejected(
+                    f"keep_outs: required names that nothing else has, received {shown(name)}"
+                )
             given = [row["radius_m"]] if round_ else part(row, "half_widths_m", list)
             size = [exact(e, "keep_outs", 1e-6) for e in given]
             if len(size) != (1 if round_ else 3):

@@ -76,8 +76,8 @@ def _demands(stated: SpaceStated) -> list[str]:
             )
         elif len(region.size) == 1:
             out.append(
-                f"keep-out {name!a}: outside the sphere of {_number(region.size[0])} m about {_vector(region.centre)} m "
-                f"in {axes}"
+                f"keep-out {name!a}: outside the sphere of {_number(region.size[0])} m about "
+                f"{_vector(region.centre)} m in {axes}"
             )
         else:
             out.append(
@@ -88,8 +88,8 @@ def _demands(stated: SpaceStated) -> list[str]:
     if plume is not None:
         out.append(
             f"plume: within {_number(plume.reach)} m of {_vector(plume.point)} m in {_AXES[plume.frame]} no exhaust "
-            f"(opposite to the thrust) within {_number(plume.angle)} rad ({_degrees(plume.angle)} deg) of the direction "
-            "to that point"
+            f"(opposite to the thrust) within {_number(plume.angle)} rad ({_degrees(plume.angle)} deg) of the "
+            "direction to that point"
         )
     if stated.violated:
         out.append(f"the start itself does not keep {stated.violated!a}")
