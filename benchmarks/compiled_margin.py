@@ -1,7 +1,7 @@
-"""What a compiled interior-point method would give the exact answer: beside the cone solver, on the same programs.
+"""The compiled interior-point method of the exact answers beside the cone solver, on the same programs.
 
 ``python -m benchmarks.compiled_margin [STARTS] [SEED]`` prints one JSON document. The programs are those of the exact
-answers to the starts of :mod:`benchmarks.exact_answers`. It stays a study while the service runs without Numba.
+answers to the starts of :mod:`benchmarks.exact_answers`.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ import numpy as np
 import pytest
 
 from benchmarks.exact_answers import draw
-from benchmarks.peers.ball_margin import SOLVED, largest_margin
 from benchmarks.timing import once
 from safestart.exact import search
 from safestart.exact.decide import decide
 from safestart.model.scenario import Floats
-from safestart.optim.largest_margin import Solved, solve
+from safestart.optim.ball_margin import SOLVED, largest_margin
+from safestart.optim.largest_margin import Solved, solve, solve_by_cones
 
 FINE_M, COARSE_M = 1e-8, 2e-5
 Program = tuple[Floats, Floats, float, int, bool]
@@ -55,7 +55,7 @@ def study(count: int, seed: int) -> dict[str, Any]:
         def cones(
             found: dict[str, Any] = found, given: Any = (constant, rows, a_max, d), fine: bool = fine
         ) -> None:
-            found["cones"] = solve(*given, fine=fine)
+            found["cones"] = solve_by_cones(*given, fine=fine)
 
         def compiled(
             found: dict[str, Any] = found,

@@ -6,11 +6,15 @@ sum_j lambda_j (offset + start . x0)_j + a_max sum_k |sum_j lambda_j thrust_jk|.
 
 A norm limit, limit - |y(u)| >= m, is a block of d + 1 such rows, (limit, y(u)), in the second-order cone once m is
 taken from the first. Its weights are a vector (lambda, p) of that cone, |p| <= lambda: the same sum bounds the margin.
+
+Rows over thrusts in balls are solved by a compiled method (:mod:`safestart.optim.ball_margin`); what it does not
+settle, norms and other thrusters by Clarabel. Which one depends on the program alone, and the bound on neither.
 """
 
 from __future__ import annotations
 
 import math
+from collections import Counter
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,6 +26,11 @@ from safestart.optim.thrust_shapes import BALL, UnitSet
 
 _LEAST_WEIGHT = 1e-10
 _USABLE = ("Solved", "AlmostSolved", "InsufficientProgress", "MaxIterations")
+# How close (m) the compiled method brings its bracket: what Clarabel's tolerances come to.
+_FINE_M, _COARSE_M = 1e-8, 2e-5
+
+SOLVED_BY: Counter[str] = Counter()
+"""Programs of this process: ``compiled``, ``open`` (the compiled method did not settle; Clarabel did it), ``cones``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +65,47 @@ def solve(
     the solver stops some iterations earlier, some 1e-5 m from the optimum. With another set ``within`` thrusts are
     a_max times its points, ``dimensions`` its channels, and ``components`` d of the norms.
     """
+    if within is BALL and not blocks:
+        found = _compiled(constant, thrust, a_max, dimensions, _FINE_M if fine else _COARSE_M)
+        SOLVED_BY["open" if found is None else "compiled"] += 1
+        if found is not None:
+            return found
+    else:
+        SOLVED_BY["cones"] += 1
+    return solve_by_cones(
+        constant, thrust, a_max, dimensions, blocks, fine=fine, within=within, components=components
+    )
+
+
+def _compiled(
+    constant: Floats, thrust: Floats, a_max: float, dimensions: int, tolerance: float
+) -> Solved | None:
+    """None where the compiled method does not settle."""
+    # Imported with the first program, because Numba takes a second to load.
+    from safestart.optim.ball_margin import SOLVED, largest_margin
+
+    w, weights, status, _ = largest_margin(constant, a_max * thrust, dimensions, tolerance)
+    if status != SOLVED:
+        return None
+    weights[weights < _LEAST_WEIGHT * max(1.0, float(np.maximum.reduce(weights)))] = 0.0
+    weights /= float(np.add.reduce(weights))
+    w = w.reshape(-1, dimensions)
+    bounded = BALL.bound(constant, thrust, weights, a_max, dimensions)
+    return Solved("Solved", a_max * BALL.repaired(w), weights, bounded)
+
+
+def solve_by_cones(
+    constant: Floats,
+    thrust: Floats,
+    a_max: float,
+    dimensions: int,
+    blocks: int = 0,
+    *,
+    fine: bool = True,
+    within: UnitSet = BALL,
+    components: int = 0,
+) -> Solved:
+    """The same by Clarabel, whatever the program."""
     rows, columns = thrust.shape
     count, cone = columns // dimensions, (components or dimensions) + 1
     plain = rows - blocks * cone

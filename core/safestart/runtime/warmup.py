@@ -15,6 +15,7 @@ from safestart.constraints.corridor import corridor_of
 from safestart.engines.base import Problem
 from safestart.engines.load import engine
 from safestart.engines.registry import ENGINES
+from safestart.exact.kernels.warm import warm as exact_answers
 from safestart.levelset.warm import warm as compile_levelset
 from safestart.model.scenario import Grid, Scenario
 from safestart.passive_safety.warm import warm as passive_safety
@@ -52,6 +53,7 @@ PARTS = MappingProxyType[str, Callable[[], None]](
     {
         "level sets": _level_sets,
         "flights": _flights,
+        "exact answers": exact_answers,
         "collision avoidance": avoidance,
         "passive safety": passive_safety,
         "reachable sets": _sets,

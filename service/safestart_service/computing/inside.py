@@ -9,20 +9,25 @@ import traceback
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 from time import monotonic
 from typing import Any
 
 from safestart.errors import SafestartError, Unavailable
-from safestart.processes.registry import process
+from safestart.processes.go_no_go.method_registry import METHODS
+from safestart.processes.registry import PROCESS_IDS, process
+from safestart.processes.sharding import load
 from safestart.runtime.progress import Context
 from safestart.runtime.settings import Settings
 from safestart_service.computing.store import Store
 
-MOST_BYTES = 640 * 1024**2
-"""Data of a helper process. The largest legal question takes half of it."""
+MOST_BYTES = 768 * 1024**2
+"""Data of a helper process. Numba takes 130 MiB of it, the largest legal question less than half of the rest."""
 NICENESS = 5
 _LOOK_S = 0.01
+# An answer that took less has left too little behind to spend a millisecond on it.
+_SHORT_S = 0.05
 
 
 class Failed(RuntimeError):
@@ -32,7 +37,7 @@ class Failed(RuntimeError):
 def call(function: Callable[..., Any], settings: Settings, stop: Path | None, *arguments: Any) -> Any:
     """``function(store, context, *arguments)``; raises our errors as they are, and ``Failed`` for all others."""
     _prepare()
-    store = _store(settings)
+    store, begun = _store(settings), monotonic()
     try:
         return function(store, Context(cancelled=_stopped(stop), shelf=store.shelf), *arguments)
     except SafestartError:
@@ -45,12 +50,29 @@ def call(function: Callable[..., Any], settings: Settings, stop: Path | None, *a
     except Exception:
         raise Failed(traceback.format_exc()) from None
     finally:
-        _return_memory()
+        if monotonic() - begun > _SHORT_S:
+            _return_memory()
 
 
 def ready() -> int:
-    """Load what heavy answers need, before the first one comes; returns the process id."""
-    process("flight").runner()
+    """Load what heavy answers need, before the first one comes; returns the process id.
+
+    All of it: loading takes seconds on a busy machine. Where it fell into the time of an answer, its deadline ended the
+    process, and the next one began anew.
+    """
+    for spec in map(process, PROCESS_IDS):
+        if spec.light:
+            spec.runner()
+    for method in METHODS.values():
+        load(method.decide)
+    # What is loaded where it is first needed.
+    for name in ("clarabel", "safestart.proofs.checker"):
+        import_module(name)
+    # By name, like the processes: the application itself, which imports this module, loads no Numba.
+    import_module("safestart.exact.kernels.warm").warm()
+    # Numba's objects stay: scanning them takes a tenth of a second every time.
+    gc.collect()
+    gc.freeze()
     _prepare()
     return os.getpid()
 

@@ -119,6 +119,19 @@ def test_every_process_that_imports_the_engines_has_a_place_for_their_kernels(
         assert service["volumes"] == [f"kernels:{volume}"]
 
 
+def test_the_service_has_a_place_of_its_own_for_the_kernels_of_exact_answers(compose: dict[str, Any]) -> None:
+    instructions = steps("service")
+    order = [name for name, _ in instructions]
+    volume = next(arguments for name, arguments in instructions if name == "VOLUME")
+    compiled = next(arguments for name, arguments in instructions if "kernels.warm" in arguments)
+    assert compiled.startswith("[")
+    assert order.index("VOLUME") > instructions.index(("RUN", compiled))
+    environment = " ".join(arguments for name, arguments in instructions if name == "ENV")
+    assert f"NUMBA_CACHE_DIR={volume}" in environment
+    # Kernels are code: the workers do not run what the process that meets the outside may write.
+    assert compose["services"]["service"]["volumes"] == [f"answers:{volume}"]
+
+
 def test_base_images_name_their_release(compose: dict[str, Any]) -> None:
     bases = {arguments.split()[0] for image in IMAGES for name, arguments in steps(image) if name == "FROM"}
     for base in [*bases, compose["services"]["database"]["image"]]:

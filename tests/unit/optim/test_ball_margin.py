@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks.peers.ball_margin import SOLVED, largest_margin
-from safestart.optim.largest_margin import solve
+from safestart.optim.ball_margin import SOLVED, largest_margin
+from safestart.optim.largest_margin import solve_by_cones
 
 
 def drawn(rng: np.random.Generator, d: int) -> tuple[np.ndarray, np.ndarray]:
@@ -38,7 +38,7 @@ def test_the_bracket_closes_and_holds_the_cone_solvers_optimum(d: int) -> None:
         pull = (z @ rows).reshape(-1, d)
         bound = float(z @ constant + np.linalg.norm(pull, axis=1).sum())
         assert margin - 1e-12 * abs(bound) <= bound <= margin + 1.001e-7 + 1e-12 * abs(bound)
-        cones = solve(constant, rows, 1.0, d)
+        cones = solve_by_cones(constant, rows, 1.0, d)
         if cones.status == "Solved":
             assert margin <= cones.bound + 1e-9 * max(1.0, abs(cones.bound))
             assert cones.bound <= bound + 1e-5 * max(1.0, abs(bound))

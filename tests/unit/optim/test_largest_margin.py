@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from scipy.sparse import csc_array
 
-from safestart.optim import cone_program
-from safestart.optim.largest_margin import _into_cone, solve
+from safestart.optim import ball_margin, cone_program
+from safestart.optim.largest_margin import SOLVED_BY, _into_cone, solve, solve_by_cones
+from safestart.optim.thrust_shapes import BALL, CUBE
 
 
 def drawn(d: int, blocks: int) -> tuple[np.ndarray, np.ndarray]:
@@ -59,7 +60,7 @@ def test_the_matrices_are_those_written_by_hand(
         return solver(*given)
 
     monkeypatch.setattr(clarabel, "DefaultSolver", spy)
-    answer = solve(constant, thrust, 0.1, d, blocks, fine=fine)
+    answer = solve_by_cones(constant, thrust, 0.1, d, blocks, fine=fine)
     ((none, cost, a, b, cones, settings),) = seen
     _, cost_, a_, b_, cones_ = by_hand(constant, thrust, 0.1, d, blocks)
     assert (none.data, none.indices, none.shape) == ([], [], (len(cost), len(cost)))
@@ -134,5 +135,41 @@ def test_numbers_that_are_not_finite_give_no_thrust(
         return out
 
     monkeypatch.setattr(cone_program.Found, part, broken)
-    answer = solve(constant, thrust, 0.1, 2)
+    answer = solve_by_cones(constant, thrust, 0.1, 2)
     assert (answer.thrust, answer.weights, answer.bound) == (None, None, np.inf)
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_rows_over_balls_are_solved_by_the_compiled_method(d: int) -> None:
+    constant, thrust = drawn(d, 0)
+    before = SOLVED_BY.copy()
+    answer, cones = solve(constant, thrust, 0.1, d), solve_by_cones(constant, thrust, 0.1, d)
+    assert SOLVED_BY - before == {"compiled": 1}
+    assert answer.bound == pytest.approx(cones.bound, abs=1e-7)
+    # The bound is what the weights prove, whoever found them.
+    assert answer.weights is not None
+    assert answer.bound == BALL.bound(constant, thrust, answer.weights, 0.1, d)
+
+
+def test_what_the_compiled_method_leaves_open_is_solved_by_cones_and_counted(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    constant, thrust = drawn(2, 0)
+    method, before = ball_margin.largest_margin, SOLVED_BY.copy()
+
+    def slow(*given: Any) -> Any:
+        w, weights, _, rounds = method(*given)
+        return 0.0 * w, weights, ball_margin.SLOW, rounds
+
+    monkeypatch.setattr(ball_margin, "largest_margin", slow)
+    answer, cones = solve(constant, thrust, 0.1, 2), solve_by_cones(constant, thrust, 0.1, 2)
+    assert SOLVED_BY - before == {"open": 1}
+    assert answer.bound == cones.bound
+    np.testing.assert_array_equal(answer.thrust, cones.thrust)
+
+
+def test_norms_and_other_thrusters_are_solved_by_cones() -> None:
+    before = SOLVED_BY.copy()
+    solve(*drawn(2, 3), 0.1, 2, 3)
+    solve(*drawn(2, 0), 0.1, 2, within=CUBE)
+    assert SOLVED_BY - before == {"cones": 2}

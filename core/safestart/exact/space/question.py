@@ -11,7 +11,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import lru_cache
 from typing import ClassVar
 
@@ -27,7 +26,7 @@ from safestart.dynamics.motion import RelativeMotion
 from safestart.dynamics.yamanaka_ankersen import YamanakaAnkersen
 from safestart.errors import invalid
 from safestart.exact.limits import AT_END, SPEED
-from safestart.exact.question import MAX_STEPS, MAX_TIME, Goal
+from safestart.exact.question import Goal, Spanned, check_steps
 from safestart.exact.space.demands import NONE, Demands
 from safestart.model.orbit import KeplerOrbit
 from safestart.model.scenario import MAX_RANGE, CorridorShape, Floats, number
@@ -48,7 +47,7 @@ class Face:
 
 
 @dataclass(frozen=True, slots=True)
-class SpaceQuestion:
+class SpaceQuestion(Spanned):
     """``steps`` intervals of ``dt`` s; raises ``InvalidInput`` for an invalid question.
 
     Faces: 1 to 32 with different names and nonzero normals; the faces of each frame have a point in common. A table of
@@ -71,17 +70,8 @@ class SpaceQuestion:
     dimensions: ClassVar[int] = 3
 
     def __post_init__(self) -> None:
-        number("dt", self.dt, 0.0, MAX_TIME, open_low=True)
-        if (
-            isinstance(self.steps, bool)
-            or not isinstance(self.steps, int)
-            or not 1 <= self.steps <= MAX_STEPS
-        ):
-            raise invalid("steps", f"an integer in [1, {MAX_STEPS}]", self.steps)
-        number("horizon", self.steps * self.dt, 0.0, MAX_TIME, open_low=True)
+        self.check_span()
         _check_faces(self.faces)
-        if self.speed_limit is not None:
-            number("speed_limit", self.speed_limit, 1e-3, 1000.0)
         if self.goal is not None:
             _check_goal(self.goal, self.faces, self.steps)
         norms = (AT_END if self.goal is not None else ()) + ((SPEED,) if self.speed_limit is not None else ())
@@ -95,11 +85,6 @@ class SpaceQuestion:
             inner.reaches(self.horizon)
 
     @property
-    def kind(self) -> str:
-        """``stay`` or ``synchronize``."""
-        return "stay" if self.goal is None else "synchronize"
-
-    @property
     def plain(self) -> bool:
         """Whether this is `stay` without a speed limit or demands, so that only faces count."""
         return self.goal is None and self.speed_limit is None and not self.demands
@@ -108,19 +93,6 @@ class SpaceQuestion:
     def motion(self) -> RelativeMotion:
         """CWH on a circular orbit, Yamanaka and Ankersen's on an elliptic one."""
         return Cwh(self.orbit.mean_motion) if self.orbit.circular else YamanakaAnkersen(self.orbit)
-
-    @property
-    def horizon(self) -> float:
-        """T in seconds."""
-        return self.steps * self.dt
-
-    @property
-    def latest(self) -> float:
-        """The last double not after the exact T."""
-        time = self.horizon
-        while Fraction(time) > Fraction(self.dt) * self.steps:
-            time = math.nextafter(time, 0.0)
-        return time
 
     @property
     def thrust_set(self) -> UnitSet:
@@ -180,7 +152,7 @@ def turned_from_y(axis: Vector) -> Floats:
 
 
 def _check_goal(goal: Goal, faces: Sequence[Face], steps: int) -> None:
-    number("earliest", goal.earliest, 1, steps)
+    check_steps("earliest", goal.earliest, steps)
     hold = goal.hold
     if hold is None or len(hold) != 3 or not all(map(math.isfinite, hold)):
         raise invalid("hold", "three numbers: a point of the body frame", hold)

@@ -96,7 +96,8 @@ def _back(factor: Any, x: Any) -> None:
 @compiled()
 def _pull(rows: Any, ends: Any, z: Any, pull: Any) -> None:
     """sum_j z_j r_j into ``pull``; row j is 0 from ``ends[j]`` on."""
-    pull[:] = 0.0
+    for i in range(len(pull)):
+        pull[i] = 0.0
     for j in range(len(rows)):
         for i in range(ends[j]):
             pull[i] += z[j] * rows[j, i]
@@ -144,26 +145,20 @@ def largest_margin(constant: Any, rows: Any, d: int, tolerance: float) -> Any:
     w, pull, q, step = np.zeros(size), np.zeros(size), np.zeros(size), np.zeros(size)
     trial, along = np.zeros(size), np.zeros(size)
     scaled, system = np.zeros((count, size)), np.zeros((count, count))
-    s, ds, ds_trial, dz, dz_trial = (
-        np.zeros(count),
-        np.zeros(count),
-        np.zeros(count),
-        np.zeros(count),
-        np.zeros(count),
-    )
-    ones, z, best = np.zeros(count), np.full(count, 1.0 / count), np.zeros(count)
-    h, dy, dy_trial, gamma, root = (
-        np.ones(balls),
-        np.zeros(balls),
-        np.zeros(balls),
-        np.zeros(balls),
-        np.zeros(balls),
-    )
+    s, ds, dz = np.zeros(count), np.zeros(count), np.zeros(count)
+    ds_trial, dz_trial = np.zeros(count), np.zeros(count)
+    ones, z, best = np.zeros(count), np.zeros(count), np.zeros(count)
+    h, dy, dy_trial = np.zeros(balls), np.zeros(balls), np.zeros(balls)
+    gamma, root = np.zeros(balls), np.zeros(balls)
     reach = 1e-300
     for j in range(count):
         reach = max(reach, _reach(rows[j], d))
-    margin = constant.min() - _BELOW * reach
-    y = np.full(balls, 0.5 * reach / balls)
+    margin, y = constant[0], np.empty(balls)
+    for j in range(count):
+        margin, z[j] = min(margin, constant[j]), 1.0 / count
+    margin -= _BELOW * reach
+    for k in range(balls):
+        h[k], y[k] = 1.0, 0.5 * reach / balls
     least = _LEAST_CURVATURE * reach / balls
     bound, stuck = np.inf, False
     for iteration in range(MOST_ITERATIONS):
@@ -219,7 +214,11 @@ def largest_margin(constant: Any, rows: Any, d: int, tolerance: float) -> Any:
                 if phase == 1:
                     dz[j] -= ds_trial[j] * dz_trial[j] / z[j]
             _back(system, dz)
-            dm = (1.0 - total - dz.sum()) / ones.sum()
+            moved, along_ones = 0.0, 0.0
+            for j in range(count):
+                moved += dz[j]
+                along_ones += ones[j]
+            dm = (1.0 - total - moved) / along_ones
             for j in range(count):
                 dz[j] += dm * ones[j]
                 for i in range(ends[j]):
