@@ -44,7 +44,7 @@ def create(
     from safestart.store.access.keys import KeyRepository
 
     with _database(database_url) as database:
-        record, key = KeyRepository(database).create(name, role, None if days == 0 else days, _operator())
+        record, key = KeyRepository(database).create(name, role, None if days == 0 else days, operator())
     if as_json:
         print_json({**_document(record), "key": key})
         return
@@ -83,7 +83,7 @@ def revoke(
     from safestart.store.access.keys import KeyRepository
 
     with _database(database_url) as database:
-        record = KeyRepository(database).revoke(key_id, _operator())
+        record = KeyRepository(database).revoke(key_id, operator())
     if as_json:
         print_json(_document(record))
     else:
@@ -138,7 +138,7 @@ def _database(url: str | None) -> Iterator[Database]:
         database.close()
 
 
-def _operator() -> Caller:
+def operator() -> Caller:
     """The caller beside the database: only the account's name is known."""
     try:
         name = f"cli:{getpass.getuser()}"

@@ -1,4 +1,4 @@
-"""``safestart replay, export, import, backup, restore, purge``: commands on the record of work."""
+"""``safestart replay, label, export, import, backup, restore, purge``: commands on the record of work."""
 
 from __future__ import annotations
 
@@ -25,6 +25,7 @@ _UNITS = {"s": 1.0, "min": 60.0, "h": 3600.0, "d": 86400.0, "w": 604800.0}
 def register(app: typer.Typer) -> None:
     """Add the commands."""
     app.command("replay")(replay)
+    app.command("label")(label)
     app.command("export")(export)
     app.command("import")(import_)
     app.command("backup")(backup)
@@ -62,6 +63,31 @@ def replay(
     raise typer.Exit(0 if found.kept else 1)
 
 
+def label(
+    job: Annotated[str, typer.Argument(help="Id of a job.")],
+    name: Annotated[str | None, typer.Option(help="What people call it; empty: no name.")] = None,
+    tag: Annotated[list[str] | None, typer.Option(help="A tag, as often as needed: replaces all.")] = None,
+    no_tags: Annotated[bool, typer.Option("--no-tags", help="Take all tags away.")] = False,
+    note: Annotated[str | None, typer.Option(help="What should be remembered; empty: no note.")] = None,
+    database_url: DatabaseUrl = "",
+    as_json: Json = False,
+) -> None:
+    """Write name, tags and note of a job; without options, show them."""
+    from safestart.cli.keys import operator
+    from safestart.store.jobs.repository import JobRepository
+
+    if no_tags and tag:
+        raise InvalidInput("--no-tags: required without --tag, received both", field="--no-tags")
+    with _database(database_url) as database:
+        tags = [] if no_tags else tag or None
+        now = JobRepository(database).label(job, name=name, tags=tags, note=note, by=operator())
+    if as_json:
+        print_json({"job": now.id, "name": now.name, "tags": now.tags, "note": now.note})
+        return
+    for title, text in (("name", now.name), ("tags", ", ".join(now.tags)), ("note", now.note)):
+        out.print(f"{title}: {text or '–'}", soft_wrap=True, markup=False)
+
+
 def export(
     job: Annotated[str, typer.Argument(help="Id of a job that has ended.")],
     output: Annotated[Path | None, typer.Option("--output", help="File; absent: JOB.zip here.")] = None,
@@ -84,6 +110,7 @@ def import_(
     database_url: DatabaseUrl = "",
 ) -> None:
     """Check a bundle and add its job to the database."""
+    from safestart.processes.outcome import outcome_of
     from safestart.records.bundle import own_page, unpack
     from safestart.store.transfer import Transfer
 
@@ -92,7 +119,9 @@ def import_(
     if not own_page(data, opened):
         err.print("its index.html is not the page that this version makes of the job: it was not checked")
     with _database(database_url, new=True) as database:
-        new = Transfer(database).add(opened)
+        outputs = None if opened.result is None else opened.result["outputs"]
+        outcome = None if outputs is None else outcome_of(opened.job["process_id"], outputs)
+        new = Transfer(database).add(opened, outcome)
     out.print(f"job {opened.job['id']}: {'imported' if new else 'is here already, with the same content'}")
 
 

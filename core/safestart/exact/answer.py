@@ -70,7 +70,7 @@ class Answer:
 
     For `synchronize` m is the best over T, ``thrust`` ends at the T it was found for, and ``parts`` stand for
     ``multipliers``. The loop ends with the verdict, so the bracket may be wide. ``arrival`` says how a GO goes on for
-    ever; None where that is not proved.
+    ever; None where that is not proved. ``restriction`` names the convex parts of the demands by which a GO was found.
     """
 
     verdict: Verdict
@@ -83,6 +83,7 @@ class Answer:
     reason: str = ""
     parts: tuple[Part, ...] = ()
     arrival: Arrival | None = None
+    restriction: tuple[str, ...] = ()
 
     @property
     def gap(self) -> float:

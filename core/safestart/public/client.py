@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import uuid
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
@@ -20,6 +20,7 @@ from safestart.public.regions import Region
 from safestart.public.results import Result
 from safestart.public.starts import point_of, points_of, seconds, state_of, wire_of
 from safestart.public.wire import TIMEOUT_S, Wire, artifact_of
+from safestart.records.labels import labels_of
 
 if TYPE_CHECKING:
     import os
@@ -156,12 +157,31 @@ class Client:
         """
         return self.result(self.submit(process_id, inputs), progress=progress, limit_s=limit_s)
 
-    def submit(self, process_id: str, inputs: Mapping[str, Any] | None = None) -> str:
-        """Queue a process; returns the id of its job."""
+    def submit(
+        self,
+        process_id: str,
+        inputs: Mapping[str, Any] | None = None,
+        *,
+        name: str = "",
+        tags: Iterable[str] = (),
+        note: str = "",
+    ) -> str:
+        """Queue a process; returns the id of its job. ``name``, ``tags`` and ``note`` are for people to find it by.
+
+        A name has at most 100 letters, a note 2000; there may be 10 tags of 40 letters.
+        """
         path = f"/processes/{quote(process_id, safe='')}/execution"
         headers = {"Prefer": "respond-async", "Idempotency-Key": str(uuid.uuid4())}
-        job = self._wire.post(path, {"inputs": dict(inputs or {})}, headers, again=True)
+        body = {"inputs": dict(inputs or {}), **labels_of(name=name, tags=tags, note=note)}
+        job = self._wire.post(path, body, headers, again=True)
         return str(job["jobID"])
+
+    def label(
+        self, job: str, *, name: str | None = None, tags: Iterable[str] | None = None, note: str | None = None
+    ) -> None:
+        """Write the given ones of name, tags and note on a job; raises ``NotFound`` for an unknown one."""
+        told = labels_of(name=name, tags=tags, note=note)
+        self._wire.answered("PATCH", f"/jobs/{quote(job, safe='')}", told, None, again=True)
 
     def result(self, job: str, *, progress: bool = True, limit_s: float | None = None) -> Result:
         """The result of a job, followed to its end; raises as :meth:`run`, and ``NotFound`` for an unknown job."""

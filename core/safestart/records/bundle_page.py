@@ -55,7 +55,9 @@ def page(
 
 def _facts(job: Mapping[str, Any], result: Mapping[str, Any] | None) -> str:
     problem = job.get("problem")
+    labels = {"name": job.get("name"), "tags": ", ".join(job.get("tags", ())), "note": job.get("note")}
     facts = {
+        **{name: text for name, text in labels.items() if text},
         "submitted": job.get("created_at"),
         "started": job.get("started_at"),
         "ended": job.get("finished_at"),

@@ -19,6 +19,7 @@ from pydantic import (
 
 from safestart.errors import InvalidInput, invalid
 from safestart.model.validation import validation_error
+from safestart.records.labels import Name, Note, Tags
 
 _NOT_PRINTED = frozenset({"Cc", "Cf", "Cn", "Co", "Cs", "Zl", "Zp"})
 
@@ -82,6 +83,9 @@ class JobFacts(Closed):
     started_at: AwareDatetime | None
     finished_at: AwareDatetime | None
     updated_at: AwareDatetime
+    name: Name = ""
+    tags: Tags = Field(default_factory=list)
+    note: Note = ""
 
 
 class EventFacts(Closed):

@@ -57,7 +57,8 @@ class JobRow(Base):
 
     ``seq`` is the order of submission; ``token`` grows with every change of hands (fencing); ``submitter`` names
     the submitter ("" when the service requires no keys) and ``turn`` is its round among the submitters (see
-    ``fairness``).
+    ``fairness``). ``search`` is the text that a search looks through (see ``labelling``), ``verdict`` the word of the
+    ``outcome``.
     """
 
     __tablename__ = "jobs"
@@ -89,6 +90,12 @@ class JobRow(Base):
     updated_at: Mapped[datetime]
     problem: Mapped[dict[str, Any] | None]
     versions: Mapped[dict[str, Any] | None]
+    name: Mapped[str] = mapped_column(String(100), default="", server_default="")
+    tags: Mapped[list[str]] = mapped_column(JSON, default=list, server_default="[]")
+    note: Mapped[str] = mapped_column(Text, default="", server_default="")
+    search: Mapped[str] = mapped_column(Text, default="", server_default="")
+    verdict: Mapped[str | None] = mapped_column(String(64))
+    outcome: Mapped[dict[str, Any] | None]
 
     __table_args__ = (
         # The queue in serving order, and the few running rows.
@@ -97,6 +104,10 @@ class JobRow(Base):
         Index("ix_jobs_ended", "status", "finished_at"),
         # The list by status, and the counts.
         Index("ix_jobs_status_seq", "status", "seq"),
+        Index("ix_jobs_process_seq", "process_id", "seq"),
+        Index("ix_jobs_verdict_seq", "verdict", "seq"),
+        # A search reads all texts: these, not the rows with their inputs.
+        Index("ix_jobs_search_seq", "search", "seq"),
         {"sqlite_autoincrement": True},
     )
 

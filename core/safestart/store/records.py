@@ -31,7 +31,8 @@ class JobEntry:
 
     ``progress`` is 0..100; ``eta_s`` the estimated seconds left while it runs; ``problem`` a problem document
     (RFC 9457 members) when it failed; ``submitter`` names the submitter, "" when the service requires no keys;
-    ``attempts`` counts the starts that neither ended nor were given back.
+    ``attempts`` counts the starts that neither ended nor were given back; ``outcome`` is the verdict of the result, if
+    its process gives one (:func:`safestart.processes.outcome.outcome_of`).
     """
 
     id: str
@@ -52,6 +53,10 @@ class JobEntry:
     finished_at: datetime | None
     updated_at: datetime
     problem: dict[str, Any] | None
+    name: str
+    tags: list[str]
+    note: str
+    outcome: dict[str, Any] | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,11 +141,16 @@ class Vitals:
 
 @dataclass(frozen=True, slots=True)
 class JobPage:
-    """One page of jobs, newest first, and the cursor of the next page (None on the last)."""
+    """One page of jobs, and the cursors of the pages beside it (None: there is none, or the order is another).
+
+    ``inputs`` are those of each job, None for long ones; ``total`` counts the jobs on all pages.
+    """
 
     jobs: tuple[JobEntry, ...]
     next_cursor: str | None
     prev_cursor: str | None = None
+    inputs: tuple[dict[str, Any] | None, ...] = ()
+    total: int = 0
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from sqlalchemy import Connection, Engine, inspect, text
 from safestart.errors import Unavailable
 from safestart.store.dialect import lock_schema
 
-HEAD = "0006"
+HEAD = "0007"
 _MIGRATIONS = Path(__file__).parent / "migrations"
 
 

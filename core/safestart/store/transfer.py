@@ -14,8 +14,10 @@ from safestart.records.bundle import Bundle
 from safestart.records.bundle_parts import event_facts, job_facts
 from safestart.records.comparable import digest
 from safestart.store.database import Database
+from safestart.store.jobs.finding import find
+from safestart.store.jobs.labelling import searched
 from safestart.store.jobs.results import require_unaltered
-from safestart.store.jobs.submissions import find, request_hash
+from safestart.store.jobs.submissions import request_hash
 from safestart.store.jobs.writing import add_result
 from safestart.store.models import ArtifactRow, EventRow, JobRow, ResultRow
 from safestart.store.records import JobStatus
@@ -25,6 +27,7 @@ _FACTS = (
     *("id", "process_id", "status", "inputs", "instant", "attempts", "timeout_s", "priority"),
     *("message", "problem", "versions"),
 )
+_LABELS = ("name", "tags", "note")
 
 
 class Transfer:
@@ -50,6 +53,8 @@ class Transfer:
                 )
             job = {name: getattr(row, name) for name in _FACTS}
             job |= {name: _iso(getattr(row, name)) for name in _TIMES}
+            # Only what there is: a job without labels packs as it did before there were any.
+            job |= {name: getattr(row, name) for name in _LABELS if getattr(row, name)}
             stored = session.get(ResultRow, job_id)
             events = session.scalars(select(EventRow).where(EventRow.job_id == job_id).order_by(EventRow.id))
             files = session.scalars(
@@ -63,9 +68,10 @@ class Transfer:
                 tuple(Artifact(file.name, file.media_type, bytes(file.data)) for file in files),
             )
 
-    def add(self, bundle: Bundle) -> bool:
+    def add(self, bundle: Bundle, outcome: dict[str, Any] | None = None) -> bool:
         """Add the job under its own id; False when the store already has it with the same content.
 
+        ``outcome`` is the verdict of its result; a bundle does not say one, as it could say another than its result.
         Raises ``Conflict`` when another job or result has its id, and ``InvalidInput`` for malformed facts.
         """
         values, events = _values(bundle.job), event_facts(bundle.events)
@@ -76,7 +82,8 @@ class Transfer:
             if session.scalar(select(JobRow).where(JobRow.id == values["id"])) is not None:
                 _require_same(session, bundle)
                 return False
-            session.execute(insert(JobRow).values(**values))
+            word = None if outcome is None else outcome["word"]
+            session.execute(insert(JobRow).values(**values, outcome=outcome, verdict=word))
             if bundle.result is not None:
                 add_result(session, values["id"], bundle.result, bundle.artifacts)
             for event in events:
@@ -91,6 +98,7 @@ def _values(job: dict[str, Any]) -> dict[str, Any]:
         "progress": done,
         "cancel_requested": values["status"] == JobStatus.DISMISSED.value,
         "request_sha256": request_hash(values["process_id"], values["inputs"]),
+        "search": searched(values["id"], values["process_id"], values["name"], values["tags"]),
     }
 
 

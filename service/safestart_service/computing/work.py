@@ -149,6 +149,7 @@ def _submitted(store: Store, spec: ProcessSpec, request: ExecuteRequest, asked: 
         submitter=by.key_id or "",
         by=by,
         job_id=new,
+        labels=request.labels(),
     )
     document = job_detail(store, job, asked.base)
     if job.instant is not None:

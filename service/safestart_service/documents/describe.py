@@ -66,6 +66,12 @@ def output_ids(spec: ProcessSpec) -> tuple[str, ...]:
     return tuple(spec.outputs.model_fields)
 
 
+def described_inputs(process_id: str) -> dict[str, Any]:
+    """The inputs of a process by name, as in its description."""
+    found: dict[str, Any] = _interface_of(process_id)["inputs"]
+    return found
+
+
 def _interface(spec: ProcessSpec) -> dict[str, Any]:
     return _interface_of(spec.id)
 

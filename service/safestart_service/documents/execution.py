@@ -12,6 +12,7 @@ from pydantic import Field, create_model
 from safestart.errors import InvalidInput, invalid
 from safestart.processes.base import ProcessSpec, WireModel
 from safestart.processes.registry import process
+from safestart.records.labels import NAME_TEXT, NOTE_TEXT, TAGS_TEXT, Labels, Name, Note, Tags
 from safestart.runtime.progress import Context
 from safestart_service.documents.describe import output_ids
 from safestart_service.documents.formats.ogc import ogc_values
@@ -43,6 +44,9 @@ class ExecuteRequest(WireModel):
         le=100,
         description="Of a queued job: higher is served first. Above 0 only with an admin key.",
     )
+    name: Name = Field("", description=f"Of a queued job. {NAME_TEXT}")
+    tags: Tags = Field(default_factory=list, description=f"Of a queued job. {TAGS_TEXT}")
+    note: Note = Field("", description=f"Of a queued job. {NOTE_TEXT}")
     outputs: dict[str, OutputRequest] | None = Field(
         None, description="Outputs wanted; absent: all. A stored result always holds all of them."
     )
@@ -50,6 +54,10 @@ class ExecuteRequest(WireModel):
         "document", description="raw (the bare value) needs exactly one entry in outputs, and sync execution."
     )
     inputs: Any
+
+    def labels(self) -> Labels:
+        """Name, tags and note of the job."""
+        return Labels(name=self.name, tags=self.tags, note=self.note)
 
 
 @cache

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 from safestart.errors import NotFound
 from safestart.processes.registry import PROCESS_IDS, process
-from safestart.store.records import Crew, Job, JobEntry, JobStatus, Wait
+from safestart.store.records import Crew, Job, JobEntry, JobPage, JobStatus, Wait
 from safestart_service.computing.store import Store
+from safestart_service.documents.key_inputs import key_inputs
 from safestart_service.errors import NoSuchJob
 from safestart_service.http.answers import link
 
@@ -33,21 +33,27 @@ def known_job(services: Services, job_id: str) -> Job:
         raise NoSuchJob(error.detail, field="jobID", required="the id of a job", received=job_id) from None
 
 
-def status_infos(services: Services, jobs: Sequence[JobEntry], base: str) -> list[dict[str, Any]]:
-    """statusInfo of each job of a list, with its place in the queue but without estimates for waiting jobs."""
+def status_infos(services: Services, page: JobPage, base: str) -> list[dict[str, Any]]:
+    """statusInfo of each job of a page, with its place in the queue but without estimates for waiting jobs."""
+    jobs = page.jobs
     places = services.jobs.positions(job.id for job in jobs if job.status is JobStatus.ACCEPTED)
     crew = services.jobs.crew()
     waits = {job_id: Wait(place, None, None) for job_id, place in places.items()}
-    return [_status_info(job, base, waits.get(job.id), crew) for job in jobs]
+    return [
+        _status_info(job, base, waits.get(job.id), crew, inputs)
+        for job, inputs in zip(jobs, page.inputs, strict=True)
+    ]
 
 
 def status_info(services: Services | Store, job: Job, base: str) -> dict[str, Any]:
     """statusInfo of one job; a waiting job has estimates of its start and end."""
     wait = services.jobs.wait(job.id) if job.status is JobStatus.ACCEPTED else None
-    return _status_info(job, base, wait, services.jobs.crew())
+    return _status_info(job, base, wait, services.jobs.crew(), job.inputs)
 
 
-def _status_info(job: JobEntry, base: str, wait: Wait | None, crew: Crew) -> dict[str, Any]:
+def _status_info(
+    job: JobEntry, base: str, wait: Wait | None, crew: Crew, inputs: dict[str, Any] | None
+) -> dict[str, Any]:
     return {
         "jobID": job.id,
         "processID": job.process_id,
@@ -69,6 +75,11 @@ def _status_info(job: JobEntry, base: str, wait: Wait | None, crew: Crew) -> dic
         "submitter": job.submitter or None,
         "dismissal_requested": job.cancel_requested,
         "problem": job.problem,
+        "name": job.name,
+        "tags": job.tags,
+        "note": job.note,
+        "outcome": job.outcome,
+        "key_inputs": None if inputs is None else key_inputs(job.process_id, inputs),
         "links": _links(job, base),
     }
 

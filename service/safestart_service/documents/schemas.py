@@ -1,4 +1,4 @@
-"""Models of the service's documents, which the OpenAPI description shows."""
+"""Models of the documents about processes and jobs, which the OpenAPI description shows."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from pydantic.json_schema import SkipJsonSchema
 
 from safestart.processes.base import WireModel
-from safestart.runtime.access import Role
+from safestart.records.labels import NAME_TEXT, NOTE_TEXT, TAGS_TEXT, Name, Note, Tags
 from safestart.store.records import JobStatus
 
 
@@ -126,6 +126,24 @@ class ProcessDescription(ProcessSummary):
     )
 
 
+class Outcome(BaseModel):
+    """The verdict of a result: the worst of its findings."""
+
+    word: str
+    sense: Literal["good", "bad", "open"] = Field(description="open: it decides nothing, or without a proof.")
+    count: int = Field(description="Findings that are as bad.")
+    of: int = Field(description="All findings.")
+    basis: str | None = Field(description="What the verdicts rest on if that is no proof.")
+
+
+class JobLabels(WireModel):
+    """Name, tags and note to write on a job; what is absent or null stays as it is."""
+
+    name: Name | None = Field(None, description=NAME_TEXT, examples=["before the burn of the 12th"])
+    tags: Tags | None = Field(None, description=TAGS_TEXT, examples=[["envisat", "night shift"]])
+    note: Note | None = Field(None, description=NOTE_TEXT)
+
+
 class StatusInfo(BaseModel):
     """statusInfo of OGC API - Processes 1.0, and what users of queues ask for besides."""
 
@@ -150,6 +168,15 @@ class StatusInfo(BaseModel):
     submitter: str | None = Field(description="Id of the submitting key; null without one.")
     dismissal_requested: bool
     problem: dict[str, Any] | None = Field(description="Problem document of a failed job.")
+    name: str = Field(description="What people call the job; may be empty.")
+    tags: list[str]
+    note: str
+    outcome: Outcome | None = Field(
+        description="Verdict of the result; null without one, and for results of earlier versions."
+    )
+    key_inputs: dict[str, str] | None = Field(
+        description="The inputs that make it this run, as text by path; null in a list if they are long."
+    )
     links: list[Link]
 
 
@@ -174,9 +201,10 @@ class JobInputs(BaseModel):
 
 
 class JobList(BaseModel):
-    """A page of jobs, newest first."""
+    """A page of jobs, newest first unless sorted otherwise."""
 
     jobs: list[StatusInfo]
+    total: int = Field(description="Jobs on all pages.")
     links: list[Link]
 
 
@@ -237,67 +265,3 @@ class Readiness(BaseModel):
     places: int = Field(description="Jobs that the workers can run at once.")
     places_taken: int
     jobs: dict[str, int]
-
-
-class CallerDocument(BaseModel):
-    """Who is asking."""
-
-    key_id: str | None = Field(description="Id of the key; null where no keys are in use.")
-    name: str = Field(description="Name of the key; local without one.")
-    role: Role = Field(description="What the caller may do: read; submit; admin.")
-
-
-class KeyDocument(BaseModel):
-    """An API key without its secret."""
-
-    id: str = Field(description="Public part of the key: it names the key in lists and logs.")
-    name: str
-    role: Role
-    created: datetime
-    expires: datetime | None
-    revoked: datetime | None
-    last_used: datetime | None = Field(description="Updated about once a minute.")
-    usable: bool = Field(description="Neither revoked nor expired.")
-
-
-class KeyRequest(WireModel):
-    """A key to make."""
-
-    name: str = Field(
-        min_length=1, max_length=100, description="Who or what uses it.", examples=["ground segment"]
-    )
-    role: Role = Field(Role.READ, description="read; submit, which includes read; admin, which includes all.")
-    days: float | None = Field(90.0, gt=0, le=3660, description="Days until it expires; null: never.")
-
-
-class NewKeyDocument(KeyDocument):
-    """A key that was just made."""
-
-    key: str = Field(description="The key itself; it cannot be shown again.")
-
-
-class KeyList(BaseModel):
-    """All keys."""
-
-    keys: list[KeyDocument]
-
-
-class AuditDocument(BaseModel):
-    """Who did what to which job or key, and when."""
-
-    id: int
-    at: datetime
-    action: str
-    subject: str = Field(description="Id of a job or a key.")
-    key_id: str | None = Field(description="Null without a key.")
-    actor: str = Field(description="The key's name; local or cli without one.")
-    address: str | None
-    request_id: str | None
-    detail: dict[str, Any] | None
-
-
-class AuditList(BaseModel):
-    """A page of the audit log, newest first."""
-
-    entries: list[AuditDocument]
-    next_before: int | None

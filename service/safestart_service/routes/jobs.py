@@ -1,9 +1,10 @@
-"""Jobs: list, status, dismissal."""
+"""Jobs: list, status, labels, dismissal."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from time import monotonic
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 from urllib.parse import urlencode
 
 from fastapi import APIRouter, Path, Query, Request
@@ -13,19 +14,22 @@ from starlette.concurrency import run_in_threadpool
 
 from safestart.errors import invalid
 from safestart.processes.registry import PROCESS_IDS
-from safestart.store.jobs.filters import JobFilter
-from safestart.store.records import JobStatus
+from safestart.store.jobs.filters import JobFilter, Order
+from safestart.store.records import JobPage, JobStatus
 from safestart_service.access.gate import caller, ended_key, require_own
 from safestart_service.documents.jobs_view import job_detail, known_job, partial_document, status_infos
-from safestart_service.documents.openapi import TAG, answer, refusals
-from safestart_service.documents.schemas import JobDetail, JobList, Partial
+from safestart_service.documents.openapi import TAG, answer, json_body, refusals
+from safestart_service.documents.schemas import JobDetail, JobLabels, JobList, Partial
 from safestart_service.http.answers import Json, base_url, link, tagged, this_url
+from safestart_service.http.body import parse_body, read_body
 from safestart_service.http.intervals import interval, without_nul
 from safestart_service.http.once import OnceRoute
 from safestart_service.state import services
 
 router = APIRouter(tags=["jobs"], route_class=OnceRoute)
 MAX_WAIT_S = 30.0
+MAX_OFFSET = 10_000_000
+SORTS = tuple(sign + by.value for by in Order for sign in ("", "-"))
 JobId = Annotated[str, Path(description="Id of a job.")]
 
 
@@ -52,7 +56,26 @@ class JobQuery(BaseModel):
     maxDuration: int | None = Field(
         None, ge=0, le=10**9, description="Only jobs that ran at most this long, s."
     )
+    search: str | None = Field(
+        None,
+        max_length=200,
+        description="Only jobs with each of these words in their id, process, name or a tag.",
+        examples=["envisat night"],
+    )
+    tag: list[str] = Field([], max_length=10, description="Only jobs with all of these tags.")
+    verdict: list[str] = Field(
+        [], max_length=10, description="Only jobs whose outcome is one of these words."
+    )
+    sort: Literal[SORTS] = Field(  # type: ignore[valid-type]
+        "-created", description="What the list is sorted by; with `-` from the greatest to the least."
+    )
     limit: int = Field(50, ge=1, le=200, description="Jobs per page.")
+    offset: int = Field(
+        0,
+        ge=0,
+        le=MAX_OFFSET,
+        description="Jobs before this page; a cursor, in the usual order, never shifts.",
+    )
     cursor: str | None = Field(
         None, max_length=200, description="Where to continue: taken from the link `next` or `prev`."
     )
@@ -65,7 +88,7 @@ class JobQuery(BaseModel):
     responses={200: answer(JobList, "A page of jobs.", ETag=TAG), **refusals(304, 422, 503)},
 )
 def jobs(request: Request, query: Annotated[JobQuery, Query()]) -> Response:
-    """Jobs, newest first; the links `next` and `prev` lead to the pages of older and newer ones."""
+    """Jobs, newest first unless sorted otherwise; the links `next` and `prev` lead to the pages beside this one."""
     for name in query.processID:
         if name not in PROCESS_IDS:
             raise invalid("processID", f"one of {', '.join(PROCESS_IDS)}", name)
@@ -79,17 +102,36 @@ def jobs(request: Request, query: Annotated[JobQuery, Query()]) -> Response:
         created_to=end,
         least_s=query.minDuration,
         most_s=query.maxDuration,
+        words=without_nul(query.search or "").split(),
+        tags=[without_nul(tag) for tag in query.tag],
+        verdicts=[without_nul(word) for word in query.verdict],
     )
-    page = found.jobs.list(wanted, limit=query.limit, cursor=query.cursor)
+    page = found.jobs.list(
+        wanted,
+        limit=query.limit,
+        cursor=query.cursor,
+        offset=query.offset,
+        by=Order(query.sort.removeprefix("-")),
+        descending=query.sort.startswith("-"),
+    )
     links = [link(this_url(request), "self", "this list")]
-    for rel, title, cursor in (
-        ("next", "next page", page.next_cursor),
-        ("prev", "previous page", page.prev_cursor),
-    ):
-        if cursor is not None:
-            again = query.model_dump(mode="json", exclude_defaults=True) | {"cursor": cursor}
-            links.append(link(f"{base}/jobs?{urlencode(again, doseq=True)}", rel, title))
-    return tagged(request, {"jobs": status_infos(found, page.jobs, base), "links": links})
+    for rel, title, place in _beside(query, page):
+        again = query.model_dump(mode="json", exclude_defaults=True, exclude={"cursor", "offset"}) | place
+        links.append(link(f"{base}/jobs?{urlencode(again, doseq=True)}", rel, title))
+    return tagged(request, {"jobs": status_infos(found, page, base), "total": page.total, "links": links})
+
+
+def _beside(query: JobQuery, page: JobPage) -> Iterator[tuple[str, str, dict[str, Any]]]:
+    """The pages beside this one: by cursor in the usual order, else by offset."""
+    after = query.offset + query.limit
+    if page.next_cursor is not None:
+        yield "next", "next page", {"cursor": page.next_cursor}
+    elif (query.offset or query.sort != "-created") and after < min(page.total, MAX_OFFSET):
+        yield "next", "next page", {"offset": after}
+    if page.prev_cursor is not None:
+        yield "prev", "previous page", {"cursor": page.prev_cursor}
+    elif query.offset:
+        yield "prev", "previous page", {"offset": max(0, query.offset - query.limit)}
 
 
 @router.get(
@@ -142,6 +184,34 @@ def partial(request: Request, jobID: JobId) -> Response:
     """The result so far of a process that is cut into shards; once the job is successful, ask for its results."""
     found = services(request)
     return Json(partial_document(found, known_job(found, jobID), base_url(request)))
+
+
+@router.patch(
+    "/jobs/{jobID}",
+    operation_id="label",
+    summary="Name a job, tag it, write a note on it",
+    openapi_extra=json_body(
+        {"labels": JobLabels}, {"labels": {"name": "before the burn", "tags": ["envisat"]}}
+    ),
+    responses={
+        200: answer(JobDetail, "statusInfo with the labels."),
+        **refusals(404, 409, 413, 415, 422, 503),
+    },
+)
+async def label(request: Request, jobID: JobId) -> Response:
+    """Write the given ones of name, tags and note; they change nothing that is computed.
+
+    With keys in use: on one's own jobs; with role admin, on any.
+    """
+    labels = parse_body(JobLabels, await read_body(request))
+    found, by = services(request), caller(request)
+
+    def write() -> Response:
+        require_own(by, known_job(found, jobID).submitter)
+        now = found.jobs.label(jobID, name=labels.name, tags=labels.tags, note=labels.note, by=by)
+        return Json(job_detail(found, now, base_url(request)))
+
+    return await run_in_threadpool(write)
 
 
 @router.delete(

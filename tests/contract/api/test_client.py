@@ -66,6 +66,19 @@ def test_a_job_is_followed_to_its_result(client, tmp_path, capsys):
     assert list(result.to_dataframe("rows").engine) == ["analytical"]
 
 
+def test_a_job_is_labelled(client, tmp_path):
+    job = client.submit("benchmark", HEAVY["inputs"], name="first", tags=("a", "b"))
+    client.label(job, note="later")
+    stored = jobs_of(tmp_path).get(job)
+    assert (stored.name, stored.tags, stored.note) == ("first", ["a", "b"], "later")
+    with pytest.raises(InvalidInput, match="tags"):
+        client.submit("benchmark", HEAVY["inputs"], tags=["a,b"])
+    with pytest.raises(InvalidInput, match="tags"):
+        client.label(job, tags="ab")
+    with pytest.raises(NotFound):
+        client.label("nothing", name="x")
+
+
 def test_a_job_that_ends_badly_says_why(client):
     job = client.submit("benchmark", HEAVY["inputs"])
     client._wire.answered("DELETE", f"/jobs/{job}", None, None, again=False)

@@ -119,7 +119,13 @@ def test_the_parts_alone_are_a_bundle(database: Database) -> None:
             for wrong in ("\n", "\r", "\x1b", "\x7f", "\x85", "\u2028", "\u202e", "\ufeff")
         ),
         *(("type", wrong) for wrong in (None, 3, HALF, "a\nb", "")),
-        ("job", JOB | {"note": "x"}),
+        ("job", JOB | {"rank": "x"}),
+        *(("job", JOB | {"name": wrong}) for wrong in (NUL, HALF, 3, None, "a\nb", "\u202ex", "x" * 101)),
+        *(
+            ("job", JOB | {"tags": wrong})
+            for wrong in ("a", [3], [""], ["a,b"], ["x" * 41], list("abcdefghijk"))
+        ),
+        *(("job", JOB | {"note": wrong}) for wrong in (NUL, HALF, "x" * 2001)),
         ("events", [EVENT | {"note": "x"}]),
         ("result", RESULT | {"note": "x"}),
         ("result", RESULT | {"process": {"id": "coverage"}}),

@@ -199,6 +199,29 @@ def test_ages_that_are_none(text: str) -> None:
         age(text)
 
 
+def test_a_job_is_labelled_by_command(execution: Any, tmp_path: Path) -> None:
+    url = f"sqlite:///{tmp_path / 'labels.sqlite3'}"
+    database = Database(url)
+    database.migrate()
+    job, runner = done(database, execution), CliRunner()
+
+    def label(*options: str) -> dict[str, Any]:
+        answer = runner.invoke(build(), ["label", job, *options, "--json", "--database-url", url])
+        assert answer.exit_code == 0, answer.output
+        found: dict[str, Any] = json.loads(answer.stdout)
+        return found
+
+    label("--name", "first", "--tag", "a", "--tag", "b", "--note", "why")
+    assert label() == {"job": job, "name": "first", "tags": ["a", "b"], "note": "why"}
+    assert label("--no-tags", "--name", "")["tags"] == []
+    stored = JobRepository(database).get(job)
+    assert (stored.name, stored.tags, stored.note) == ("", [], "why")
+    for wrong in (["--tag", "a,b"], ["--no-tags", "--tag", "a"], ["--name", "x" * 101]):
+        answer = runner.invoke(build(), ["label", job, *wrong, "--database-url", url])
+        assert isinstance(answer.exception, SafestartError), wrong
+    database.close()
+
+
 def test_the_commands(execution: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     url = f"sqlite:///{tmp_path / 'store.sqlite3'}"

@@ -15,6 +15,7 @@ from distributed import KilledWorker
 from distributed.client import FutureCancelledError
 
 from safestart.errors import LeaseLost, NotFound, Unavailable
+from safestart.processes.outcome import outcome_of
 from safestart.processes.registry import process
 from safestart.runtime.logs import about
 from safestart.store.jobs.repository import JobRepository
@@ -179,8 +180,9 @@ class Shepherd:
         document = end.document
         if self._shown or self._journal.notes:  # a job that ended before its first report needs no last step
             await self._write_progress()
+        said = await asyncio.to_thread(outcome_of, self.claim.process_id, document["outputs"])
         return await self._end(
-            "successful", lambda: self._jobs.succeed(self.claim, document, end.artifacts, end.versions)
+            "successful", lambda: self._jobs.succeed(self.claim, document, end.artifacts, end.versions, said)
         )
 
     async def _count_deaths(self) -> bool:

@@ -17,8 +17,8 @@ from safestart.control.three_regimes import ThreeRegimes
 from safestart.exact.question import Question
 from safestart.model.scenario import Rest, Scenario
 from safestart.processes.sweep.cases import Cases
+from safestart.processes.sweep.inputs import FINE_DT_S, SweepInputs
 from safestart.processes.sweep.judge import UNASKED, Verdicts, of
-from safestart.processes.sweep.spec import FINE_DT_S, SweepInputs
 from safestart.processes.wire import DT_S
 from safestart.simulation.compiled_loop import fly
 from safestart.simulation.loop import fly as fly_slowly

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from safestart.model.scenario import Floats
 from safestart.processes.plotting import draw_corridor, drawn_as, figure
-from safestart.processes.sweep.spec import SweepInputs
+from safestart.processes.sweep.inputs import SweepInputs
 
 Path = tuple[dict[str, Any], Floats, Floats]
 """A worst case with the times (T,) and body-frame positions (T, 2) of its flight."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from safestart.campaign.cuts import packed, runs
-from safestart.processes.sweep.spec import SweepInputs
+from safestart.processes.sweep.inputs import SweepInputs
 
 # Cases per shard: a second or so of work.
 FAST, SLOW = 10_000, 50

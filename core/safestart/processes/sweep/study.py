@@ -13,7 +13,7 @@ from safestart.campaign.spread import Spread
 from safestart.campaign.study import Study
 from safestart.campaign.table import Column, Kind
 from safestart.campaign.tally import Flagged, Known, Rows, Tally, Total
-from safestart.processes.sweep.spec import SweepInputs
+from safestart.processes.sweep.inputs import SweepInputs
 from safestart.processes.sweep.split import DRAWN_OWN
 
 # Number of the closed forms' false GOs that are kept with their case numbers.

@@ -1,13 +1,16 @@
-"""Filters of the job list in SQL."""
+"""Filters and orders of the job list in SQL."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
-from sqlalchemy import ColumnElement, func
+from sqlalchemy import ColumnElement, func, select
+from sqlalchemy.orm import aliased
 
 from safestart.store.dialect import after, seconds_between
-from safestart.store.jobs.filters import JobFilter
+from safestart.store.jobs.filters import JobFilter, Order
+from safestart.store.jobs.labelling import of_tag
 from safestart.store.models import JobRow
 from safestart.store.records import JobStatus
 
@@ -24,8 +27,36 @@ def conditions(wanted: JobFilter) -> Iterator[ColumnElement[bool]]:
         yield JobRow.created_at >= wanted.created_from
     if wanted.created_to is not None:
         yield JobRow.created_at <= wanted.created_to
-    duration = seconds_between(JobRow.started_at, func.coalesce(JobRow.finished_at, after()))
+    if wanted.verdicts:
+        yield JobRow.verdict.in_(wanted.verdicts)
+    texts = [word.lower() for word in wanted.words] + [of_tag(tag) for tag in wanted.tags]
+    if texts:
+        # Of its own, so that an index alone answers it: rows hold their inputs.
+        row = aliased(JobRow)
+        found = select(row.seq).where(*(row.search.contains(text, autoescape=True) for text in texts))
+        yield JobRow.seq.in_(found)
+    duration = _duration()
     if wanted.least_s is not None:
         yield duration >= wanted.least_s
     if wanted.most_s is not None:
         yield duration <= wanted.most_s
+
+
+def _duration() -> ColumnElement[float]:
+    return seconds_between(JobRow.started_at, func.coalesce(JobRow.finished_at, after()))
+
+
+def order_of(by: Order, *, descending: bool) -> tuple[ColumnElement[Any], ...]:
+    """The order of a list in SQL."""
+    if by is Order.CREATED:
+        return (JobRow.seq.desc() if descending else JobRow.seq.asc(),)
+    keys: dict[Order, ColumnElement[Any]] = {
+        Order.DURATION: _duration(),
+        Order.PROCESS: JobRow.process_id.expression,
+        Order.NAME: func.nullif(func.lower(JobRow.name), ""),
+        Order.STATUS: JobRow.status.expression,
+        Order.VERDICT: JobRow.verdict.expression,
+        Order.SUBMITTER: func.nullif(JobRow.submitter, ""),
+    }
+    key = keys[by]
+    return (key.desc() if descending else key.asc()).nulls_last(), JobRow.seq.desc()

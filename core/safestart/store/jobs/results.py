@@ -12,7 +12,7 @@ from safestart.errors import Altered, JobFailed, NotFound, ResultNotReady
 from safestart.records.artifact import Artifact
 from safestart.records.comparable import digest
 from safestart.store.database import Database
-from safestart.store.jobs.submissions import find
+from safestart.store.jobs.finding import find
 from safestart.store.models import ArtifactRow, JobRow, ResultRow
 from safestart.store.records import ArtifactInfo, JobStatus, StoredResult
 

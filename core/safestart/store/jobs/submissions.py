@@ -9,32 +9,23 @@ from uuid import uuid4
 from sqlalchemy import func, or_, select, update
 from sqlalchemy.orm import Session
 
-from safestart.errors import Conflict, IdempotencyMismatch, InvalidInput, NotFound, QueueFull
+from safestart.errors import Conflict, IdempotencyMismatch, InvalidInput, QueueFull
 from safestart.records.comparable import canonical
+from safestart.records.labels import NONE, Labels
 from safestart.runtime.access import Caller
 from safestart.store.access.audit import add_audit
-from safestart.store.database import Database
 from safestart.store.dialect import after, lock_queue
 from safestart.store.jobs.events import add_event, add_status
+from safestart.store.jobs.finding import find
+from safestart.store.jobs.labelling import Labelling, searched
 from safestart.store.models import JobRow
 from safestart.store.queue.fairness import next_turn
 from safestart.store.queue.lease import expired
 from safestart.store.records import Job, JobStatus
 
 
-def find(session: Session, job_id: str) -> JobRow:
-    """The row of a job; raises ``NotFound``."""
-    row = session.scalar(select(JobRow).where(JobRow.id == job_id).execution_options(populate_existing=True))
-    if row is None:
-        raise NotFound(f"no job {job_id!r}", field="jobID", required="the id of a job", received=job_id)
-    return row
-
-
-class Submissions:
-    """Submit and dismiss."""
-
-    def __init__(self, database: Database) -> None:
-        self._database = database
+class Submissions(Labelling):
+    """Submit, label and dismiss."""
 
     def submit(
         self,
@@ -49,6 +40,7 @@ class Submissions:
         max_queued: int | None = None,
         by: Caller | None = None,
         job_id: str | None = None,
+        labels: Labels = NONE,
     ) -> Job:
         """Put a job in the queue: higher ``priority`` first, among equals in fair turns by ``submitter``.
 
@@ -73,8 +65,9 @@ class Submissions:
                 return _same(first, request)
             if max_queued is not None:
                 _require_room(session, max_queued)
+            job_id = job_id or str(uuid4())
             row = JobRow(
-                id=job_id or str(uuid4()),
+                id=job_id,
                 process_id=process_id,
                 status=JobStatus.ACCEPTED.value,
                 priority=priority,
@@ -87,6 +80,8 @@ class Submissions:
                 timeout_s=timeout_s,
                 created_at=after(),
                 updated_at=after(),
+                **labels.model_dump(),
+                search=searched(job_id, process_id, labels.name, labels.tags),
             )
             session.add(row)
             session.flush()

@@ -115,13 +115,16 @@ class Claims:
         document: dict[str, Any],
         artifacts: tuple[Artifact, ...],
         versions: dict[str, Any],
+        outcome: dict[str, Any] | None = None,
     ) -> None:
-        """Store result and artifacts and end the job, in one transaction.
+        """Store result, artifacts and the result's outcome, and end the job, in one transaction.
 
         A job whose dismissal was requested ends dismissed, without a result, as its client was told.
         """
         with self._database.session(write=True) as session:
             values = {"progress": 100.0, "message": "done", "versions": versions}
+            if outcome is not None:
+                values |= {"outcome": outcome, "verdict": outcome["word"]}
             if _end(session, claim, JobStatus.SUCCESSFUL, **values):
                 add_result(session, claim.job_id, document, artifacts)
                 session.execute(_SHARDS_OF, {"job": claim.job_id})

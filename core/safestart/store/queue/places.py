@@ -9,7 +9,7 @@ from sqlalchemy import ColumnElement, case, func, or_, select
 from sqlalchemy.orm import Session
 
 from safestart.store.database import Database
-from safestart.store.jobs.submissions import find
+from safestart.store.jobs.finding import find
 from safestart.store.models import JobRow, table
 from safestart.store.queue.presence import crew_of
 from safestart.store.records import JobStatus, Run, Wait
