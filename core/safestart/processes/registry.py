@@ -28,6 +28,7 @@ _SPECS = {
     "tracking-mpc": "safestart.processes.tracking_mpc.spec",
     "commit-timeline": "safestart.processes.commit_timeline.spec",
     "hop-time": "safestart.processes.hop_time.spec",
+    "hop-plan": "safestart.processes.hop_plan.spec",
     "hopping": "safestart.processes.hopping.spec",
     "approach-trade": "safestart.processes.approach_trade.spec",
     "passive-abort": "safestart.processes.passive_abort.spec",

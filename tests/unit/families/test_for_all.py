@@ -12,6 +12,7 @@ from safestart.errors import InvalidInput
 from safestart.exact import search
 from safestart.exact.answer import Verdict
 from safestart.exact.decide import decide
+from safestart.exact.kernels import stay
 from safestart.exact.question import Question
 from safestart.families.answer import Witness
 from safestart.families.between import chord_gap, half_angle, nodes, reach, turned
@@ -193,6 +194,7 @@ def test_a_failing_solver_is_never_a_go(monkeypatch: pytest.MonkeyPatch) -> None
     def fails(*given: object, **how: bool) -> Solved:
         return real(*given, **how) if next(calls) < middle else Solved("NumericalError")  # type: ignore[arg-type]
 
+    monkeypatch.setattr(stay, "narrow", lambda *_: (False, *[None] * 7))
     monkeypatch.setattr(search, "solve", fails)
     answer = decide_for_all(made, state)
     assert answer.verdict is Verdict.UNDECIDED
