@@ -1,129 +1,25 @@
 """The whole platform with everything real: service, two workers, their Dask processes; any of them is killed.
 
-The short form kills one of each kind; the long one (``pytest -m chaos_long tests/chaos``) ten, on each database.
+The short form kills one of each kind; the long one (``pytest -m chaos_long tests/chaos``) ten, on each database;
+``python -m benchmarks.soak`` goes on for hours.
 """
 
 from __future__ import annotations
 
-import os
-import random
-import subprocess
-import sys
 import time
 from collections import Counter
 from pathlib import Path
 from typing import Any
 
-import httpx
-import psutil
 import pytest
 
 from safestart.processes.execute import execute
 from safestart.records.comparable import comparable
+from tests.chaos.platform import KINDS, Platform
 from tests.contract.store.store_backends import BACKENDS, POSTGRESQL, fresh_url
-from tests.waiting import PATIENCE_S, free_port, until
+from tests.waiting import until
 
 JOBS = 30
-KINDS = ("task process", "worker", "service")
-
-
-class Platform:
-    """``safestart up`` and a second worker on the same database, and a client that does not give up."""
-
-    def __init__(self, url: str, folder: Path) -> None:
-        port = free_port()
-        environment = os.environ | {
-            "SAFESTART_DATABASE_URL": url,
-            "SAFESTART_LEASE_S": "5",
-            "SAFESTART_PROCESSES": "1",
-            # Kills are bad luck here and no poison.
-            "SAFESTART_MAX_ATTEMPTS": "20",
-        }
-        self.log = folder / "platform.log"
-        self._environment = environment
-        self._parts: list[subprocess.Popen[bytes]] = []
-        self._start("up", "--port", str(port))
-        self._start("worker")
-        self._client = httpx.Client(base_url=f"http://127.0.0.1:{port}", timeout=60.0)
-        self._random = random.Random(11)
-        until(lambda: self.get("/readyz")["places"] == 2, "two workers", log=self.log)
-
-    def _start(self, *arguments: str) -> None:
-        with self.log.open("ab") as sink:
-            command = [sys.executable, "-m", "safestart", *arguments]
-            part = subprocess.Popen(command, env=self._environment, stdout=sink, stderr=sink)
-        self._parts.append(part)
-
-    def get(self, path: str) -> dict[str, Any]:
-        return self._insist("GET", path)
-
-    def submit(self, number: int) -> str:
-        """Queue a job of a few tenths of a second; the key makes a repeated submission the same job."""
-        body = {"inputs": inputs(number)}
-        document = self._insist(
-            "POST", "/processes/coverage/execution", json=body, headers={"Idempotency-Key": f"k{number}"}
-        )
-        return str(document["jobID"])
-
-    def _insist(self, method: str, path: str, **more: Any) -> dict[str, Any]:
-        deadline = time.monotonic() + PATIENCE_S
-        while True:
-            try:
-                answer = self._client.request(method, path, **more)
-                if answer.status_code not in (503, 429):
-                    answer.raise_for_status()
-                    document: dict[str, Any] = answer.json()
-                    return document
-            except httpx.TransportError:
-                pass
-            assert time.monotonic() < deadline, f"{path}: no answer\n{self.log.read_text()[-4000:]}"
-            time.sleep(0.1)
-
-    def kill(self, kind: str) -> None:
-        """SIGKILL one process of this kind; restart a worker without a supervisor."""
-        candidates = self._processes(kind)
-        if not candidates:
-            return
-        victim = self._random.choice(candidates)
-        victim.kill()
-        second = self._parts[1]
-        if victim.pid == second.pid:
-            second.wait()
-            del self._parts[1]
-            self._start("worker")
-
-    def _processes(self, kind: str) -> list[psutil.Process]:
-        found = []
-        for part in self._parts:
-            family = psutil.Process(part.pid)
-            for process in (family, *family.children(recursive=True)):
-                try:
-                    command = process.cmdline()
-                except (psutil.NoSuchProcess, psutil.ZombieProcess):
-                    continue
-                if _kind(command) == kind:
-                    found.append(process)
-        return found
-
-    def counts(self) -> Counter[str]:
-        jobs = self.get("/jobs?limit=200")["jobs"]
-        assert len(jobs) == JOBS
-        return Counter(job["status"] for job in jobs)
-
-    def close(self) -> None:
-        for part in self._parts:
-            part.terminate()
-        for part in self._parts:
-            part.wait(PATIENCE_S)
-        self._client.close()
-
-
-def _kind(command: list[str]) -> str | None:
-    if command[1:4] == ["-m", "safestart", "worker"]:
-        return "worker"
-    if command[1:4] == ["-m", "safestart", "serve"]:
-        return "service"
-    return "task process" if any("spawn_main" in part for part in command) else None
 
 
 def inputs(number: int) -> dict[str, Any]:
@@ -132,24 +28,34 @@ def inputs(number: int) -> dict[str, Any]:
     return {"omega_t_deg_s": rates, "a_max_m_s2": [0.05, 0.1], "grid": grid}
 
 
+def submit(platform: Platform, number: int) -> str:
+    """Queue a job of a few tenths of a second."""
+    return platform.submit("coverage", inputs(number), f"k{number}")
+
+
+def counts(platform: Platform) -> Counter[str]:
+    jobs = platform.get("/jobs?limit=200")["jobs"]
+    assert len(jobs) == JOBS
+    return Counter(job["status"] for job in jobs)
+
+
 def hammer(url: str, folder: Path, kills: int) -> None:
     platform = Platform(url, folder)
     try:
-        ids = [platform.submit(number) for number in range(JOBS // 2)]
+        ids = [submit(platform, number) for number in range(JOBS // 2)]
         for kill in range(kills):
             time.sleep(1.0)
             platform.kill(KINDS[kill % len(KINDS)])
             if kill == kills // 2:
-                ids += [platform.submit(number) for number in range(JOBS // 2, JOBS)]
-        until(lambda: platform.counts() == {"successful": JOBS}, "success of all", log=platform.log)
+                ids += [submit(platform, number) for number in range(JOBS // 2, JOBS)]
+        until(lambda: counts(platform) == {"successful": JOBS}, "success of all", log=platform.log)
         assert len(set(ids)) == JOBS
         for number, job in enumerate(ids):
             document = platform.get(f"/jobs/{job}/results")
             if number % 10 == 0:
                 expected = execute("coverage", inputs(number)).document
                 assert comparable(document["outputs"]) == comparable(expected["outputs"])
-        answer = platform._client.get(f"/jobs/{ids[0]}/events")
-        assert answer.text.count('"status":"successful"') == 1
+        assert platform.events(ids[0]).count('"status":"successful"') == 1
     finally:
         platform.close()
 

@@ -54,8 +54,49 @@ class Goal:
         return self.radius / self.rest
 
 
+class Spanned:
+    """What the questions in the plane and in space share: ``steps`` intervals of ``dt`` seconds, end and limits."""
+
+    __slots__ = ()
+    dt: float
+    steps: int
+    goal: Goal | None
+    speed_limit: float | None
+
+    @property
+    def kind(self) -> str:
+        """``stay`` or ``synchronize``."""
+        return "stay" if self.goal is None else "synchronize"
+
+    @property
+    def plain(self) -> bool:
+        """Whether this is `stay` without a speed limit, so that only faces count."""
+        return self.goal is None and self.speed_limit is None
+
+    @property
+    def horizon(self) -> float:
+        """T in seconds, or its bound."""
+        return self.steps * self.dt
+
+    @property
+    def latest(self) -> float:
+        """The last double not after the exact T; no time in a proof exceeds it."""
+        time = self.horizon
+        while Fraction(time) > Fraction(self.dt) * self.steps:
+            time = math.nextafter(time, 0.0)
+        return time
+
+    def check_span(self) -> None:
+        """Raise ``InvalidInput`` for intervals that are too many or too long, or a speed limit that is none."""
+        number("dt", self.dt, 0.0, MAX_TIME, open_low=True)
+        check_steps("steps", self.steps, MAX_STEPS)
+        number("horizon", self.horizon, 0.0, MAX_TIME, open_low=True)
+        if self.speed_limit is not None:
+            number("speed_limit", self.speed_limit, 1e-3, 1000.0)
+
+
 @dataclass(frozen=True, slots=True)
-class Question:
+class Question(Spanned):
     """Horizon of ``steps`` intervals of ``dt`` seconds; ``dimensions`` 2 (in the orbit plane) or 3.
 
     ``goal`` makes it `synchronize`. ``speed_limit`` (m/s) holds for the LVLH velocity at all times. ``keep_out`` (m) is
@@ -71,13 +112,9 @@ class Question:
     keep_out: float = 0.0
 
     def __post_init__(self) -> None:
-        number("dt", self.dt, 0.0, MAX_TIME, open_low=True)
-        _steps("steps", self.steps, MAX_STEPS)
-        number("horizon", self.steps * self.dt, 0.0, MAX_TIME, open_low=True)
+        self.check_span()
         if self.dimensions not in (2, 3):
             raise invalid("dimensions", "2 or 3", self.dimensions)
-        if self.speed_limit is not None:
-            number("speed_limit", self.speed_limit, 1e-3, 1000.0)
         number("keep_out", self.keep_out, 0.0, MAX_RANGE)
         if self.keep_out > self.scenario.corridor.hold_radius:
             raise invalid(
@@ -87,20 +124,10 @@ class Question:
                 self.keep_out,
             )
         if self.goal is not None:
-            _steps("earliest", self.goal.earliest, self.steps)
+            check_steps("earliest", self.goal.earliest, self.steps)
             corridor = corridor_of(self.scenario.corridor, self.dimensions)
             if len(self.hold) != self.dimensions or not bool(corridor.contains(np.array(self.hold))):
                 raise invalid("hold", f"{self.dimensions} coordinates of a point of the corridor", self.hold)
-
-    @property
-    def kind(self) -> str:
-        """``stay`` or ``synchronize``."""
-        return "stay" if self.goal is None else "synchronize"
-
-    @property
-    def plain(self) -> bool:
-        """Whether this is `stay` without a speed limit, so that only faces count."""
-        return self.goal is None and self.speed_limit is None
 
     @property
     def thrust_scale(self) -> float:
@@ -129,20 +156,8 @@ class Question:
             return self.goal.hold
         return (0.0, self.scenario.corridor.hold_radius, 0.0)[: self.dimensions]
 
-    @property
-    def horizon(self) -> float:
-        """T in seconds, or its bound."""
-        return self.steps * self.dt
 
-    @property
-    def latest(self) -> float:
-        """The last double not after the exact T; no time in a proof exceeds it."""
-        time = self.horizon
-        while Fraction(time) > Fraction(self.dt) * self.steps:
-            time = math.nextafter(time, 0.0)
-        return time
-
-
-def _steps(name: str, value: int, most: int) -> None:
+def check_steps(name: str, value: int, most: int) -> None:
+    """Raise ``InvalidInput`` unless ``value`` is an integer in [1, most]."""
     if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= most:
         raise invalid(name, f"an integer in [1, {most}]", value)

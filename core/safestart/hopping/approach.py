@@ -127,6 +127,14 @@ def approach(
     missing = np.isnan(phases)
     if missing.any():
         raise past_the_fold(angle_deg, float(rho[missing][0]))
+    return with_phases(mean_motion, angle_deg, d, phases)
+
+
+def with_phases(mean_motion: float, angle_deg: float, d: Floats, phases: Floats) -> Approach:
+    """Hops between the distances ``d`` (hops + 1,), m, that take ``phases`` (hops,), rad, instead of Algorithm 1's.
+
+    They lead from one distance on the line to the next, and no longer end perpendicular to it.
+    """
     along = line(angle_deg)
     made, arrived, impulses = [], np.zeros(3), []
     for begin, end, phase in zip(d[:-1].tolist(), d[1:].tolist(), phases.tolist(), strict=True):

@@ -43,6 +43,31 @@ def wilson(successes: int, trials: int, z: float = 1.959963984540054) -> tuple[f
     return low, 1.0 if successes == trials else min(1.0, middle + half)
 
 
+def most_successes(trials: int, most: float) -> int:
+    """The most successes among ``trials`` whose Wilson interval of 95 % ends by ``most``; -1: not even none."""
+    count = -1
+    while count < trials and _end(count + 1, trials) <= most:
+        count += 1
+    return count
+
+
+def least_runs(most: float) -> int:
+    """The least trials of which none with a success shows a share of at most ``most`` in (0, 1), by the same interval.
+
+    Without a success the interval ends at z^2 / (trials + z^2).
+    """
+    square = 1.959963984540054**2
+    trials = max(math.floor(square * (1.0 - most) / most), 1)
+    while _end(0, trials) > most:
+        trials += 1
+    return trials
+
+
+def _end(successes: int, trials: int) -> float:
+    interval = wilson(successes, trials)
+    return 1.0 if interval is None else interval[1]
+
+
 @dataclass(frozen=True, slots=True)
 class ConfusionMatrix:
     """Counts of a prediction against the truth, with the usual rates."""

@@ -35,6 +35,16 @@ class Sharding:
     merge: str
     summary: str
 
+    @classmethod
+    def of(cls, package: str, light: str = "study") -> Sharding:
+        """Where a process usually has them: ``split`` and ``summary`` in its ``light`` module, the others in run."""
+        return cls(
+            split=f"{package}.{light}:split",
+            shard=f"{package}.run:shard",
+            merge=f"{package}.run:merge",
+            summary=f"{package}.{light}:summary",
+        )
+
     def parts(self, inputs: WireModel) -> list[dict[str, Any]]:
         """The parts of a job, 1 to ``MAX_SHARDS``."""
         parts: list[dict[str, Any]] = load(self.split)(inputs)

@@ -15,7 +15,9 @@ from time import monotonic
 from typing import Any
 
 from safestart.errors import SafestartError, Unavailable
-from safestart.processes.registry import process
+from safestart.processes.go_no_go.method_registry import METHODS
+from safestart.processes.registry import PROCESS_IDS, process
+from safestart.processes.sharding import load
 from safestart.runtime.progress import Context
 from safestart.runtime.settings import Settings
 from safestart_service.computing.store import Store
@@ -53,8 +55,19 @@ def call(function: Callable[..., Any], settings: Settings, stop: Path | None, *a
 
 
 def ready() -> int:
-    """Load what heavy answers need, before the first one comes; returns the process id."""
-    process("flight").runner()
+    """Load what heavy answers need, before the first one comes; returns the process id.
+
+    All of it: loading takes seconds on a busy machine. Where it fell into the time of an answer, its deadline ended the
+    process, and the next one began anew.
+    """
+    for spec in map(process, PROCESS_IDS):
+        if spec.light:
+            spec.runner()
+    for method in METHODS.values():
+        load(method.decide)
+    # What is loaded where it is first needed.
+    for name in ("clarabel", "safestart.proofs.checker"):
+        import_module(name)
     # By name, like the processes: the application itself, which imports this module, loads no Numba.
     import_module("safestart.exact.kernels.warm").warm()
     # Numba's objects stay: scanning them takes a tenth of a second every time.

@@ -14,7 +14,7 @@ from safestart.processes.registry import PROCESS_IDS, process
 from safestart.processes.start_in_space.one_start import SpaceAnswer
 from safestart.runtime.access import Role
 from safestart_service.access.gate import needed_role
-from safestart_service.documents import deprecation, schemas
+from safestart_service.documents import access_schemas, deprecation, schemas
 from safestart_service.documents.estimate import Estimate
 from safestart_service.documents.execution import execute_model
 from safestart_service.documents.problems import MEDIA_TYPE, Problem
@@ -39,11 +39,11 @@ ANSWERS: tuple[type[BaseModel], ...] = (
     schemas.Partial,
     schemas.Health,
     schemas.Readiness,
-    schemas.CallerDocument,
-    schemas.KeyList,
-    schemas.NewKeyDocument,
-    schemas.KeyDocument,
-    schemas.AuditList,
+    access_schemas.CallerDocument,
+    access_schemas.KeyList,
+    access_schemas.NewKeyDocument,
+    access_schemas.KeyDocument,
+    access_schemas.AuditList,
 )
 _WHY = {
     304: "The caller has this content already (If-None-Match).",
@@ -157,7 +157,7 @@ def build(app: FastAPI) -> dict[str, Any]:
     )
     specs = [process(name) for name in PROCESS_IDS]
     inputs = [model for spec in specs for model in (spec.inputs, execute_model(spec.id))]
-    inputs += [schemas.KeyRequest, schemas.JobLabels]
+    inputs += [access_schemas.KeyRequest, schemas.JobLabels]
     outputs = [*ANSWERS, *(spec.outputs for spec in specs)]
     components: dict[str, Any] = document.setdefault("components", {}).setdefault("schemas", {})
     described = [

@@ -12,8 +12,14 @@ from pydantic import BaseModel, ConfigDict, Field
 from safestart.errors import Conflict
 from safestart.store.records import ApiKey, AuditEntry
 from safestart_service.access.gate import caller
+from safestart_service.documents.access_schemas import (
+    AuditList,
+    KeyDocument,
+    KeyList,
+    KeyRequest,
+    NewKeyDocument,
+)
 from safestart_service.documents.openapi import answer, json_body, refusals
-from safestart_service.documents.schemas import AuditList, KeyDocument, KeyList, KeyRequest, NewKeyDocument
 from safestart_service.http.answers import Json
 from safestart_service.http.body import parse_body, read_body
 from safestart_service.http.intervals import without_nul

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from fastapi import APIRouter, Request
 from fastapi.responses import Response
 
@@ -15,6 +17,13 @@ router = APIRouter(tags=["dashboard"])
 _PAGE = content("text/html", {"type": "string"}, "A page.")
 
 
+def _page(request: Request, name: str, here: str, *, plots: bool = True, **values: Any) -> Response:
+    """The shell of this name with its script; ``here`` is the entry of the menu it belongs to."""
+    return pages.page(
+        f"{name}.html", root=root_path(request), here=here, script=f"{name}.js", plots=plots, **values
+    )
+
+
 @router.get(
     "/dashboard",
     operation_id="getExplorePage",
@@ -23,9 +32,7 @@ _PAGE = content("text/html", {"type": "string"}, "A page.")
 )
 async def explore(request: Request) -> Response:
     """Operating point, regions, one start and its flight."""
-    return pages.page(
-        "explore.html", root=root_path(request), here="/dashboard", script="explore.js", plots=True
-    )
+    return _page(request, "explore", "/dashboard")
 
 
 @router.get(
@@ -36,9 +43,7 @@ async def explore(request: Request) -> Response:
 )
 async def trade(request: Request) -> Response:
     """What more thrust buys at each tumble rate."""
-    return pages.page(
-        "trade.html", root=root_path(request), here="/dashboard/trade", script="trade.js", plots=True
-    )
+    return _page(request, "trade", "/dashboard/trade")
 
 
 @router.get(
@@ -49,9 +54,7 @@ async def trade(request: Request) -> Response:
 )
 async def submit(request: Request) -> Response:
     """A form for each process, made from its schema."""
-    return pages.page(
-        "submit.html", root=root_path(request), here="/dashboard/submit", script="submit.js", plots=True
-    )
+    return _page(request, "submit", "/dashboard/submit")
 
 
 @router.get(
@@ -62,14 +65,7 @@ async def submit(request: Request) -> Response:
 )
 async def jobs(request: Request) -> Response:
     """Jobs with progress, place in the queue, time left and why they wait."""
-    return pages.page(
-        "jobs.html",
-        root=root_path(request),
-        here="/dashboard/jobs",
-        script="jobs.js",
-        plots=False,
-        verdicts=verdict_words(),
-    )
+    return _page(request, "jobs", "/dashboard/jobs", plots=False, verdicts=verdict_words())
 
 
 @router.get(
@@ -80,9 +76,7 @@ async def jobs(request: Request) -> Response:
 )
 async def job(request: Request, jobID: JobId) -> Response:
     """Live progress and log, then results, pictures and downloads of one job; unknown ids are told on the page."""
-    return pages.page(
-        "job.html", root=root_path(request), here="/dashboard/jobs", script="job.js", plots=True, job=jobID
-    )
+    return _page(request, "job", "/dashboard/jobs", job=jobID)
 
 
 @router.get(
@@ -93,9 +87,7 @@ async def job(request: Request, jobID: JobId) -> Response:
 )
 async def compare(request: Request) -> Response:
     """Two or more successful benchmarks side by side: `?jobs=ID,ID`."""
-    return pages.page(
-        "compare.html", root=root_path(request), here="/dashboard/jobs", script="compare.js", plots=True
-    )
+    return _page(request, "compare", "/dashboard/jobs")
 
 
 @router.get("/static/{name:path}", include_in_schema=False)

@@ -10,8 +10,9 @@ from prometheus_client.exposition import CONTENT_TYPE_LATEST
 
 from safestart.errors import Unavailable
 from safestart_service.access.gate import caller
+from safestart_service.documents.access_schemas import CallerDocument
 from safestart_service.documents.openapi import answer, content, refusals
-from safestart_service.documents.schemas import CallerDocument, Health, Readiness
+from safestart_service.documents.schemas import Health, Readiness
 from safestart_service.http.answers import Json
 from safestart_service.state import services
 

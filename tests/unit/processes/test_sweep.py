@@ -19,7 +19,7 @@ from safestart.processes.execute import execute
 from safestart.processes.registry import process
 from safestart.processes.sweep.cases import cases_of
 from safestart.processes.sweep.fleet import fly_all
-from safestart.processes.sweep.spec import SweepInputs
+from safestart.processes.sweep.inputs import SweepInputs
 from safestart.records.comparable import comparable
 from safestart.runtime.progress import Context
 

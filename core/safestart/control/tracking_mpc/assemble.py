@@ -108,6 +108,26 @@ def place(source, start, column, rows, shift):  # type: ignore[no-untyped-def]
 
 
 @compiled(error_model="numpy", fastmath={"contract", "reassoc", "nsz"})
+def place_all(turned, normals, spot, start, at, rows, shift, face):  # type: ignore[no-untyped-def]
+    """Write from column ``at`` on one row for each of ``normals`` (F, 3), body axes; returns the column after them.
+
+    ``turned`` (3, m) is the limited vector from (e_0, w), ``spot`` (3, 3) its part of theta; ``face`` (m,) is scratch.
+    """
+    free = len(face) - 6
+    for f in range(len(normals)):
+        face[:] = 0.0
+        for i in range(3):
+            if normals[f, i] != 0.0:
+                add_scaled(face, turned[i], normals[f, i])
+        place(face, start, at, rows, shift)
+        for i in range(3):
+            for k in range(3):
+                rows[free + k, at] += normals[f, i] * spot[i, k]
+        at += 1
+    return at
+
+
+@compiled(error_model="numpy", fastmath={"contract", "reassoc", "nsz"})
 def assemble(attitudes, fixed, start, spots, held, rows, shift, hessian, slope):  # type: ignore[no-untyped-def]
     """Fill ``rows`` (n, R), ``shift`` (6, R), ``hessian`` (n, n) and ``slope`` (n, 6), and the maps of theta.
 
@@ -115,35 +135,17 @@ def assemble(attitudes, fixed, start, spots, held, rows, shift, hessian, slope):
     those at this step and after it; ``start``, ``spots`` and ``held`` become those of :func:`equilibria`.
     """
     weights, flat, motion, reach, push, cost, tau, normals, sides, limits = fixed
-    total, m, faces = len(push), cost.shape[0], len(normals)
+    total, m = len(push), cost.shape[0]
     free = m - 6
     equilibria(attitudes, weights, flat, motion, start, spots, held)
     turned, face = np.empty((3, m)), np.empty(m)
     at = 0
     for j in range(2 if len(weights) == 1 else 1, total):
         three(attitudes[j], reach[j], turned)
-        for f in range(faces):
-            face[:] = 0.0
-            for i in range(3):
-                if normals[f, i] != 0.0:
-                    add_scaled(face, turned[i], normals[f, i])
-            place(face, start, at, rows, shift)
-            for i in range(3):
-                for k in range(3):
-                    rows[free + k, at] += normals[f, i] * spots[j, i, k]
-            at += 1
+        at = place_all(turned, normals, spots[j], start, at, rows, shift, face)
     for j in range(total):
         three(attitudes[j], push[j], turned)
-        for f in range(len(sides)):
-            face[:] = 0.0
-            for i in range(3):
-                if sides[f, i] != 0.0:
-                    add_scaled(face, turned[i], sides[f, i])
-            place(face, start, at, rows, shift)
-            for i in range(3):
-                for k in range(3):
-                    rows[free + k, at] += sides[f, i] * held[j, i, k]
-            at += 1
+        at = place_all(turned, sides, held[j], start, at, rows, shift, face)
     for f in range(len(limits)):
         rows[:free, at] = 0.0
         shift[:, at] = 0.0

@@ -11,7 +11,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import lru_cache
 from typing import ClassVar
 
@@ -27,7 +26,8 @@ from safestart.dynamics.motion import RelativeMotion
 from safestart.dynamics.yamanaka_ankersen import YamanakaAnkersen
 from safestart.errors import invalid
 from safestart.exact.limits import AT_END, SPEED
-from safestart.exact.question import MAX_STEPS, MAX_TIME, Goal
+from safestart.exact.question import Goal, Spanned, check_steps
+from safestart.exact.space.demands import NONE, Demands
 from safestart.model.orbit import KeplerOrbit
 from safestart.model.scenario import MAX_RANGE, CorridorShape, Floats, number
 from safestart.optim.thrust_shapes import BALL, CUBE, SIMPLEX, UnitSet
@@ -47,7 +47,7 @@ class Face:
 
 
 @dataclass(frozen=True, slots=True)
-class SpaceQuestion:
+class SpaceQuestion(Spanned):
     """``steps`` intervals of ``dt`` s; raises ``InvalidInput`` for an invalid question.
 
     Faces: 1 to 32 with different names and nonzero normals; the faces of each frame have a point in common. A table of
@@ -55,7 +55,7 @@ class SpaceQuestion:
 
     ``goal`` makes it `synchronize`: at T, any number of intervals from ``goal.earliest`` to ``steps``, the chaser is at
     rest against the turning body in a ball around ``goal.hold`` (body frame, m). ``speed_limit`` (m/s) holds for the
-    LVLH velocity at all times.
+    LVLH velocity at all times. ``demands`` hold beside the faces; no linear program answers them.
     """
 
     orbit: KeplerOrbit
@@ -66,25 +66,18 @@ class SpaceQuestion:
     steps: int = 30
     goal: Goal | None = None
     speed_limit: float | None = None
+    demands: Demands = NONE
     dimensions: ClassVar[int] = 3
 
     def __post_init__(self) -> None:
-        number("dt", self.dt, 0.0, MAX_TIME, open_low=True)
-        if (
-            isinstance(self.steps, bool)
-            or not isinstance(self.steps, int)
-            or not 1 <= self.steps <= MAX_STEPS
-        ):
-            raise invalid("steps", f"an integer in [1, {MAX_STEPS}]", self.steps)
-        number("horizon", self.steps * self.dt, 0.0, MAX_TIME, open_low=True)
+        self.check_span()
         _check_faces(self.faces)
-        if self.speed_limit is not None:
-            number("speed_limit", self.speed_limit, 1e-3, 1000.0)
         if self.goal is not None:
             _check_goal(self.goal, self.faces, self.steps)
         norms = (AT_END if self.goal is not None else ()) + ((SPEED,) if self.speed_limit is not None else ())
         if any(face.name in norms for face in self.faces):
             raise invalid("faces", f"names other than {', '.join(norms)}", [face.name for face in self.faces])
+        self.demands.check([*(face.name for face in self.faces), *AT_END, SPEED])
         inner = self.attitude.inertial if isinstance(self.attitude, InLvlh) else self.attitude
         if isinstance(self.attitude, InLvlh) and self.attitude.orbit != self.orbit:
             raise invalid("attitude", "one seen from LVLH on the question's orbit", "another orbit")
@@ -92,32 +85,14 @@ class SpaceQuestion:
             inner.reaches(self.horizon)
 
     @property
-    def kind(self) -> str:
-        """``stay`` or ``synchronize``."""
-        return "stay" if self.goal is None else "synchronize"
-
-    @property
     def plain(self) -> bool:
-        """Whether this is `stay` without a speed limit, so that only faces count."""
-        return self.goal is None and self.speed_limit is None
+        """Whether this is `stay` without a speed limit or demands, so that only faces count."""
+        return self.goal is None and self.speed_limit is None and not self.demands
 
     @property
     def motion(self) -> RelativeMotion:
         """CWH on a circular orbit, Yamanaka and Ankersen's on an elliptic one."""
         return Cwh(self.orbit.mean_motion) if self.orbit.circular else YamanakaAnkersen(self.orbit)
-
-    @property
-    def horizon(self) -> float:
-        """T in seconds."""
-        return self.steps * self.dt
-
-    @property
-    def latest(self) -> float:
-        """The last double not after the exact T."""
-        time = self.horizon
-        while Fraction(time) > Fraction(self.dt) * self.steps:
-            time = math.nextafter(time, 0.0)
-        return time
 
     @property
     def thrust_set(self) -> UnitSet:
@@ -177,7 +152,7 @@ def turned_from_y(axis: Vector) -> Floats:
 
 
 def _check_goal(goal: Goal, faces: Sequence[Face], steps: int) -> None:
-    number("earliest", goal.earliest, 1, steps)
+    check_steps("earliest", goal.earliest, steps)
     hold = goal.hold
     if hold is None or len(hold) != 3 or not all(map(math.isfinite, hold)):
         raise invalid("hold", "three numbers: a point of the body frame", hold)

@@ -105,7 +105,9 @@ def decide_from_box(
     """
     state, half = np.asarray(state, dtype=np.float64), np.asarray(half, dtype=np.float64)
     if not question.plain:
-        raise invalid("question", "stay without a speed limit where half-widths are given", question.kind)
+        raise invalid(
+            "question", "stay without a speed limit or demands where half-widths are given", question.kind
+        )
     if half.shape != (6,):
         raise invalid("half_width", "six numbers", half.shape)
     for value in half.tolist():

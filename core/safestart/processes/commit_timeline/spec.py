@@ -14,7 +14,6 @@ from safestart.processes.wire import CorridorInput, Horizon, Thrust
 
 MOST_STEPS = 100_000
 MOST_TEXT = 6_000_000
-_HERE = "safestart.processes.commit_timeline"
 _EPOCH = r"^\d{4}-(\d{2}-\d{2}|\d{3})T\d{2}:\d{2}:\d{2}(\.\d{1,9})?Z?$"
 Vector = list[float]
 
@@ -129,9 +128,7 @@ SPEC = ProcessSpec(
     ),
     inputs=CommitTimelineInputs,
     outputs=CommitTimelineOutputs,
-    sharding=Sharding(
-        f"{_HERE}.split:split", f"{_HERE}.run:shard", f"{_HERE}.run:merge", f"{_HERE}.split:summary"
-    ),
+    sharding=Sharding.of("safestart.processes.commit_timeline", light="split"),
     views=(
         Findings(
             "Intervals",

@@ -151,12 +151,7 @@ SPEC = ProcessSpec(
     ),
     inputs=HoppingInputs,
     outputs=HoppingOutputs,
-    sharding=Sharding(
-        "safestart.processes.hopping.study:split",
-        "safestart.processes.hopping.run:shard",
-        "safestart.processes.hopping.run:merge",
-        "safestart.processes.hopping.study:summary",
-    ),
+    sharding=Sharding.of("safestart.processes.hopping"),
     views=(
         Facts(
             (

@@ -96,12 +96,7 @@ SPEC = ProcessSpec(
     ),
     inputs=SafeAbortMapInputs,
     outputs=SafeAbortMapOutputs,
-    sharding=Sharding(
-        "safestart.processes.safe_abort_map.study:split",
-        "safestart.processes.safe_abort_map.run:shard",
-        "safestart.processes.safe_abort_map.run:merge",
-        "safestart.processes.safe_abort_map.study:summary",
-    ),
+    sharding=Sharding.of("safestart.processes.safe_abort_map"),
     tables=(Table("starts", ("x_m", "y_m", "safe_abort_until_min", "all_proved_until_min")),),
     views=(
         Facts((Column("Starts", "starts_done"), Column("Parts", "shards_done"))),

@@ -9,7 +9,7 @@ import numpy as np
 
 from safestart.campaign.case import uniform_run
 from safestart.model.scenario import Chaser, CorridorShape, Floats, Scenario, Target
-from safestart.processes.sweep.spec import SweepInputs
+from safestart.processes.sweep.inputs import SweepInputs
 from safestart.processes.sweep.split import DRAWN
 from safestart.processes.sweep.study import cells_of, drawn_of
 

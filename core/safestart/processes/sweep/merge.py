@@ -19,8 +19,8 @@ from safestart.processes.base import Artifact, ProcessOutput
 from safestart.processes.plotting import npz
 from safestart.processes.sweep.cases import Cases, scenario_of
 from safestart.processes.sweep.fleet import fly_one
+from safestart.processes.sweep.inputs import SweepInputs
 from safestart.processes.sweep.plots import Path, confusion_picture, table_picture, worst_picture
-from safestart.processes.sweep.spec import SweepInputs
 from safestart.processes.sweep.study import study_of, summary
 from safestart.processes.wire import DT_S
 from safestart.runtime.progress import Context

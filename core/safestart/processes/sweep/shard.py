@@ -12,9 +12,9 @@ from safestart.campaign.table import Table
 from safestart.processes.sweep import judge
 from safestart.processes.sweep.cases import Cases, cases_of
 from safestart.processes.sweep.fleet import Outcome, fly_all
+from safestart.processes.sweep.inputs import SweepInputs
 from safestart.processes.sweep.judge import UNASKED, Verdicts
 from safestart.processes.sweep.outcomes import table_of
-from safestart.processes.sweep.spec import SweepInputs
 from safestart.processes.sweep.study import study_of
 from safestart.runtime.progress import Context
 

@@ -162,8 +162,6 @@ class TrackingMpcInputs(WireModel):
         return math.sqrt(MU / self.orbit_radius_m**3)
 
 
-_HERE = "safestart.processes.tracking_mpc"
-
 _SETS = (
     (
         "tracking_mpc",
@@ -185,12 +183,7 @@ SPEC = ProcessSpec(
     ),
     inputs=TrackingMpcInputs,
     outputs=TrackingMpcOutputs,
-    sharding=Sharding(
-        split=f"{_HERE}.study:split",
-        shard=f"{_HERE}.run:shard",
-        merge=f"{_HERE}.run:merge",
-        summary=f"{_HERE}.study:summary",
-    ),
+    sharding=Sharding.of("safestart.processes.tracking_mpc"),
     tables=(Table("flight", ("time_s", "range_m", "cost_to_go", "slack_m")),),
     views=(
         Findings(

@@ -9,7 +9,7 @@ from pydantic import Field, field_validator
 from safestart.model.scenario import MAX_MEAN_MOTION
 from safestart.processes.base import ProcessSpec, WireModel
 from safestart.processes.sharding import Sharding
-from safestart.processes.sweep.spec import Rates, Thrusts
+from safestart.processes.sweep.inputs import Rates, Thrusts
 from safestart.processes.views import Column, Facts, Rows
 from safestart.processes.wire import Certificate, CorridorInput, GridInput, Horizon, Seed
 
@@ -68,8 +68,6 @@ class TradeStudyOutputs(WireModel):
     points: list[TradePoint]
 
 
-_HERE = "safestart.processes.trade_study"
-
 SPEC = ProcessSpec(
     id="trade-study",
     title="Trade study over tumble rate and thrust",
@@ -79,12 +77,7 @@ SPEC = ProcessSpec(
     ),
     inputs=TradeStudyInputs,
     outputs=TradeStudyOutputs,
-    sharding=Sharding(
-        split=f"{_HERE}.study:split",
-        shard=f"{_HERE}.run:shard",
-        merge=f"{_HERE}.run:merge",
-        summary=f"{_HERE}.study:summary",
-    ),
+    sharding=Sharding.of("safestart.processes.trade_study"),
     views=(
         Facts(
             (

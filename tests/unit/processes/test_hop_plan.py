@@ -1,0 +1,92 @@
+"""The process hop-plan: the plan of hopping, verdicts with their evidence, refusals."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from safestart.errors import InvalidInput
+from safestart.processes.execute import execute
+from safestart.processes.registry import process
+
+
+def planned(**inputs):
+    return execute("hop-plan", inputs).document["outputs"]
+
+
+def test_it_is_the_plan_and_nearly_the_proof_of_hopping() -> None:
+    said = planned(angle_deg=0)
+    study = execute("hopping", {"angle_deg": 0, "runs": 1}).document["outputs"]
+    assert said["plan"] == study["plan"]
+    assert said["lambda"] == pytest.approx(study["proof"]["lambda"], rel=0.01)
+    found = [proof["least_distance_m"] for proof in said["proofs"]]
+    assert found == pytest.approx(study["proof"]["least_distance_m"], rel=2e-3, abs=0.1)
+    assert said["verdict"] == study["proof"]["verdict"] == "VIOLATED"
+
+
+def test_a_violation_is_a_drift_that_enters() -> None:
+    said = planned(angle_deg=0)
+    assert [proof["verdict"] for proof in said["proofs"]] == ["PROVED"] * 4 + ["VIOLATED"]
+    worst = next(one for one in said["drifts"] if one["hop"] == 5 and one["member"] == "worst found")
+    distance = np.hypot(worst["radial_m"], worst["along_track_m"])
+    assert distance.min() < 50.0
+    assert said["proofs"][4]["nearest_m"] == pytest.approx(distance.min(), abs=3.0)
+    proved = planned(angle_deg=120)
+    assert proved["verdict"] == "PROVED"
+    for one in proved["drifts"]:
+        least = proved["proofs"][one["hop"] - 1]["least_distance_m"]
+        assert np.hypot(one["radial_m"], one["along_track_m"]).min() >= least - 0.02
+
+
+def test_burns_and_path_lead_from_start_to_hold() -> None:
+    said = planned(angle_deg=90, hops=3, start_m=900, hold_m=60)
+    burns = said["burns"]
+    assert [burn["burn"] for burn in burns] == [1, 2, 3, 4]
+    assert burns[0]["distance_m"] == pytest.approx(900)
+    assert burns[-1]["distance_m"] == pytest.approx(60)
+    assert burns[-1]["time_s"] == pytest.approx(said["plan"]["orbits"] * 7255.02, rel=1e-4)
+    total = sum(float(np.abs(burn["impulse_m_s"]).sum()) for burn in burns)
+    assert total == pytest.approx(said["plan"]["fuel_1norm_m_s"])
+    assert said["path"][0] == pytest.approx([-900, 0])
+    assert said["path"][-1] == pytest.approx([-60, 0], abs=1e-3)
+
+
+def test_without_errors_there_is_no_level() -> None:
+    none = {"position_m": 0, "velocity_m_s": 0, "thrust_share": 0, "thrust_deg": 0}
+    said = planned(angle_deg=40, sigma=none)
+    assert said["lambda"] is None
+    assert said["verdict"] == "PROVED"
+
+
+def test_the_service_needs_no_compiler_for_it() -> None:
+    code = (
+        "import sys; from safestart.processes.execute import execute; execute('hop-plan', {}); "
+        "print(sorted({'numba', 'scipy', 'matplotlib', 'clarabel'} & set(sys.modules)))"
+    )
+    assert (
+        subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+        == "[]\n"
+    )
+
+
+@pytest.mark.parametrize(
+    ("inputs", "said"),
+    [
+        ({"angle_deg": 160}, r"angle_deg: .*up to 145\.66 deg"),
+        ({"hold_m": 40}, "hold_m: at least keep_out_m"),
+        ({"start_m": 100}, "start_m: more than hold_m"),
+        ({"hops": 21}, "hops"),
+        ({"abort_orbits": 21}, "abort_orbits"),
+        ({"runs": 3}, "runs: .*no field"),
+    ],
+)
+def test_bad_input_is_refused_by_name(inputs, said: str) -> None:
+    with pytest.raises(InvalidInput, match=said):
+        execute("hop-plan", inputs)
+
+
+def test_the_cost_counts_hops_and_orbits() -> None:
+    spec = process("hop-plan")
+    costs = [spec.cost(spec.parse(given)) for given in ({}, {"hops": 20}, {"hops": 20, "abort_orbits": 20})]
+    assert costs[0] < costs[1] < costs[2]
