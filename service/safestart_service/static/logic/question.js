@@ -26,6 +26,8 @@ export const FIELDS = {
 export const FIRST = Object.fromEntries(Object.entries(FIELDS).map(([name, field]) => [name, field.first]));
 const SPREADS = ["omega_t_half_width_deg_s", "a_max_half_width_m_s2", "position_half_width_m", "velocity_half_width_m_s", "disturbance_m_s2"];
 const SHAPE = ["c_x", "x0_m", "r_h_m"];
+/** What a verdict's question has besides its start. */
+export const ASKED = ["omega_t_deg_s", "a_max_m_s2", "question", "horizon_s", "within_s", "rest", "mean_motion_rad_s", ...SHAPE, ...SPREADS];
 
 /** Texts that an HTML number field accepts; any other text would be in the address but not in the field. */
 const NUMBER = /^-?(\d+(\.\d+)?|\.\d+)(e[+-]?\d+)?$/i;
@@ -85,11 +87,11 @@ export const flight = (values, start) => ({
 });
 
 /** The verdict's question as inputs of the process that answers it for many starts. */
-export const asProcess = (values, start) => ({
+export const asProcess = (values, ...starts) => ({
   id: "go-no-go",
   inputs: {
     ...scenario(values), rest: values.rest, question: values.question, horizon_s: values.horizon_s,
-    ...(values.question === "synchronize" ? { within_s: values.within_s } : {}), ...spreads(values), states: [start],
+    ...(values.question === "synchronize" ? { within_s: values.within_s } : {}), ...spreads(values), states: starts,
   },
 });
 

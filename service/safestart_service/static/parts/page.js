@@ -100,7 +100,7 @@ export function download(call, href, name, text) {
   return anchor;
 }
 
-export const definition = (name, value) => el("div", {}, el("dt", {}, name), el("dd", {}, value));
+export const definition = (name, value, behind = []) => el("div", {}, el("dt", {}, name, ...behind), el("dd", {}, value));
 
 /** A table: columns of [title, function of the row]; numbers to the right. */
 export function table(rows, columns, label) {

@@ -5,6 +5,7 @@ import { outcome } from "../logic/outcome.js";
 import { columnsOf, tablesOf } from "../logic/tables.js";
 import { inputTitle } from "../logic/titles.js";
 import { figure } from "../logic/words.js";
+import { explained } from "./glossary.js";
 import { badge, definition, download, el } from "./page.js";
 import { names } from "./process.js";
 import { listed, shown } from "./views.js";
@@ -25,7 +26,7 @@ export function verdictBadge({ spec, tables }) {
 /** What the first screen of a result holds: the head of its views and its inputs beside the first of its pictures. */
 export function firstScreen(result, head, picture) {
   const inputs = keyInputs(result.spec, result.inputs), short = !head.some((node) => node.matches(".findings, .scroll, .two"));
-  const told = el("section", { class: "key-inputs", "aria-label": "Key inputs" }, el("h2", {}, "Asked with"), el("dl", {}, ...inputs.map(([path, value]) => definition(inputTitle(path), value))));
+  const told = el("section", { class: "key-inputs", "aria-label": "Key inputs" }, el("h2", {}, "Asked with"), el("dl", {}, ...inputs.map(([path, value]) => definition(inputTitle(path), value, explained(inputTitle(path).replace(/ \[[^\]]*\]$/, ""))))));
   return el("div", { class: "first" }, el("div", { class: "said" }, ...head, ...(short ? [told] : [])), el("div", { class: "beside" }, ...(picture ? [picture] : []), ...(short ? [] : [told])));
 }
 

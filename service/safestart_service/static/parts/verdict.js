@@ -3,6 +3,7 @@
 import { DECIDED, proved, verdictWords } from "../logic/question.js";
 import { figure, sentence } from "../logic/words.js";
 import { call } from "./api.js";
+import { explained } from "./glossary.js";
 import { download, el } from "./page.js";
 
 const margin = (name, value) => el("li", { class: value > 0 ? "in" : "out" }, `${name} `, el("b", {}, `${figure(value, 3)} m`));
@@ -14,7 +15,7 @@ export function verdict({ values, start, found, paper }, old) {
     ? el("p", {}, download(call, found.proof_url, "proof.json", "Download the proof"), " (checked by ", el("code", {}, "safestart verify"), ")") : null;
   return [
     el("div", { class: `answer ${old ? "old" : found.verdict}` },
-      el("h2", {}, el("span", { class: "word" }, word), el("span", { class: "how" }, old ? "old: the inputs have changed" : proved(found.verdict, values))),
+      el("h2", {}, el("span", { class: "word" }, word), ...explained(word), el("span", { class: "how" }, old ? "old: the inputs have changed" : proved(found.verdict, values))),
       el("p", { class: "asked" }, verdictWords(values, start)), el("p", { class: "why" }, sentence(found.reason)),
       found.decided_by ? el("p", { class: "note" }, `Decided ${DECIDED[found.decided_by] ?? `by ${found.decided_by}`}.`) : null, members(found.examples), proof),
     el("details", { class: `aside${old ? " old" : ""}` },
