@@ -129,6 +129,16 @@ export const DECIDED = {
   families: "by cone programs", tube: "by a cone program in the tightened corridor", tracking: "by a flight of the tracking MPC, proved and certified",
 };
 
+/** A decided member of a family in words: `GO at nominal`, or `NO-GO at` the values that it has. */
+export function memberWords({ verdict, omega_t_deg_s: rate, a_max_m_s2: thrust, position_m: [x, y], velocity_m_s: speed = [] }, values, at) {
+  const near = (one, two) => Math.abs(one - two) <= 1e-9 * Math.max(1, Math.abs(two));
+  // Where the velocity is uncertain, only one at rest in LVLH is known here to be as given.
+  const moves = values.velocity_half_width_m_s !== 0, still = !moves || (values.rest === "lvlh" && speed.every((one) => near(one, 0)));
+  const given = still && near(rate, values.omega_t_deg_s) && near(thrust, values.a_max_m_s2) && near(x, at.x_m) && near(y, at.y_m);
+  const where = `${figure(rate)} deg/s, ${figure(thrust)} m/s², (${figure(x)}, ${figure(y)}) m${moves ? `, (${speed.map((one) => figure(one, 3)).join(", ")}) m/s` : ""}`;
+  return `${verdict.replace("_", "-")} at ${given ? "nominal" : where}`;
+}
+
 /** How sure the verdict is, beside its word. */
 export function proved(verdict, values) {
   const given = spreads(values), [disturbed, ranges] = ["disturbance_m_s2" in given, Object.keys(given).some((name) => name !== "disturbance_m_s2")];
