@@ -6,7 +6,7 @@ import { Problem, call, follow, get, remove, root } from "../parts/api.js";
 import { again } from "../parts/bulk.js";
 import { copies } from "../parts/copies.js";
 import { labelled } from "../parts/labels.js";
-import { $, definition, el, fail, hour, loading, status, time } from "../parts/page.js";
+import { $, definition, download, el, fail, hour, loading, status, time } from "../parts/page.js";
 import { description } from "../parts/process.js";
 import { known, results, verdictBadge } from "../parts/results.js";
 import { shown } from "../parts/views.js";
@@ -53,6 +53,7 @@ function frame() {
     active && !job.dismissal_requested ? el("button", { type: "button", class: "danger", onclick: cancel }, "Cancel") : null,
     active ? null : el("button", { type: "button", onclick: repeat }, job.status === "successful" ? "Run again" : "Try again"),
     el("a", { href: `${root}/dashboard/submit?process=${job.processID}&from=${id}` }, "Change inputs"),
+    active ? null : download(call, `/jobs/${id}/bundle`, `${id}.zip`, "Bundle"),
     copies(() => ({ id: job.processID, inputs: job.inputs })),
   ].filter(Boolean));
   const facts = [["Submitted", time(job.created)], ["Started", time(job.started)], ["Finished", time(job.finished)], ["Attempts", String(job.attempts)]];
