@@ -6,7 +6,7 @@ import { Problem, call, follow, get, remove, root } from "../parts/api.js";
 import { again } from "../parts/bulk.js";
 import { copies } from "../parts/copies.js";
 import { labelled } from "../parts/labels.js";
-import { $, definition, download, el, fail, hour, loading, status, time } from "../parts/page.js";
+import { $, coded, definition, download, el, fail, hour, loading, status, statusWord, time } from "../parts/page.js";
 import { description } from "../parts/process.js";
 import { known, results, verdictBadge } from "../parts/results.js";
 import { shown } from "../parts/views.js";
@@ -60,9 +60,9 @@ function frame() {
   if (job.position) facts.push(["Place in the queue", String(job.position)]);
   if (job.starts_in_s) facts.push(["Starts in about", duration(job.starts_in_s)]);
   const parts = [];
-  if (job.problem) parts.push(el("section", { class: "problem", role: "alert" }, el("h2", {}, job.problem.title ?? "Failed"), el("p", {}, job.problem.detail ?? "")));
+  if (job.problem) parts.push(el("section", { class: "problem", role: "alert" }, el("h2", {}, job.problem.title ?? "Failed"), el("p", {}, ...coded(job.problem.detail ?? ""))));
   if (active) parts.push(el("div", { class: "line big" }, bar, percent, left), message, connection);
-  if (job.reason) parts.push(el("p", { class: "note" }, `Waits: ${job.reason}.`));
+  if (job.reason) parts.push(el("p", { class: "note" }, ...coded(`Waits: ${job.reason}.`)));
   $("state").replaceChildren(...parts);
   $("course").replaceChildren(el("h2", {}, "Course of the job"), el("dl", {}, ...facts.map(([name, value]) => definition(name, value))), ...(log.childElementCount ? [log] : []));
   progress(job.progress, job.message, job.eta_s);
@@ -106,7 +106,7 @@ async function heard(kind, data) {
     tell(data.at, `${Math.floor(data.progress)} %  ${data.message}`);
   } else if (kind === "log") tell(data.at, data.message);
   else if (kind === "status") {
-    tell(data.at, [data.status, data.message].filter(Boolean).join(": "));
+    tell(data.at, [statusWord(data.status), data.message].filter(Boolean).join(": "));
     await show();
   }
 }

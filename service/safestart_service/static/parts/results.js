@@ -6,7 +6,7 @@ import { columnsOf, tablesOf } from "../logic/tables.js";
 import { inputTitle } from "../logic/titles.js";
 import { figure } from "../logic/words.js";
 import { explained } from "./glossary.js";
-import { badge, definition, download, el } from "./page.js";
+import { badge, definition, download, el, time } from "./page.js";
 import { names } from "./process.js";
 import { listed, shown } from "./views.js";
 
@@ -43,7 +43,7 @@ export async function results(place, job, spec, call) {
     ...Object.keys(result.tables).filter(Boolean).map((name) => el("li", {}, download(call, `/jobs/${job.jobID}/results?${new URLSearchParams({ format: "csv", table: name })}`, `${name}.csv`, `table ${name} (CSV)`)))),
   el("div", { class: "tools" }, el("button", { type: "button", class: "plain", onclick: () => print() }, "Print a report")),
   el("h2", {}, "Provenance"), el("dl", {}, definition("SHA-256 of the result", document.sha256),
-    ...Object.entries(document.provenance ?? {}).filter(([, value]) => typeof value !== "object" && value !== null).map(([name, value]) => definition(name, String(value)))));
+    ...Object.entries(document.provenance ?? {}).filter(([, value]) => typeof value !== "object" && value !== null).map(([name, value]) => definition(name.replaceAll("_", " "), ["started", "finished"].includes(name) ? time(value) : String(value)))));
   place.replaceChildren(...parts);
   for (const drawn of draws) await drawn();
   return result;
