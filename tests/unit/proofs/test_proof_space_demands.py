@@ -20,7 +20,7 @@ from safestart.exact.space.prove import proof_in_space
 from safestart.exact.space.question import SpaceQuestion
 from safestart.proofs.checker import check
 from safestart.proofs.strict import ProofRejected
-from tests.unit.exact.test_space_demands import BOX, PANEL, RULE, START, VIEW, question
+from tests.unit.exact.test_space_demands import BOX, PANEL, RULE, START, VIEW, flown, question
 from tests.unit.proofs.forgery import assert_all_is_read, assert_every_digit_counts, changed, sealed
 
 Document = dict[str, Any]
