@@ -14,6 +14,7 @@ import { drawMap, pointAt } from "../parts/map.js";
 import { $, el, fail, save } from "../parts/page.js";
 import { listStored, storedInputs, storedNote, storedSets } from "../parts/stored.js";
 import { verdict as verdictCards } from "../parts/verdict.js";
+import { waiting } from "../parts/waiting.js";
 
 const { texts, unknown } = fromAddress(location.search);
 const store = new Store({ ...texts, job: "" });
@@ -118,8 +119,11 @@ function showMapState() {
   $("map-lacks").textContent = lacks.length ? `The map does not ask: ${lacks.join("; ")}. The verdict does.` : "";
   if (values === null) place.replaceChildren(el("p", { class: "empty" }, "No map: a field cannot be read."));
   else if (failed) fail(place, failed.error, () => store.hasten());
-  else if (region.state === "asking") place.replaceChildren(el("p", { class: "note", role: "status" }, "Proving the exact region …"));
-  else place.replaceChildren();
+  else if (region.state === "asking") {
+    // Drawn anew with every change of the map: what has been told of this question goes on.
+    if (place.dataset.awaits !== region.digest || !place.hasChildNodes()) waiting(place, "Proving the exact region", { id: "safe-region", inputs: region.question });
+  } else place.replaceChildren();
+  place.dataset.awaits = region.state === "asking" ? region.digest : "";
 }
 
 function showVerdict(panel) {

@@ -1,6 +1,6 @@
 // Shared by all pages: elements, tables, the states empty, loading and failed, the key dialog.
 
-import { figure } from "../logic/words.js";
+import { clock, figure, moment } from "../logic/words.js";
 import { Problem, hasKey, useKey } from "./api.js";
 
 /** An element with attributes and children; text stays text. */
@@ -64,6 +64,23 @@ export const badge = (about, word, kind) => el("span", { class: `badge ${about}`
 
 /** The words for a job's status; the wire's own stay the classes. */
 const STATUS = { accepted: "waiting", dismissed: "cancelled" };
+
+/** The name under which the browser keeps the zone of times. */
+export const TIMES = "safestart-times";
+
+function isLocal() {
+  try {
+    return localStorage.getItem(TIMES) === "local";
+  } catch {
+    return false;
+  }
+}
+
+/** A moment, for people and for programs; in the zone that the header chooses. */
+export const time = (text) => (text ? el("time", { datetime: text }, moment(text, isLocal())) : "–");
+
+/** The time of day of a moment. */
+export const hour = (text) => el("time", { datetime: text, "data-clock": true }, clock(text, isLocal()));
 
 export const status = (job) => badge("job", job.dismissal_requested && job.status === "running" ? "stopping" : STATUS[job.status] ?? job.status, job.status);
 
