@@ -7,7 +7,6 @@ alone are texts, annotations, defaults, what a ``raise`` says, and compiled kern
 from __future__ import annotations
 
 import ast
-import copy
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -41,21 +40,31 @@ Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 @dataclass(frozen=True)
 class Mutant:
-    """One error in the function ``name`` (its path within the module) of ``file``."""
+    """One error in the function ``name`` (its path within the module) of the module at ``path``."""
 
+    path: Path
     file: str
     name: str
     line: int
     change: str
-    code: CodeType
+    place: tuple[int, ...]
+    number: int
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line} {self.name}: {self.change}"
 
     @property
     def key(self) -> str:
         """Of its function."""
-        return f"{self.code.co_filename} {self.name}"
+        return f"{self.path} {self.name}"
 
-    def __str__(self) -> str:
-        return f"{self.file}:{self.line} {self.name}: {self.change}"
+    def code(self) -> CodeType | None:
+        """The function's code with the error; None where the module defines the function only while it runs."""
+        tree = ast.parse(self.path.read_text(encoding="utf-8"))
+        function = _at(tree, self.place)
+        assert isinstance(function, Function)
+        next(apply for at, (_, apply) in enumerate(_edits(function)) if at == self.number)()
+        return _code(compile(ast.fix_missing_locations(tree), str(self.path), "exec"), self.name.split("."))
 
 
 def probed(path: Path) -> Iterator[tuple[str, CodeType]]:
@@ -80,19 +89,9 @@ def mutants(path: Path, shown: str) -> Iterator[Mutant]:
     for name, place in _functions(tree):
         function = _at(tree, place)
         assert isinstance(function, Function)
-        if _kernel(function):
-            continue
-        for number, (node, change) in enumerate(_changes(function)):
-            other = copy.deepcopy(tree)
-            target = _at(other, place)
-            assert isinstance(target, Function)
-            for at, (_, apply) in enumerate(_edits(target)):
-                if at == number:
-                    apply()
-                    break
-            code = _code(compile(ast.fix_missing_locations(other), str(path), "exec"), name.split("."))
-            if code is not None:
-                yield Mutant(shown, name, node.lineno, change, code)
+        if not _kernel(function):
+            for number, ((node, change), _) in enumerate(_edits(function)):
+                yield Mutant(path, shown, name, node.lineno, change, place, number)
 
 
 def _kernel(function: Function) -> bool:
@@ -113,10 +112,6 @@ def _at(tree: ast.AST, place: tuple[int, ...]) -> ast.AST:
     return tree
 
 
-def _changes(function: Function) -> list[tuple[ast.AST, str]]:
-    return [(node, change) for (node, change), _ in _edits(function)]
-
-
 def _edits(function: Function) -> Iterator[tuple]:
     """What can be changed in the body: ((node, text), a function that changes it)."""
     seen: list[ast.AST] = list(function.body)
@@ -127,8 +122,11 @@ def _edits(function: Function) -> Iterator[tuple]:
                 yield (node, "no raise"), lambda n=node: _replace(function, n, ast.Pass())
             continue
         yield from _edits_of(function, node)
-        # An annotation computes nothing.
-        seen += [child for field, child in _children(node) if field not in ("annotation", "returns")]
+        # An annotation computes nothing; ``strict=`` of zip is a second check of lengths that are equal.
+        strict = isinstance(node, ast.keyword) and node.arg == "strict"
+        seen += [
+            child for field, child in _children(node) if field not in ("annotation", "returns") and not strict
+        ]
 
 
 def _children(node: ast.AST) -> Iterator[tuple[str, ast.AST]]:

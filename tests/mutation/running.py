@@ -91,9 +91,7 @@ class Mutating:
             path = Path(sys.modules[name].__file__ or "")
             for mutant in mutants(path, str(path.relative_to(ROOT))):
                 function = functions.get(mutant.name)
-                if self._only not in str(mutant) or function is None:
-                    continue
-                if len(function.__code__.co_freevars) == len(mutant.code.co_freevars):
+                if self._only in str(mutant) and function is not None and not function.__closure__:
                     yield mutant, function
 
     def _reached(self, session: pytest.Session, owners: Owners) -> dict[str, Tests]:
@@ -141,7 +139,7 @@ def _map(session: pytest.Session, owners: Owners) -> str:
     builtins.reached = lambda file, name: calls.add(f"{file} {name}")  # type: ignore[attr-defined]
     for name, functions in owners.items():
         for one, code in probed(Path(sys.modules[name].__file__ or "")):
-            if one in functions and len(functions[one].__code__.co_freevars) == len(code.co_freevars):
+            if one in functions and not functions[one].__closure__:
                 functions[one].__code__ = code
     failures, out = _failures(session), []
     for number, item in enumerate(session.items):
@@ -154,7 +152,9 @@ def _map(session: pytest.Session, owners: Owners) -> str:
 
 
 def _killed(session: pytest.Session, mutant: Mutant, function: FunctionType, tests: Tests) -> str:
-    function.__code__ = mutant.code
+    code = mutant.code()
+    assert code is not None
+    function.__code__ = code
     failures = _failures(session)
     items = [session.items[index] for index, _ in tests]
     for number, item in enumerate(items):

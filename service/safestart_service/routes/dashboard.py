@@ -75,7 +75,7 @@ async def jobs(request: Request) -> Response:
     responses={200: _PAGE, **refusals(422)},
 )
 async def job(request: Request, jobID: JobId) -> Response:
-    """Live progress and log, then results, pictures and downloads of one job; unknown ids are told on the page."""
+    """Live progress and log, then results, pictures and downloads of one job; the page says when the id is unknown."""
     return _page(request, "job", "/dashboard/jobs", job=jobID)
 
 

@@ -83,6 +83,6 @@ def fly(
 
 
 def _paths(clock: Clock, states: Floats, thrust: Floats) -> tuple[Path, ...]:
-    """Of states (K + 1, N, 6) and thrust (K, N, 3): views."""
+    """The paths of states (K + 1, N, 6) and thrust (K, N, 3), as views."""
     times: Floats = clock.period_s * np.arange(len(states), dtype=np.float64)
     return tuple(Path(times, states[:, n], thrust[:, n]) for n in range(states.shape[1]))

@@ -89,7 +89,7 @@ def timing(inputs: SweepInputs, controller: str) -> tuple[float, int, int]:
 
 
 def fly_all(inputs: SweepInputs, controller: str, cases: Cases, poll: Callable[[int], None]) -> Outcome:
-    """Fly every case; ``poll`` is told the number flown and may raise."""
+    """Fly every case; ``poll`` gets the number flown and may raise."""
     if not CONTROLLERS[controller].compiled or inputs.truth.model != "cwh":
         return _one_by_one(inputs, controller, cases, poll)
     dt, steps, nodes = timing(inputs, controller)
