@@ -15,7 +15,7 @@ from safestart.store.models import JobRow
 from safestart.store.records import JobStatus
 
 
-def matching(wanted: JobFilter) -> Select[tuple[int]] | None:
+def matching(wanted: JobFilter) -> Select[int] | None:
     """The numbers of the jobs with the words and tags of a filter; None for a filter without.
 
     It is a query of its own, which an index alone answers: rows hold their inputs.
