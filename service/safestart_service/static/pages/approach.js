@@ -4,7 +4,7 @@ import { FIELDS, SAYS, angleOf, burnRows, holdOf, isOf, lasting, planNeeds, plan
 import { addressOf, textsFrom, valuesOf } from "../logic/fields.js";
 import { Store } from "../logic/store.js";
 import { csv, figure } from "../logic/words.js";
-import { call, execute, get, root } from "../parts/api.js";
+import { call, execute, get, plain, root } from "../parts/api.js";
 import { saveButtons } from "../parts/chart.js";
 import { copies } from "../parts/copies.js";
 import { $, definition, el, fail, loading, save, table } from "../parts/page.js";
@@ -28,10 +28,10 @@ function studied(inputs) {
   return Object.keys(wrong).length ? null : studyOf(values);
 }
 
-store.panel({
+const plan = store.panel({
   quiet: 80,
   poses: (inputs) => { const values = planned(inputs); return values && planOf(values); },
-  asks: (question, signal) => execute(PLANS, question, { signal }),
+  asks: async (question, signal) => plain(await execute(PLANS, question, { signal })),
   shows: showPlan,
 });
 
@@ -48,7 +48,7 @@ function showPlan({ state, answer, old, error, digest }) {
   const values = planned(store.inputs), place = $("verdict");
   map.dataset.digest = place.dataset.digest = state === "there" ? digest : "";
   map.hidden = values === null;
-  if (values !== null) drawPlane(map, { values, answer, old, says: planWords(values) });
+  if (values !== null) drawPlane(map, { values, answer, old, says: planWords(values), near: $("near").getAttribute("aria-pressed") === "true" });
   if (state === "failed") fail(place, error, () => store.hasten());
   else if (state === "none") place.replaceChildren(wrongFields());
   else if (answer ?? old) place.replaceChildren(...card(answer ?? old, answer === null));
@@ -75,11 +75,14 @@ function card(found, old) {
   ];
 }
 
+/** Rounding alone is no burn. */
+const clean = (value) => (Math.abs(value) < 1e-12 ? 0 : value);
+
 function burns(found) {
   const proof = (k) => found.proofs[k];
   return [
     table(found.burns, [
-      ["burn", (row) => row.burn], ["time [s]", (row) => row.time_s], ["from [m]", (row) => row.distance_m], ["radial [m/s]", (row) => row.impulse_m_s[0]], ["along-track [m/s]", (row) => row.impulse_m_s[1]],
+      ["burn", (row) => row.burn], ["time [s]", (row) => row.time_s], ["from [m]", (row) => row.distance_m], ["radial [m/s]", (row) => clean(row.impulse_m_s[0])], ["along-track [m/s]", (row) => clean(row.impulse_m_s[1])],
       ["if it is the last", (row) => proof(row.burn - 1)?.verdict ?? "stops"], ["keeps, proved [m]", (row) => proof(row.burn - 1)?.least_distance_m ?? null],
     ], "Burns"),
     el("div", { class: "tools" }, el("button", { type: "button", class: "plain", onclick: () => save("burns.csv", csv(burnRows(found))) }, "Burns as CSV")),
@@ -172,6 +175,10 @@ draggable(map, () => planned(store.inputs), (handle, point) => {
   if (values === null) return;
   if (handle === "hold") change({ hold_m: String(holdOf(point, values)) });
   else if (angle !== null) change({ angle_deg: String(angle) });
+});
+$("near").addEventListener("click", ({ target }) => {
+  target.setAttribute("aria-pressed", String(target.getAttribute("aria-pressed") !== "true"));
+  plan.show();
 });
 map.after(saveButtons(map, "approach", el));
 $("verdict").after(copies(() => { const values = planned(store.inputs); return values && { id: PLANS, inputs: planOf(values) }; }));

@@ -23,9 +23,9 @@ function answered(answer, old) {
   };
   const along = answer.path.map(([, y]) => y), radial = answer.path.map(([x]) => x);
   return [
-    ...fan("drift, proved to keep out", "PROVED", certified, 1),
-    ...fan("drift, not proved", "UNKNOWN", limit, 1.2),
-    ...fan("drift after a hop with a breach", "VIOLATED", lost, 1.6),
+    ...fan("proved to keep out", "PROVED", certified, 1),
+    ...fan("not proved", "UNKNOWN", limit, 1.2),
+    ...fan("may enter the sphere", "VIOLATED", lost, 1.6),
     { name: "hops", x: along, y: radial, mode: "lines", line: { color: old ? soft : exact, width: 2.5 }, opacity: old ? 0.3 : 1, hoverinfo: "skip", showlegend: !old },
     ...(old ? [] : [{
       name: "burns", x: answer.burns.map(({ position_m: at }) => at[1]), y: answer.burns.map(({ position_m: at }) => at[0]), mode: "markers", marker: { symbol: "x", size: 8, color: exact },
@@ -34,24 +34,24 @@ function answered(answer, old) {
   ];
 }
 
-/** Draw; `answer` belongs to `values`, or is `old`. */
-export function drawPlane(place, { values, answer, old, says }) {
+/** Draw; `answer` belongs to `values`, or is `old`. `near`: only what surrounds the target. */
+export function drawPlane(place, { values, answer, old, says, near }) {
   const { ink, soft, lost, accent } = { ...theme(), accent: theme().limit };
-  const start = onLine(values.angle_deg, values.start_m), hold = onLine(values.angle_deg, values.hold_m), far = values.start_m;
+  const start = onLine(values.angle_deg, values.start_m), hold = onLine(values.angle_deg, values.hold_m), far = near ? 2 * Math.max(values.hold_m, values.keep_out_m) : values.start_m, narrow = place.clientWidth < 520;
   const shown = answer ?? old, above = values.angle_deg > 180 && values.angle_deg < 360;
   const handle = (name, [x, y], size, symbol) => ({ name, x: [x], y: [y], mode: "markers", marker: { size, color: accent, symbol, line: { color: ink, width: 1.5 } }, hovertemplate: `${name}<extra></extra>`, showlegend: false });
   const traces = [
-    { name: "keep-out sphere", ...circle(values.keep_out_m), mode: "lines", fill: "toself", fillcolor: `${lost}33`, line: { color: lost, width: 1.5 }, hoverinfo: "skip" },
+    { name: "keep-out sphere", showlegend: !narrow, ...circle(values.keep_out_m), mode: "lines", fill: "toself", fillcolor: `${lost}33`, line: { color: lost, width: 1.5 }, hoverinfo: "skip" },
     { name: "line", x: [0, start[0]], y: [0, start[1]], mode: "lines", line: { color: soft, width: 1, dash: "dot" }, hoverinfo: "skip", showlegend: false },
     ...(shown ? answered(shown, answer === null) : []),
     { name: "target", x: [0], y: [0], mode: "markers", marker: { symbol: "square", size: 8, color: ink }, hoverinfo: "name", showlegend: false },
     handle("hold point: drag", hold, 12, "diamond"), handle("start: drag to turn the line", start, 16, "circle"),
   ];
-  const [low, high] = above ? [-0.55, 1.2] : [-1.2, 0.55];
+  const [low, high] = near ? [-1, 1] : above ? [-0.55, 1.2] : [-1.2, 0.55];
   return draw(place, traces, {
-    uirevision: `${values.start_m}/${above}`, showlegend: true, title: { text: says }, dragmode: "pan",
-    xaxis: { title: { text: "along-track y [m] (the target flies to the left)" }, range: [1.25 * far, -1.25 * far], constrain: "domain" },
-    yaxis: { title: { text: "radial x [m] (Earth below)" }, range: [low * far, high * far], scaleanchor: "x", constrain: "domain" },
+    uirevision: `${near}/${values.start_m}/${above}`, showlegend: true, dragmode: "pan", ...(narrow ? {} : { title: { text: says } }),
+    xaxis: { title: { text: narrow ? "along-track [m], flight to the left" : "along-track y [m] (the target flies to the left)" }, tickangle: 0, nticks: narrow ? 5 : 11, range: [1.25 * far, -1.25 * far], constrain: "domain" },
+    yaxis: { title: { text: narrow ? "radial [m]" : "radial x [m] (Earth below)" }, range: [low * far, high * far], scaleanchor: "x", constrain: "domain" },
   });
 }
 
