@@ -122,8 +122,11 @@ def _edits(function: Function) -> Iterator[tuple]:
                 yield (node, "no raise"), lambda n=node: _replace(function, n, ast.Pass())
             continue
         yield from _edits_of(function, node)
-        # An annotation computes nothing.
-        seen += [child for field, child in _children(node) if field not in ("annotation", "returns")]
+        # An annotation computes nothing; ``strict=`` of zip is a second check of lengths that are equal.
+        strict = isinstance(node, ast.keyword) and node.arg == "strict"
+        seen += [
+            child for field, child in _children(node) if field not in ("annotation", "returns") and not strict
+        ]
 
 
 def _children(node: ast.AST) -> Iterator[tuple[str, ast.AST]]:

@@ -224,7 +224,8 @@ class SpaceWatch:
 
     def normals_at(self, time: float) -> Floats:
         """Unit normals (F, 3) of the faces in LVLH axes at a time, s."""
-        return self._turned(np.array([time]))[0]
+        normals: Floats = self._turned(np.array([time]))[0]
+        return normals
 
     def _planes(self, times: Floats, faces: Ints) -> tuple[Floats, Floats]:  # noqa: ARG002
         """Unit normals (J, 3) in their own frames and offsets (J,) of faces (J,) at times (J,)."""
