@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import pytest
 from playwright.sync_api import Browser, expect
 
+from safestart.processes.costs import region_s
 from tests.acceptance.running import serving
 from tests.browser.conftest import Visit
 
@@ -26,7 +27,7 @@ def test_an_estimate_stands_beside_the_button(browser: Browser, url: str) -> Non
     expect(said).to_contain_text("calculated from the inputs")
     before = said.inner_text()
     page.fill("#in-horizon_s", "600")
-    expect(said).to_contain_text("39 s")
+    expect(said).to_contain_text(f"about {region_s(600.0):.0f} s")
     assert said.inner_text() != before
     page = visit.go("/dashboard/submit?process=benchmark")
     expect(said).to_contain_text("not known")

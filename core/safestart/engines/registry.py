@@ -25,7 +25,7 @@ _SPECS = (
         title="paper's conditions (not sound)",
         colour="#E69F00",
         engine="safestart.engines.analytical:Analytical",
-        summary="the closed form of paper 000, not sound: directional erosion and synchronization range",
+        summary="the closed form of Iskender et al., not sound: directional erosion and synchronization range",
         not_in_space="the paper's conditions are planar",
     ),
     EngineSpec(
@@ -81,8 +81,8 @@ _SPECS = (
         title="tracking MPC (flown)",
         colour="#882255",
         engine="safestart.engines.tracking:Tracking",
-        summary="the tracking MPC of paper 002, thrust held in a ball, flown to the port: a plan at every step, inside "
-        "at every node",
+        summary="the tracking MPC of Rebollo et al., thrust held in a ball, flown to the port: a plan at every step, "
+        "inside at every node",
         line=":",
         share=6.0,
         default=False,

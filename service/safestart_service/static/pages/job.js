@@ -6,7 +6,7 @@ import { Problem, call, follow, get, remove, root } from "../parts/api.js";
 import { again } from "../parts/bulk.js";
 import { copies } from "../parts/copies.js";
 import { labelled } from "../parts/labels.js";
-import { $, definition, el, fail, hour, loading, status, time } from "../parts/page.js";
+import { $, coded, definition, download, el, fail, hour, loading, status, statusWord, time } from "../parts/page.js";
 import { description } from "../parts/process.js";
 import { known, results, verdictBadge } from "../parts/results.js";
 import { shown } from "../parts/views.js";
@@ -53,15 +53,16 @@ function frame() {
     active && !job.dismissal_requested ? el("button", { type: "button", class: "danger", onclick: cancel }, "Cancel") : null,
     active ? null : el("button", { type: "button", onclick: repeat }, job.status === "successful" ? "Run again" : "Try again"),
     el("a", { href: `${root}/dashboard/submit?process=${job.processID}&from=${id}` }, "Change inputs"),
+    active ? null : download(call, `/jobs/${id}/bundle`, `${id}.zip`, "Bundle"),
     copies(() => ({ id: job.processID, inputs: job.inputs })),
   ].filter(Boolean));
   const facts = [["Submitted", time(job.created)], ["Started", time(job.started)], ["Finished", time(job.finished)], ["Attempts", String(job.attempts)]];
   if (job.position) facts.push(["Place in the queue", String(job.position)]);
   if (job.starts_in_s) facts.push(["Starts in about", duration(job.starts_in_s)]);
   const parts = [];
-  if (job.problem) parts.push(el("section", { class: "problem", role: "alert" }, el("h2", {}, job.problem.title ?? "Failed"), el("p", {}, job.problem.detail ?? "")));
+  if (job.problem) parts.push(el("section", { class: "problem", role: "alert" }, el("h2", {}, job.problem.title ?? "Failed"), el("p", {}, ...coded(job.problem.detail ?? ""))));
   if (active) parts.push(el("div", { class: "line big" }, bar, percent, left), message, connection);
-  if (job.reason) parts.push(el("p", { class: "note" }, `Waits: ${job.reason}.`));
+  if (job.reason) parts.push(el("p", { class: "note" }, ...coded(`Waits: ${job.reason}.`)));
   $("state").replaceChildren(...parts);
   $("course").replaceChildren(el("h2", {}, "Course of the job"), el("dl", {}, ...facts.map(([name, value]) => definition(name, value))), ...(log.childElementCount ? [log] : []));
   progress(job.progress, job.message, job.eta_s);
@@ -105,7 +106,7 @@ async function heard(kind, data) {
     tell(data.at, `${Math.floor(data.progress)} %  ${data.message}`);
   } else if (kind === "log") tell(data.at, data.message);
   else if (kind === "status") {
-    tell(data.at, [data.status, data.message].filter(Boolean).join(": "));
+    tell(data.at, [statusWord(data.status), data.message].filter(Boolean).join(": "));
     await show();
   }
 }

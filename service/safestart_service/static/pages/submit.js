@@ -5,6 +5,7 @@ import { Store } from "../logic/store.js";
 import { call, execute, get, root } from "../parts/api.js";
 import { copies } from "../parts/copies.js";
 import { field, mark } from "../parts/form.js";
+import { explain } from "../parts/glossary.js";
 import { labelFields } from "../parts/labels.js";
 import { $, el, fail, loading } from "../parts/page.js";
 import { description } from "../parts/process.js";
@@ -61,6 +62,7 @@ function showForm({ state, answer, error }) {
   $("form").replaceChildren(entry.node, el("details", { class: "rare", open: !light }, el("summary", {}, `Name, tags and note${light ? " of a queued run" : ""}`), ...labels.nodes), el("div", { class: "tools" },
     el("button", { type: "submit" }, light ? "Run now" : "Submit"),
     light ? el("button", { type: "button", class: "plain", onclick: queue }, "Queue it") : null), el("p", { class: "note", id: "estimate", role: "status" }), copies(() => ({ id: spec.id, inputs: entry.value() })));
+  explain($("form"));
   store.set({ entered: entered() });
 }
 

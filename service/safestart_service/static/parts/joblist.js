@@ -4,7 +4,7 @@ import { sorted } from "../logic/paging.js";
 import { inputWords } from "../logic/titles.js";
 import { duration } from "../logic/words.js";
 import { root } from "./api.js";
-import { badge, el, status, time } from "./page.js";
+import { badge, coded, el, status, time } from "./page.js";
 
 /** Columns with their names in `sort`; a falling one begins with its greatest. */
 const COLUMNS = [["Run", "name"], ["Inputs"], ["Job", "status"], ["Outcome", "verdict"], ["Ran", "duration", true], ["Owner", "submitter"], ["Submitted", "created", true], [""]];
@@ -67,8 +67,8 @@ function row(job, own, acts) {
     says.push(el("div", { class: "line soft" }, el("progress", { max: 100, value: job.progress, "aria-label": "progress" }), el("span", { class: "percent" }, `${job.progress} %`),
       job.eta_s === null ? null : el("span", {}, `about ${duration(job.eta_s)} left`)));
   }
-  if (job.reason) says.push(el("p", { class: "note" }, `Waits: ${job.reason}.`));
-  else if (["running", "failed"].includes(job.status) && job.message) says.push(el("p", { class: "note" }, job.message));
+  if (job.reason) says.push(el("p", { class: "note" }, ...coded(`Waits: ${job.reason}.`)));
+  else if (["running", "failed"].includes(job.status) && job.message) says.push(el("p", { class: "note" }, ...coded(job.message)));
   return el("tr", {}, el("td", {}, box),
     el("td", { class: "run" }, el("a", { "data-control": "open", href: `${root}/dashboard/jobs/${job.jobID}` }, job.name || job.processID), below, job.note ? el("p", { class: "note first-line", title: job.note }, job.note.split("\n")[0]) : null),
     el("td", { class: "inputs" }, inputs.length ? `${shown}${more}` : "–"),
