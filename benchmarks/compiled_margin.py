@@ -18,7 +18,8 @@ import pytest
 from benchmarks.exact_answers import draw
 from benchmarks.timing import once
 from safestart.exact import search
-from safestart.exact.decide import decide
+from safestart.exact.answer import TOLERANCE
+from safestart.exact.watch import watch_of
 from safestart.model.scenario import Floats
 from safestart.optim.ball_margin import SOLVED, largest_margin
 from safestart.optim.largest_margin import Solved, solve, solve_by_cones
@@ -40,7 +41,7 @@ def programs(count: int, seed: int) -> list[Program]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(search, "solve", kept)
         for question, state in draw(count, seed):
-            decide(question, state)
+            search.Search(watch_of(question), state).narrow(TOLERANCE)
     return seen
 
 

@@ -153,6 +153,7 @@ FIGURES = {
     "transfer-apogee": 23.282,
     "molniya-perigee": 7.118,
     "spinning-axis": 11.125,
+    "past-an-array": 0.500,
 }
 """Margins, m, as docs/theory/space.md has them."""
 

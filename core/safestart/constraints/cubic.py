@@ -15,11 +15,18 @@ def dips(value: Floats, slope: Floats) -> tuple[Floats, Floats]:
     left, right = value[..., :-1, :], value[..., 1:, :]
     begin, end = slope[..., :-1, :], slope[..., 1:, :]
     rise = right - left
+    bend = begin + end - 2.0 * rise
     square = 3.0 * rise - 2.0 * begin - end
-    root = np.sqrt(np.maximum(square * square - 3.0 * (begin + end - 2.0 * rise) * begin, 0.0))
-    below = square + root
-    # -begin / (square + root) is the cubic's minimum; it lies in the sample when 0 < -begin < square + root.
-    inside = (begin < 0.0) & (below > -begin)
-    at = np.where(inside, -begin / np.where(inside, below, 1.0), np.where(right < left, 1.0, 0.0))
-    low = left + at * (begin + at * (square + at * (begin + end - 2.0 * rise)))
-    return low, at
+    inner = square * square - 3.0 * bend * begin
+    root = np.sqrt(np.maximum(inner, 0.0))
+    # The larger root of the slope, where the cubic has its minimum, written without cancellation: a slope of 0 at the
+    # beginning, as of a start at rest, must not hide a minimum behind it.
+    top = np.where(square < 0.0, root - square, -begin)
+    bottom = np.where(square < 0.0, 3.0 * bend, square + root)
+    inside = (inner > 0.0) & (top > 0.0) & (top < bottom)
+    place = top / np.where(inside, bottom, 1.0)
+    value = left + place * (begin + place * (square + place * bend))
+    ends = np.minimum(left, right)
+    inside &= value <= ends
+    at = np.where(inside, place, np.where(right < left, 1.0, 0.0))
+    return np.where(inside, value, ends), at

@@ -16,7 +16,7 @@ from safestart.errors import invalid
 from safestart.model.scenario import MAX_MEAN_MOTION, Floats, number
 
 
-def _phase_functions(phase: float) -> tuple[float, float, float]:
+def phase_functions(phase: float) -> tuple[float, float, float]:
     """sin(p)/p, (1 - cos p)/p^2 and (p - sin p)/p^3, by series where the direct form cancels."""
     if abs(phase) < 0.5:
         square = phase * phase
@@ -59,7 +59,7 @@ def transition_matrix(mean_motion: float, tau: float) -> Floats:
     _check(mean_motion, tau)
     n = mean_motion
     p = n * tau
-    f1, f2, f3 = _phase_functions(p)
+    f1, f2, f3 = phase_functions(p)
     c = math.cos(p)
     phi = np.zeros((6, 6))
     phi[0] = [1.0 + 3.0 * p * p * f2, 0.0, 0.0, tau * f1, 2.0 * tau * p * f2, 0.0]
@@ -75,7 +75,7 @@ def input_matrix(mean_motion: float, tau: float) -> Floats:
     """Zero-order-hold input matrix B_d(tau), shape (6, 3): the integral of Phi(s) [0; I] over [0, tau]."""
     _check(mean_motion, tau)
     p = mean_motion * tau
-    f1, f2, f3 = _phase_functions(p)
+    f1, f2, f3 = phase_functions(p)
     square = tau * tau
     bd = np.zeros((6, 3))
     bd[0, :2] = [square * f2, 2.0 * square * p * f3]

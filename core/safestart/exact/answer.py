@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
@@ -14,6 +15,8 @@ from safestart.model.scenario import Floats
 TOLERANCE = 1e-4
 # Floats give the distances to about 1e-12 m; a verdict needs a bound three orders of magnitude larger.
 GUARD = 1e-9
+BETWEEN = "0 lies between the bounds"
+"""Why an answer is UNDECIDED, as a rule."""
 
 
 class Verdict(StrEnum):
@@ -67,7 +70,7 @@ class Answer:
 
     For `synchronize` m is the best over T, ``thrust`` ends at the T it was found for, and ``parts`` stand for
     ``multipliers``. The loop ends with the verdict, so the bracket may be wide. ``arrival`` says how a GO goes on for
-    ever; None where that is not proved.
+    ever; None where that is not proved. ``restriction`` names the convex parts of the demands by which a GO was found.
     """
 
     verdict: Verdict
@@ -80,6 +83,7 @@ class Answer:
     reason: str = ""
     parts: tuple[Part, ...] = ()
     arrival: Arrival | None = None
+    restriction: tuple[str, ...] = ()
 
     @property
     def gap(self) -> float:
@@ -110,13 +114,7 @@ class Evidence:
         """The weights above 0, by name; ``names`` are the faces'."""
         count = len(self.faces)
         plain = self.weights[:count]
-        kept = np.nonzero(plain > 0.0)[0]
-        out = [
-            Multiplier(time, names[face], value)
-            for time, face, value in zip(
-                self.times[kept].tolist(), self.faces[kept].tolist(), plain[kept].tolist(), strict=True
-            )
-        ]
+        out = face_multipliers(self.times, self.faces, plain, names)
         if self.blocks.names:
             vectors = self.weights[count:].reshape(len(self.blocks.names), -1).tolist()
             for name, time, (value, *z) in zip(
@@ -126,3 +124,32 @@ class Evidence:
                     # The cone's dual adds z . y, a multiplier takes p . y away.
                     out.append(Multiplier(time, name, value, tuple(-e for e in z)))
         return tuple(out)
+
+
+def face_multipliers(times: Floats, faces: Ints, weights: Floats, names: tuple[str, ...]) -> list[Multiplier]:
+    """The weights (J,) above 0 of faces at times, by name."""
+    kept = np.nonzero(weights > 0.0)[0]
+    return [
+        Multiplier(time, names[face], value)
+        for time, face, value in zip(
+            times[kept].tolist(), faces[kept].tolist(), weights[kept].tolist(), strict=True
+        )
+    ]
+
+
+def concluded(
+    bracket: tuple[float, float],
+    thrust: Floats | None,
+    proof: tuple[Multiplier, ...],
+    rounds: int,
+    reason: str,
+) -> Answer:
+    """The answer of a search that ended with this bracket, ``reason`` where it is open."""
+    lower, upper = bracket
+    if lower > GUARD:
+        return Answer(Verdict.GO, lower, lower, upper, thrust, (), rounds)
+    if upper < -GUARD:
+        return Answer(Verdict.NO_GO, upper, lower, upper, None, proof, rounds)
+    finite = math.isfinite(lower) and math.isfinite(upper)
+    middle = 0.5 * (lower + upper) if finite else math.nan
+    return Answer(Verdict.UNDECIDED, middle, lower, upper, thrust, proof, rounds, reason)

@@ -7,12 +7,10 @@ watched flight from below. The loop ends when this bracket is narrower than the 
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from safestart.errors import invalid
-from safestart.exact.answer import GUARD, TOLERANCE, Answer, Verdict
+from safestart.exact.answer import GUARD, TOLERANCE, Answer, Verdict, concluded
 from safestart.exact.question import Question
 from safestart.exact.search import Search
 from safestart.exact.synchronize import synchronize
@@ -37,7 +35,15 @@ def decide(
     number("tolerance", tolerance, 1e-6, 1e3)
     if question.goal is not None:
         return synchronize(watch_of(question), state, tolerance, verdict_only=verdict_only)
-    search = Search(watch_of(question), state)
+    watch = watch_of(question)
+    if question.plain:
+        # Imported with the first question, because Numba takes a second to load.
+        from safestart.exact.kernels.stay import stay
+
+        answer = stay(watch, state, tolerance, verdict_only=verdict_only)
+        if answer is not None:
+            return answer
+    search = Search(watch, state)
     if search.distance_now < -GUARD:
         return outside(search)
     return answer_of(search, search.narrow(tolerance, verdict_only=verdict_only))
@@ -54,12 +60,5 @@ def outside(search: Search) -> Answer:
 
 def answer_of(search: Search, reason: str) -> Answer:
     """Verdict, bracket and evidence of a search that has ended, for ``reason`` where it is open."""
-    lower, upper, rounds = search.lower, search.upper, search.rounds
-    if lower > GUARD:
-        return Answer(Verdict.GO, lower, lower, upper, search.thrust, (), rounds)
     proof = search.evidence.multipliers(search.watch.names) if search.evidence else ()
-    if upper < -GUARD:
-        return Answer(Verdict.NO_GO, upper, lower, upper, None, proof, rounds)
-    finite = math.isfinite(lower) and math.isfinite(upper)
-    middle = 0.5 * (lower + upper) if finite else math.nan
-    return Answer(Verdict.UNDECIDED, middle, lower, upper, search.thrust, proof, rounds, reason)
+    return concluded((search.lower, search.upper), search.thrust, proof, search.rounds, reason)

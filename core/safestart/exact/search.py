@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from safestart.exact.answer import GUARD, TOLERANCE, Evidence, Multiplier
+from safestart.exact.answer import BETWEEN, GUARD, TOLERANCE, Evidence, Multiplier
 from safestart.exact.cut_source import Watched
 from safestart.exact.limits import AT_END, SPEED, speed_limit
 from safestart.exact.watch import Cuts, Ints
@@ -15,14 +15,14 @@ from safestart.model.scenario import Floats
 from safestart.optim.largest_margin import solve
 
 _FIRST_TIMES = 9
-_FINEST = 2e-7
-_ROUNDS = 40
+FINEST = 2e-7
+MOST_ROUNDS = 40
 # Rows without weight are dropped when farther from binding than this many brackets, but only in the first rounds,
 # because later drops could cycle.
-_NO_WEIGHT, _FAR, _DROPPING_ROUNDS = 1e-7, 100.0, 12
+NO_WEIGHT, FAR, DROPPING_ROUNDS = 1e-7, 100.0, 12
 # A weighted row and a minimum this close (in steps) belong to one touch. The first guess of a touch lies this share of
 # the way from the weight to the minimum; times closer than a millisecond count as equal.
-_SOME_WEIGHT, _TOUCH_STEPS, _FIRST_GUESS, _SAME_S = 1e-4, 10.0, 0.6, 1e-3
+SOME_WEIGHT, TOUCH_STEPS, FIRST_GUESS, SAME_S = 1e-4, 10.0, 0.6, 1e-3
 
 
 class Search:
@@ -36,17 +36,14 @@ class Search:
         self.lower, self.upper, self.rounds = -math.inf, math.inf, 0
         self.thrust: Floats | None = None
         question = watch.question
-        speed = float(np.abs(state[question.dimensions :]).sum())
-        push = question.largest_thrust * question.horizon
-        reach = float(np.abs(state[: question.dimensions]).sum()) + (speed + push) * question.horizon
-        self.rounding = watch.rounding * reach
+        self.rounding = rounding_of(watch, state)
         self.dips: dict[int, tuple[float, float]] = {}
         self.evidence: Evidence | None = None
         distances = watch.offsets - watch.normals @ state[: watch.question.dimensions]
         nearest = int(np.argmin(distances))
         self.distance_now, self.now = float(distances[nearest]), Multiplier(0.0, watch.names[nearest], 1.0)
         # At t = 0 only the nearest face matters; a row that cannot fall below the best possible margin cannot bind.
-        first, pushed = _first(watch)
+        first, pushed = first_rows(watch)
         distances = first.offset + first.start @ state
         kept = distances - pushed < distances[nearest] + pushed[nearest]
         kept[: len(watch.names)] = np.arange(len(watch.names)) == nearest
@@ -54,6 +51,8 @@ class Search:
         self.constant = distances[kept]
         self.blocks = watch.blocks((), np.empty(0))
         if question.goal is not None:
+            speed = float(np.abs(state[question.dimensions :]).sum())
+            push = question.largest_thrust * question.horizon
             self.rounding += watch.rounding * question.goal.scale * (speed + push)
             self._limit(AT_END, np.full(len(AT_END), question.horizon))
         if question.speed_limit is not None:
@@ -88,16 +87,16 @@ class Search:
         ``share``: for a NO_GO a bracket narrower than this share of its margin is enough.
         """
         fine = tolerance < TOLERANCE
-        for _ in range(_ROUNDS):
+        for _ in range(MOST_ROUNDS):
             failed = self.round(fine)
             if failed:
                 return failed
             decided = self.lower > GUARD or self.upper < -GUARD
-            goal = max(tolerance, -share * self.upper) if decided else _FINEST
+            goal = max(tolerance, -share * self.upper) if decided else FINEST
             fine = goal < TOLERANCE
             if self.upper - self.lower <= goal or (decided and verdict_only) or not self.cut(goal):
                 break
-        return "0 lies between the bounds"
+        return BETWEEN
 
     def round(self, fine: bool = True) -> str:
         """Solve with the rows so far and watch the flight; the reason if the solver failed, else empty."""
@@ -137,7 +136,7 @@ class Search:
             self._limit((SPEED,) * int(fast.sum()), times[fast])
             times, faces = times[~fast], faces[~fast]
         between, of = self._touches(times, faces)
-        if self.rounds <= _DROPPING_ROUNDS:
+        if self.rounds <= DROPPING_ROUNDS:
             self._drop()
         cuts = self.watch.cuts(np.concatenate([times, between]), np.concatenate([faces, of]))
         self.times = np.concatenate([self.times, cuts.times])
@@ -149,8 +148,8 @@ class Search:
     def _drop(self) -> None:
         """Drop rows without weight that are far from binding: the bound does not need them."""
         distance = self.constant + self.rows @ self.flown.ravel()
-        near = distance < self.upper + _FAR * (self.upper - self.found.lowest)
-        kept = near | (self.load > _NO_WEIGHT)
+        near = distance < self.upper + FAR * (self.upper - self.found.lowest)
+        kept = near | (self.load > NO_WEIGHT)
         self.times, self.faces = self.times[kept], self.faces[kept]
         self.constant, self.rows = self.constant[kept], self.rows[kept]
 
@@ -161,7 +160,7 @@ class Search:
         dips alone would halve their distance to the touch each round; the secant jumps to it.
         """
         out_times, out_faces = [], []
-        reach, loaded = _TOUCH_STEPS * self.watch.question.dt, self.load > _SOME_WEIGHT
+        reach, loaded = TOUCH_STEPS * self.watch.question.dt, self.load > SOME_WEIGHT
         for time, face in zip(times.tolist(), faces.tolist(), strict=True):
             share = (self.faces == face) & (np.abs(self.times - time) < reach) & loaded
             total = float(self.load[share].sum())
@@ -171,17 +170,26 @@ class Search:
             dip = time - carried
             before = self.dips.get(face)
             self.dips[face] = (carried, dip)
-            touch = carried + _FIRST_GUESS * dip
+            touch = carried + FIRST_GUESS * dip
             if before is not None and before[1] * dip < 0.0:
                 touch = carried + dip * (before[0] - carried) / (dip - before[1])
-            if min(abs(touch - time), abs(dip)) > _SAME_S and 0.0 < touch < self.watch.question.horizon:
+            if min(abs(touch - time), abs(dip)) > SAME_S and 0.0 < touch < self.watch.question.horizon:
                 out_times.append(touch)
                 out_faces.append(face)
         return np.array(out_times), np.array(out_faces, dtype=np.int64)
 
 
-@lru_cache(maxsize=4)
-def _first(watch: Watched) -> tuple[Cuts, Floats]:
+def rounding_of(watch: Watched, state: Floats) -> float:
+    """What floats may lose of a face's distance (m), from the length that a flight from ``state`` can cover."""
+    question = watch.question
+    size = np.abs(state)
+    far, speed = float(size[: question.dimensions].sum()), float(size[question.dimensions :].sum())
+    reach: float = far + (speed + question.largest_thrust * question.horizon) * question.horizon
+    return watch.rounding * reach
+
+
+@lru_cache(maxsize=64)
+def first_rows(watch: Watched) -> tuple[Cuts, Floats]:
     """The initial rows, all faces at some times, and how far (m) thrust can move each row."""
     question = watch.question
     times, faces = np.linspace(0.0, question.horizon, _FIRST_TIMES), np.arange(len(watch.names))

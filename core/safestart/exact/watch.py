@@ -17,9 +17,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from safestart.attitude.body_frame import into_body, out_of_body
+from safestart.attitude.body_frame import into_body
 from safestart.constraints.corridor import corridor_of
-from safestart.constraints.cubic import dips
 from safestart.dynamics.cwh import Cwh
 from safestart.exact import speed
 from safestart.exact.limits import AT_END, limit_at
@@ -81,6 +80,8 @@ class Watch:
         )
         nodes = question.dt * np.arange(question.steps)[:, None]
         self.times = nodes + self.step * np.arange(self.samples + 1)[None, :]
+        self.begins = self.times[:, :-1].ravel()
+        self.pushed = np.ascontiguousarray(self.prediction.driven[1:, :, : question.dimensions])
         angle = phase + self.rate * self.times
         self.cosine, self.sine = np.cos(angle), np.sin(angle)
         corridor = corridor_of(question.scenario.corridor, question.dimensions)
@@ -99,42 +100,57 @@ class Watch:
 
     def minima(self, state: Floats, thrust: Floats) -> Minima:
         """Local minima and the all-times bound of the flight from ``state`` (2 d,) under ``thrust`` (N, d) in m/s^2."""
-        d, h = self.question.dimensions, self.step
-        flown = self.prediction.flight(state, thrust)
-        value, slope = self.along_normals(flown)
-        value += self.offsets
-        limit = self.question.speed_limit
+        # Imported with the first flight, because Numba takes a second to load.
+        from safestart.exact.kernels.minima import (
+            below_cubics,
+            derivative_bounds,
+            flight_minima,
+            local_minima,
+        )
+
+        table, question, limit = self.prediction, self.question, self.question.speed_limit
+        low, at, last, *most = flight_minima(
+            state,
+            thrust,
+            table.free,
+            table.along,
+            table.held,
+            self.cosine,
+            self.sine,
+            self.normals,
+            self.offsets,
+            self.rate,
+            self.mean_motion,
+            self.step,
+            limit or 0.0,
+        )
+        bounds = derivative_bounds(self.mean_motion, self.step, *most)
+        lowest = float(low[:, : len(self.names)].min()) - below_cubics(self.rate, self.step, bounds)
         if limit is not None:
-            left, closing = speed.room(limit, self.mean_motion, h, flown, thrust)
-            value, slope = np.concatenate([value, left], axis=-1), np.concatenate([slope, closing], axis=-1)
-        low, at = dips(value, slope)
-        faces = low.shape[-1]
-        low, at = low.reshape(-1, faces), at.reshape(-1, faces)
-        fence = np.full((1, faces), np.inf)
-        before, after = np.concatenate([fence, low[:-1]]), np.concatenate([low[1:], fence])
-        index, face = np.nonzero((low <= before) & (low < after))
-        times = self.times[:, :-1].ravel()[index] + h * at[index, face]
-        furthest = math.sqrt(float(np.square(flown[..., :d]).sum(axis=-1).max()))
-        fastest = math.sqrt(float(np.square(flown[..., d:]).sum(axis=-1).max()))
-        lowest = float(low[:, : len(self.names)].min()) - self.between(furthest, fastest, thrust)
-        if limit is not None:
-            lost = speed.bend(self.mean_motion, self._bounds(furthest, fastest, thrust)) * h**4 / 384.0
+            lost = speed.bend(self.mean_motion, bounds) * self.step**4 / 384.0
             lowest = min(lowest, float(speed.metres(limit, low[:, -1].min() - lost)))
             low[:, -1] = speed.metres(limit, low[:, -1])
-        if self.question.goal is not None:
-            ends = [limit_at(self.question, name, self.question.horizon) for name in AT_END]
-            lowest = min(lowest, *(end.left(flown[-1, -1]) for end in ends))
-        return Minima(lowest, np.minimum(times, self.question.horizon), face, low[index, face])
+        if question.goal is not None:
+            ends = [limit_at(question, name, question.horizon) for name in AT_END]
+            lowest = min(lowest, *(end.left(last) for end in ends))
+        times, faces, values = local_minima(low, at, self.begins[: len(low)], self.step)
+        return Minima(lowest, np.minimum(times, question.horizon), faces, values)
 
     def cuts(self, times: Floats, faces: Ints) -> Cuts:
         """Rows of f_i(t) = offset + start . x0 + thrust . u for pairs of time (J,) in [0, T] and face (J,)."""
-        angle = self.phase + self.rate * times
-        cosine, sine = np.cos(angle), np.sin(angle)
-        body = self.normals[faces]
-        normal = -body
-        x, y = out_of_body(cosine, sine, body[:, 0], body[:, 1])
-        normal[:, 0], normal[:, 1] = -x, -y
-        start, thrust = self.prediction.position_rows(times, normal)
+        from safestart.exact.kernels.rows import face_rows
+
+        start, thrust = face_rows(
+            times,
+            faces,
+            self.normals,
+            self.phase,
+            self.rate,
+            self.mean_motion,
+            self.question.dt,
+            self.prediction.free,
+            self.pushed,
+        )
         return Cuts(times, faces, self.offsets[faces], start, thrust)
 
     def blocks(self, names: Sequence[str], times: Floats) -> Blocks:
@@ -166,26 +182,11 @@ class Watch:
         Leibniz over the turn, CWH for the derivatives of the position; ``furthest`` (m) and ``fastest`` (m/s) hold at
         the samples.
         """
-        w, (r, v, a, jerk, snap) = self.rate, self._bounds(furthest, fastest, thrust)
-        curvature = w**4 * r + 4.0 * w**3 * v + 6.0 * w * w * a + 4.0 * w * jerk + snap
-        return curvature * self.step**4 / 384.0
+        from safestart.exact.kernels.minima import below_cubics, derivative_bounds
 
-    def _bounds(
-        self, furthest: float, fastest: float, thrust: Floats
-    ) -> tuple[float, float, float, float, float]:
-        """Bounds between the samples on |r| and its first four derivatives in LVLH."""
-        n = self.mean_motion
-        half = 0.5 * self.step
         push = math.sqrt(float(np.square(thrust).sum(axis=-1).max()))
-        # |a| <= 3 n^2 r + 2 n v + u, carried over half a sample from the nearer end.
-        gain = half * (2.0 * n + 3.0 * n * n * half)
-        if gain >= 1.0:
-            return (math.inf,) * 5
-        v = (fastest + half * (3.0 * n * n * furthest + push)) / (1.0 - gain)
-        r = furthest + half * v
-        a = 3.0 * n * n * r + 2.0 * n * v + push
-        jerk = 3.0 * n * n * v + 2.0 * n * a
-        return r, v, a, jerk, 3.0 * n * n * a + 2.0 * n * jerk
+        bounds = derivative_bounds(self.mean_motion, self.step, furthest, fastest, push)
+        return float(below_cubics(self.rate, self.step, bounds))
 
 
 @lru_cache(maxsize=64)

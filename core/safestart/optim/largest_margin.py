@@ -24,10 +24,10 @@ from safestart.optim.cone_program import ConeProgram, Ints
 from safestart.optim.thrust_ball import INSIDE
 from safestart.optim.thrust_shapes import BALL, UnitSet
 
-_LEAST_WEIGHT = 1e-10
+LEAST_WEIGHT = 1e-10
 _USABLE = ("Solved", "AlmostSolved", "InsufficientProgress", "MaxIterations")
 # How close (m) the compiled method brings its bracket: what Clarabel's tolerances come to.
-_FINE_M, _COARSE_M = 1e-8, 2e-5
+FINE_M, COARSE_M = 1e-8, 2e-5
 
 SOLVED_BY: Counter[str] = Counter()
 """Programs of this process: ``compiled``, ``open`` (the compiled method did not settle; Clarabel did it), ``cones``."""
@@ -66,7 +66,7 @@ def solve(
     a_max times its points, ``dimensions`` its channels, and ``components`` d of the norms.
     """
     if within is BALL and not blocks:
-        found = _compiled(constant, thrust, a_max, dimensions, _FINE_M if fine else _COARSE_M)
+        found = _compiled(constant, thrust, a_max, dimensions, FINE_M if fine else COARSE_M)
         SOLVED_BY["open" if found is None else "compiled"] += 1
         if found is not None:
             return found
@@ -87,7 +87,7 @@ def _compiled(
     w, weights, status, _ = largest_margin(constant, a_max * thrust, dimensions, tolerance)
     if status != SOLVED:
         return None
-    weights[weights < _LEAST_WEIGHT * max(1.0, float(np.maximum.reduce(weights)))] = 0.0
+    weights[weights < LEAST_WEIGHT * max(1.0, float(np.maximum.reduce(weights)))] = 0.0
     weights /= float(np.add.reduce(weights))
     w = w.reshape(-1, dimensions)
     bounded = BALL.bound(constant, thrust, weights, a_max, dimensions)
@@ -126,7 +126,7 @@ def solve_by_cones(
         weights = np.concatenate([weights, found.weights("limits")])
         holds = np.concatenate([np.arange(plain), np.arange(plain, rows, cone)])
     # Drop the interior point's small weights on irrelevant rows from the proof and its bound.
-    least = _LEAST_WEIGHT * max(1.0, float(np.maximum.reduce(weights[holds])))
+    least = LEAST_WEIGHT * max(1.0, float(np.maximum.reduce(weights[holds])))
     weights[:plain][weights[:plain] < least] = 0.0
     if blocks:
         _into_cone(weights[plain:].reshape(blocks, cone), least)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 
+from safestart.constraints.dip import dip
 from safestart.runtime.kernels import compiled
 from safestart.simulation.noise import AT_NODES, CONTINUOUS
 
@@ -72,15 +73,9 @@ def advance(  # type: ignore[no-untyped-def]
             first = math.inf
             for i in range(count):
                 left, right, begin, end = before[0, i], after[0, i], before[1, i], after[1, i]
-                low, at = right, 1.0
-                if begin < 0.0:
-                    rise = right - left
-                    square = 3.0 * rise - 2.0 * begin - end
-                    cube = begin + end - 2.0 * rise
-                    below = square + math.sqrt(max(square * square - 3.0 * cube * begin, 0.0))
-                    if below > -begin:
-                        at = -begin / below
-                        low = left + at * (begin + at * (square + at * cube))
+                low, at = dip(left, right, begin, end)
+                if at == 0.0:  # the left end was the right one of the sub-step before
+                    low, at = right, 1.0
                 if not low >= margin:
                     margin = low
                 if low < 0.0:

@@ -67,6 +67,33 @@ def test_get_post_proof_and_command_line_agree(client: TestClient, tmp_path: Pat
     assert "face 'right': [1.0, -1.2, 0.0]" in done.stdout
 
 
+def test_demands_by_get_post_and_command_line(client: TestClient, tmp_path: Path) -> None:
+    demands = {
+        "keep_outs": [{"name": "panel", "radius_m": 5, "centre_m": [0, 10, 0]}],
+        "field_of_view": {"axis": [0, -1, 0], "half_angle_deg": 70},
+        "plume": {"half_angle_deg": 30, "range_m": 60},
+    }
+    one = client.get("/go-no-go", params=flat(**START, **SPIN, **demands)).json()
+    body = {name: value for name, value in SPIN.items() if name != "frame"}
+    many = client.post("/go-no-go", json=body | demands | {"starts": [START | {"frame": "body"}]}).json()
+    assert one["verdict"] == many["verdict"][0] == "GO"
+    assert many["restriction"] == [one["restriction"]]
+    assert [said.split(":")[0] for said in one["restriction"]] == ["panel", "field_of_view", "plume"]
+    proof = client.get(one["proof_url"]).json()
+    assert check(proof).verdict == "GO"
+    assert set(demands) <= set(proof["question"])
+    done = CliRunner().invoke(build(), ["go-no-go", *options(**START, **SPIN, **demands), "--json"])
+    assert json.loads(done.stdout)["restriction"] == one["restriction"]
+    planar = {"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "x_m": 5, "y_m": 40}
+    for more, field in (
+        (planar | {"keep_outs": demands["keep_outs"]}, "position_m"),
+        (START | SPIN | {"keep_outs": [{"name": "a"}]}, "keep_outs.0.box.half_widths_m"),
+        (START | SPIN | {"plume": "[1]"}, "plume"),
+    ):
+        refused = client.get("/go-no-go", params=flat(**more))
+        assert (refused.status_code, refused.json()["field"]) == (422, field)
+
+
 def test_spins_of_either_sign_and_any_phase(client: TestClient) -> None:
     """Mirrored, and the orbit with it: none here."""
     here = client.get("/go-no-go", params=flat(**START, **SPIN, mean_motion_rad_s=0)).json()

@@ -13,6 +13,7 @@ from safestart.errors import InvalidInput
 from safestart.exact import search
 from safestart.exact.answer import Answer, Verdict
 from safestart.exact.decide import decide
+from safestart.exact.kernels import stay
 from safestart.exact.question import Question
 from safestart.exact.watch import watch_of
 from safestart.model.scenario import Floats, Scenario
@@ -145,6 +146,7 @@ def test_a_start_on_the_edge_is_undecided() -> None:
 
 
 def test_a_failing_solver_is_never_a_go(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(stay, "narrow", lambda *_: (False, *[None] * 7))
     monkeypatch.setattr(search, "solve", lambda *_, **__: Solved("NumericalError"))
     answer = decide(Question(Scenario.of(1.0, 0.1)), np.array([0.0, 40.0, 0.0, 0.0]))
     assert answer.verdict is Verdict.UNDECIDED

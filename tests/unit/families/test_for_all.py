@@ -12,11 +12,12 @@ from safestart.errors import InvalidInput
 from safestart.exact import search
 from safestart.exact.answer import Verdict
 from safestart.exact.decide import decide
+from safestart.exact.kernels import stay
 from safestart.exact.question import Question
 from safestart.families.answer import Witness
 from safestart.families.between import chord_gap, half_angle, nodes, reach, turned
 from safestart.families.decide import decide_for_all
-from safestart.families.members import Family, signs
+from safestart.families.members import Family, corner_signs
 from safestart.model.scenario import Floats, Scenario
 from safestart.optim.largest_margin import Solved
 from safestart.optim.prediction import prediction_of
@@ -62,7 +63,7 @@ def test_no_member_comes_closer_than_the_common_history_promises(made: Family, s
     kept = distances(made.question, *draw(made, state, 1000, 1), thrust)
     assert kept.min() >= answer.margin_m - 1e-9
     # And the promise is no smaller than it need be: a corner comes this close.
-    corner = signs(made.half) * made.half + state
+    corner = corner_signs(made.half) * made.half + state
     for rate in made.rates:
         at = np.full(len(corner), rate), np.full(len(corner), made.motions[0]), corner
         kept = np.append(kept, distances(made.question, *at, thrust))
@@ -193,6 +194,7 @@ def test_a_failing_solver_is_never_a_go(monkeypatch: pytest.MonkeyPatch) -> None
     def fails(*given: object, **how: bool) -> Solved:
         return real(*given, **how) if next(calls) < middle else Solved("NumericalError")  # type: ignore[arg-type]
 
+    monkeypatch.setattr(stay, "narrow", lambda *_: (False, *[None] * 7))
     monkeypatch.setattr(search, "solve", fails)
     answer = decide_for_all(made, state)
     assert answer.verdict is Verdict.UNDECIDED

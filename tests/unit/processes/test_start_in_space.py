@@ -158,6 +158,25 @@ FREE = {"kind": "torque_free", "inertia_kg_m2": BODY, "body_rate_deg_s": [1, 0, 
         ),
         ({"a_max_m_s2": None, "thrust": {"kind": "box", "a_max_m_s2": [0, 0, 0]}}, "thrust.a_max_m_s2"),
         ({"starts": [{"position_m": [1, 2]}]}, "starts.0.position_m"),
+        ({"keep_outs": [{"name": "a", "radius_m": 0}]}, "keep_outs.0.sphere.radius_m"),
+        ({"keep_outs": [{"name": "a", "half_widths_m": [1, 2]}]}, "keep_outs.0.box.half_widths_m"),
+        (
+            {"keep_outs": [{"name": "a", "radius_m": 1, "half_widths_m": [1, 2, 3]}]},
+            "keep_outs.0.sphere.half_widths_m",
+        ),
+        ({"keep_outs": [{"name": "a", "radius_m": 1}] * 2}, "keep_outs"),
+        ({"keep_outs": [{"name": "left", "radius_m": 1}]}, "keep_outs"),
+        ({"keep_outs": [{"name": "a", "radius_m": 1, "centre_m": [1e6, 0, 0]}]}, "keep_outs.centre_m"),
+        ({"field_of_view": {"axis": [0, 0, 0], "half_angle_deg": 10}}, "field_of_view.axis"),
+        ({"field_of_view": {"axis": [0, 1, 0], "half_angle_deg": 90}}, "field_of_view.half_angle_deg"),
+        (
+            {"field_of_view": {"axis": [0, 1, 0], "half_angle_deg": 20, "point_m": [1e6, 0, 0]}},
+            "field_of_view.point_m",
+        ),
+        ({"plume": {"half_angle_deg": 85, "range_m": 10}}, "plume.half_angle_deg"),
+        ({"plume": {"half_angle_deg": 20}}, "plume.range_m"),
+        ({"plume": {"half_angle_deg": 20, "range_m": 10}, "position_half_width_m": 1}, "question"),
+        ({"plume": {"half_angle_deg": 20, "range_m": 10}, "method": "tracking"}, "plume"),
         ({"starts": [{"position_m": [1, 20_000, 0]}]}, "starts"),
     ],
 )
@@ -176,3 +195,25 @@ def test_the_model_s_error_is_beside_the_margin() -> None:
     assert 0.058 < found["model_error_m"][0] < 0.116
     assert "the linear model itself may be off by about 0.067 m" in found["reason"][0]
     assert answered(starts=[far], mean_motion_rad_s=0)["model_error_m"] == [0.0]
+
+
+def test_demands_are_named_with_the_part_that_answered_them() -> None:
+    """Never dropped: in the verdict's words, among what the start violates, and in the proof."""
+    demands = {
+        "keep_outs": [{"name": "panel", "radius_m": 5, "centre_m": [0, 10, 0]}],
+        "field_of_view": {"axis": [0, -1, 0], "half_angle_deg": 60},
+        "plume": {"half_angle_deg": 30, "range_m": 60},
+    }
+    starts = [{"position_m": [1, 25, 0.5]}, {"position_m": [1, 8, 0.5]}, {"position_m": [1, 148, 0.5]}]
+    found = answered(starts=starts, **demands, horizon_s=40, proofs=True)
+    assert found["verdict"] == ["GO", "NO_GO", "NO_GO"]
+    assert found["violated_faces"] == [[], ["panel"], []]
+    assert [len(row) for row in found["restriction"]] == [3, 0, 0]
+    assert "convex part" in found["reason"][0]
+    assert "wrong side of panel" in found["reason"][1]
+    assert "even without panel, field_of_view, plume" in found["reason"][2]
+    assert found["proof"][1]["violated"] == "panel"
+    for proof in found["proof"]:
+        assert set(demands) <= set(proof["question"])
+        check(json.loads(json.dumps(proof)))
+    assert answered(horizon_s=40)["restriction"] is None

@@ -8,8 +8,9 @@ from safestart.errors import invalid
 from safestart.exact.answer import GUARD, TOLERANCE, Answer
 from safestart.exact.decide import answer_of, outside
 from safestart.exact.search import Search
+from safestart.exact.space.demanded import decide_demanded
 from safestart.exact.space.question import SpaceQuestion
-from safestart.exact.space.watch import space_watch_of
+from safestart.exact.space.watch import SpaceWatch, space_watch_of
 from safestart.exact.synchronize import ended
 from safestart.model.scenario import Floats, number
 
@@ -20,15 +21,23 @@ def decide_in_space(
     """Answer for one start ``state`` (6,): LVLH position (m) and velocity (m/s); see :func:`safestart.exact.decide`.
 
     The answer's ``thrust`` is (N, channels): m/s^2 in LVLH axes for a ball, else points of the unit set (shares of the
-    half-widths of a box in its own axes, throttles of thrusters). Raises ``InvalidInput`` for an invalid state.
+    half-widths of a box in its own axes, throttles of thrusters). With demands see
+    :mod:`safestart.exact.space.demanded`. Raises ``InvalidInput`` for an invalid state.
     """
     state = np.asarray(state, dtype=np.float64)
     if state.shape != (6,) or not np.isfinite(state).all() or float(np.abs(state).max()) > 1e6:
         raise invalid("state", "six finite numbers within 1e6: position and velocity", state)
     number("tolerance", tolerance, 1e-6, 1e3)
-    if question.goal is not None:
-        return ended(space_watch_of(question), state, tolerance, verdict_only=verdict_only)
-    search = Search(space_watch_of(question), state)
-    if search.distance_now < -GUARD:
-        return outside(search)
-    return answer_of(search, search.narrow(tolerance, verdict_only=verdict_only))
+
+    def solve(watch: SpaceWatch) -> tuple[Answer, Floats | None]:
+        if question.goal is not None:
+            answer = ended(watch, state, tolerance, verdict_only=verdict_only)
+            return answer, answer.thrust
+        search = Search(watch, state)
+        if search.distance_now < -GUARD:
+            return outside(search), None
+        return answer_of(search, search.narrow(tolerance, verdict_only=verdict_only)), search.thrust
+
+    if question.demands:
+        return decide_demanded(question, state, solve)
+    return solve(space_watch_of(question))[0]

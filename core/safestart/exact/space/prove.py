@@ -14,6 +14,7 @@ from safestart.attitude.turning import SmoothAttitude
 from safestart.errors import invalid
 from safestart.exact.answer import Answer, Verdict
 from safestart.exact.prove import GO_STAND_BACK_M, NO_GO_STAND_BACK_M, limits_of, refuted_by
+from safestart.exact.space.demands import PLUME, VIEW, Demands
 from safestart.exact.space.question import SpaceQuestion
 from safestart.model.scenario import Floats
 from safestart.proofs.space.statement import SCHEMA
@@ -45,7 +46,11 @@ def proof_in_space(
         document["thrust_m_s2" if question.thrust.kind == "ball" else "throttle"] = answer.thrust.tolist()
     elif answer.verdict is Verdict.NO_GO:
         document["margin_m"] = min(answer.upper + NO_GO_STAND_BACK_M, 0.5 * answer.upper)
-        document |= refuted_by(answer, question.latest, free=question.goal is not None)
+        at_start = answer.multipliers[0].face if answer.multipliers else ""
+        if at_start in question.demands.names:
+            document["violated"] = at_start
+        else:
+            document |= refuted_by(answer, question.latest, free=question.goal is not None)
     else:
         raise invalid("answer", "a GO or NO_GO", answer.verdict.value)
     document["digest"] = digest_of(document)
@@ -81,7 +86,39 @@ def question_of(question: SpaceQuestion) -> dict[str, Any]:
         ],
         "thrust": thrust,
         **limits_of(question.goal, (question.goal and question.goal.hold) or (), question.speed_limit),
+        **_demands(question.demands),
     }
+
+
+def _demands(demands: Demands) -> dict[str, Any]:
+    """Those that are asked, as they are: not the convex parts by which they were answered."""
+    out: dict[str, Any] = {}
+    if demands.keep_outs:
+        out["keep_outs"] = [
+            {
+                "name": one.name,
+                "centre_m": [float(e) for e in one.centre],
+                **({"radius_m": one.size[0]} if len(one.size) == 1 else {"half_widths_m": list(one.size)}),
+                "frame": one.frame,
+            }
+            for one in demands.keep_outs
+        ]
+    view, plume = demands.view, demands.plume
+    if view is not None:
+        out[VIEW] = {
+            "axis": [float(e) for e in view.axis],
+            "half_angle_rad": float(view.half_angle),
+            "point_m": [float(e) for e in view.point],
+            "frame": view.frame,
+        }
+    if plume is not None:
+        out[PLUME] = {
+            "half_angle_rad": float(plume.half_angle),
+            "range_m": float(plume.reach),
+            "point_m": [float(e) for e in plume.point],
+            "frame": plume.frame,
+        }
+    return out
 
 
 def _attitude(attitude: SmoothAttitude) -> dict[str, Any]:

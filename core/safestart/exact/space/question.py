@@ -27,6 +27,7 @@ from safestart.dynamics.yamanaka_ankersen import YamanakaAnkersen
 from safestart.errors import invalid
 from safestart.exact.limits import AT_END, SPEED
 from safestart.exact.question import Goal, Spanned, check_steps
+from safestart.exact.space.demands import NONE, Demands
 from safestart.model.orbit import KeplerOrbit
 from safestart.model.scenario import MAX_RANGE, CorridorShape, Floats, number
 from safestart.optim.thrust_shapes import BALL, CUBE, SIMPLEX, UnitSet
@@ -54,7 +55,7 @@ class SpaceQuestion(Spanned):
 
     ``goal`` makes it `synchronize`: at T, any number of intervals from ``goal.earliest`` to ``steps``, the chaser is at
     rest against the turning body in a ball around ``goal.hold`` (body frame, m). ``speed_limit`` (m/s) holds for the
-    LVLH velocity at all times.
+    LVLH velocity at all times. ``demands`` hold beside the faces; no linear program answers them.
     """
 
     orbit: KeplerOrbit
@@ -65,6 +66,7 @@ class SpaceQuestion(Spanned):
     steps: int = 30
     goal: Goal | None = None
     speed_limit: float | None = None
+    demands: Demands = NONE
     dimensions: ClassVar[int] = 3
 
     def __post_init__(self) -> None:
@@ -75,11 +77,17 @@ class SpaceQuestion(Spanned):
         norms = (AT_END if self.goal is not None else ()) + ((SPEED,) if self.speed_limit is not None else ())
         if any(face.name in norms for face in self.faces):
             raise invalid("faces", f"names other than {', '.join(norms)}", [face.name for face in self.faces])
+        self.demands.check([*(face.name for face in self.faces), *AT_END, SPEED])
         inner = self.attitude.inertial if isinstance(self.attitude, InLvlh) else self.attitude
         if isinstance(self.attitude, InLvlh) and self.attitude.orbit != self.orbit:
             raise invalid("attitude", "one seen from LVLH on the question's orbit", "another orbit")
         if isinstance(inner, Table):
             inner.reaches(self.horizon)
+
+    @property
+    def plain(self) -> bool:
+        """Whether this is `stay` without a speed limit or demands, so that only faces count."""
+        return self.goal is None and self.speed_limit is None and not self.demands
 
     @property
     def motion(self) -> RelativeMotion:

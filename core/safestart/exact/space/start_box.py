@@ -37,7 +37,7 @@ class _Watched:
         self.offsets = watch.offsets
 
     def blocks(self, names: Sequence[str], times: Floats) -> Blocks:
-        """Of no limits: the question has none."""
+        """The watch's rows: a question about a box has no other limits."""
         return self.watch.blocks(names, times)
 
 
@@ -105,7 +105,9 @@ def decide_from_box(
     """
     state, half = np.asarray(state, dtype=np.float64), np.asarray(half, dtype=np.float64)
     if not question.plain:
-        raise invalid("question", "stay without a speed limit where half-widths are given", question.kind)
+        raise invalid(
+            "question", "stay without a speed limit or demands where half-widths are given", question.kind
+        )
     if half.shape != (6,):
         raise invalid("half_width", "six numbers", half.shape)
     for value in half.tolist():

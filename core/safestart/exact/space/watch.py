@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from copy import copy
 from dataclasses import replace
 from functools import lru_cache
+from typing import Self
 
 import numpy as np
 
@@ -48,6 +49,7 @@ class SpaceWatch:
         lengths = np.sqrt(np.square(given).sum(axis=1))
         self._own = given / lengths[:, None]
         self.offsets = np.array([face.offset for face in faces]) / lengths
+        self._levels: Floats = self.offsets
         self.names = tuple(face.name for face in faces)
         self._in_body = np.array([face.frame == "body" for face in faces])
         self.normals = self._turned(np.zeros(1))[0]
@@ -78,7 +80,7 @@ class SpaceWatch:
             taus.append(own)
             intervals.append(np.full(len(own), k))
         tau, self._interval = np.concatenate(taus), np.concatenate(intervals)
-        times = question.dt * self._interval + tau
+        times = self._times = question.dt * self._interval + tau
         if question.speed_limit is not None:
             self._pulls = question.orbit.pulls(times)
         segments = np.nonzero(self._interval[1:] == self._interval[:-1])[0]
@@ -92,7 +94,18 @@ class SpaceWatch:
         if len(knots):
             self._slope_last = self._turning(times, np.nextafter(times, -np.inf))[self._last]
 
-    def until(self, steps: int) -> SpaceWatch:
+    @property
+    def intervals(self) -> Ints:
+        """The interval (P,) of each sample; a node is a sample of both."""
+        return self._interval
+
+    @property
+    def sample_times(self) -> Floats:
+        """Times (P,) of the samples, s."""
+        out: Floats = self._times
+        return out
+
+    def until(self, steps: int) -> Self:
         """The watch of the same question with T at ``steps`` intervals, at most its own: views of the same tables."""
         out = copy(self)
         goal = self.question.goal and replace(self.question.goal, earliest=1)
@@ -100,7 +113,7 @@ class SpaceWatch:
         out.prediction = self.prediction.until(steps)
         points = int(np.searchsorted(self._interval, steps))
         segments = int(np.searchsorted(self._last, points))
-        for name in ("_interval", "_phi", "_held", "_normals"):
+        for name in ("_interval", "_times", "_phi", "_held", "_normals"):
             setattr(out, name, getattr(self, name)[:points])
         for name in ("_first", "_last", "_length", "_begin", "_slope_first", "_slope_last"):
             setattr(out, name, getattr(self, name)[:segments])
@@ -157,7 +170,7 @@ class SpaceWatch:
         """Local minima and the all-times bound of the flight from ``state`` (6,) under ``thrust`` (N, channels)."""
         flown = self.flown(state, thrust)
         position, velocity = flown[:, :3], flown[:, 3:]
-        distance = self.offsets - (self._normals @ position[:, :, None])[..., 0]
+        distance = self._levels - (self._normals @ position[:, :, None])[..., 0]
         closing = (self._normals @ velocity[:, :, None])[..., 0]
         begin = closing[self._first] + (self._slope_first @ position[self._first][:, :, None])[..., 0]
         end = closing[self._last] + (self._slope_last @ position[self._last][:, :, None])[..., 0]
@@ -195,13 +208,28 @@ class SpaceWatch:
 
     def cuts(self, times: Floats, faces: Ints) -> Cuts:
         """Rows of f_i(t) = offset + start . x0 + thrust . w for pairs of time (J,) in [0, T] and face (J,)."""
-        directions = -self._own[faces]
+        own, offset = self._planes(times, faces)
+        directions = -own
         body = np.nonzero(self._in_body[faces])[0]
         if len(body):
             turn = self.question.attitude.rotation(times[body])
             directions[body] = (directions[body][:, None, :] @ turn)[:, 0]
         start, thrust = self.prediction.position_rows(times, directions)
-        return Cuts(times, faces, self.offsets[faces], start, self._by_channels(thrust))
+        return Cuts(times, faces, offset, start, self._by_channels(thrust))
+
+    def position_rows(self, time: float, directions: Floats) -> tuple[Floats, Floats]:
+        """Of the position at a time (s) along directions (J, 3), LVLH: rows over start (J, 6) and points (J, N C)."""
+        start, thrust = self.prediction.position_rows(np.full(len(directions), time), directions)
+        return start, self._by_channels(thrust)
+
+    def normals_at(self, time: float) -> Floats:
+        """Unit normals (F, 3) of the faces in LVLH axes at a time, s."""
+        normals: Floats = self._turned(np.array([time]))[0]
+        return normals
+
+    def _planes(self, times: Floats, faces: Ints) -> tuple[Floats, Floats]:  # noqa: ARG002
+        """Unit normals (J, 3) in their own frames and offsets (J,) of faces (J,) at times (J,)."""
+        return self._own[faces], self.offsets[faces]
 
     def _by_channels(self, thrust: Floats) -> Floats:
         """Rows (..., N 3) over accelerations as rows (..., N channels) over points."""

@@ -97,4 +97,18 @@ MISSIONS: dict[str, dict[str, Any]] = {
         "corridor": {"axis": [0, 1, 0.2], "c_x": 0.5, "c_z": 0.5},
         "a_max_m_s2": 0.02,
     },
+    "past-an-array": {
+        "starts": [{"position_m": [0, 60, 0]}],
+        "attitude": {"kind": "spin", "rate_deg_s": 0.0},
+        "orbit": {"semi_major_axis_m": 6797000.0, "eccentricity": 0.0003},
+        "corridor": _cone(1, 1.0, 0.3, 0.5, 2.0),
+        "a_max_m_s2": 0.03,
+        "question": "synchronize",
+        "hold_m": [0, 10, 0],
+        "keep_outs": [
+            {"name": "array", "centre_m": [4, 35, 0], "half_widths_m": [4.5, 1, 10], "frame": "lvlh"}
+        ],
+        "field_of_view": {"axis": [0, -1, 0], "half_angle_deg": 15},
+        "plume": {"half_angle_deg": 20, "range_m": 40},
+    },
 }

@@ -22,7 +22,7 @@ PARAMETERS: dict[str, Parameter] = _WHOLE.parameters | _FIVE.parameters
 """Flat names; the five faces come as their own parameters or, like any others, as the JSON of ``corridor``."""
 _ARRAYS = (
     *("verdict", "margin_m", "model_error_m", "violated_faces", "position_m", "velocity_m_s"),
-    *("reason", "end_s", "flight", "tracking", "proof"),
+    *("reason", "end_s", "restriction", "flight", "tracking", "proof"),
 )
 
 
@@ -32,12 +32,15 @@ class SpaceAnswer(WireModel):
     verdict: Literal["GO", "NO_GO", "UNDECIDED"]
     margin_m: float | None = Field(description=SpaceOutputs.model_fields["margin_m"].description)
     model_error_m: float = Field(description=SpaceOutputs.model_fields["model_error_m"].description)
-    violated_faces: list[str] = Field(description="Faces that the start itself is outside of.")
+    violated_faces: list[str] = Field(description=SpaceOutputs.model_fields["violated_faces"].description)
     reason: str = Field(description="The verdict in a sentence.")
     position_m: list[float] = Field(description="The start, LVLH, m.")
     velocity_m_s: list[float] = Field(description="The start, LVLH, m/s.")
     faces: list[str] = Field(description="Names of the faces.")
     end_s: float | None = Field(description="When the flight of a GO ends (synchronize), s.")
+    restriction: list[str] | None = Field(
+        None, description=SpaceOutputs.model_fields["restriction"].description
+    )
     flight: SpaceFlight | None = Field(None, description="The flight of a GO (flights=true).")
     tracking: TrackingAnswer | None = Field(
         None, description="Method tracking: the controller's flight, beside the exact answer."

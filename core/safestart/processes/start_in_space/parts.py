@@ -96,7 +96,9 @@ class EllipticOrbit(WireModel):
     true_anomaly_deg: float = Field(0.0, ge=-36000, le=36000, description="True anomaly at t = 0, deg.")
 
 
-def _has(name: str, present: str, absent: str) -> Discriminator:
+def has(name: str, present: str, absent: str) -> Discriminator:
+    """Tell two types apart by the field ``name`` that only one of them has."""
+
     def kind(value: Any) -> str:
         return present if (name in value if isinstance(value, dict) else hasattr(value, name)) else absent
 
@@ -105,7 +107,7 @@ def _has(name: str, present: str, absent: str) -> Discriminator:
 
 OrbitInput = Annotated[
     Annotated[EllipticOrbit, Tag("elliptic")] | Annotated[CircularOrbit, Tag("circular")],
-    _has("semi_major_axis_m", "elliptic", "circular"),
+    has("semi_major_axis_m", "elliptic", "circular"),
 ]
 
 
@@ -136,7 +138,7 @@ class Faces(WireModel):
 
 
 CorridorChoice = Annotated[
-    Annotated[Faces, Tag("faces")] | Annotated[FiveFaces, Tag("five")], _has("faces", "faces", "five")
+    Annotated[Faces, Tag("faces")] | Annotated[FiveFaces, Tag("five")], has("faces", "faces", "five")
 ]
 Acceleration = Annotated[float, Field(ge=0, le=MAX_ACCELERATION)]
 

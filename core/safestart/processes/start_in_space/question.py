@@ -18,6 +18,7 @@ from safestart.exact.question import Goal
 from safestart.exact.space.question import Face, SpaceQuestion, five_faces, starts_in_lvlh
 from safestart.model.orbit import KeplerOrbit
 from safestart.model.scenario import Floats
+from safestart.processes.start_in_space.demand_parts import demands_of
 from safestart.processes.start_in_space.parts import (
     BallThrust,
     BoxThrust,
@@ -26,6 +27,7 @@ from safestart.processes.start_in_space.parts import (
     SpinAttitude,
     TorqueFreeAttitude,
 )
+from safestart.processes.start_in_space.space_scenario import SpaceScenario
 from safestart.processes.start_in_space.spec import SpaceInputs
 from safestart.processes.wire import DT_S
 
@@ -48,6 +50,34 @@ _THRUST = {"directions": "directions", "a_max": "a_max_m_s2"}
 
 def question_of(inputs: SpaceInputs) -> SpaceQuestion:
     """The question; raises ``InvalidInput`` for objects beside the short form, and for invalid parts."""
+    orbit, attitude, thrust = _parts(inputs)
+    goal, span = None, inputs.horizon_s
+    if inputs.question == "synchronize":
+        goal, span = Goal(inputs.ball_radius_m, inputs.rest_speed_m_s, _hold(inputs)), inputs.within_s
+    demands = demands_of(inputs.keep_outs, inputs.field_of_view, inputs.plume)
+    with _as_asked():
+        return SpaceQuestion(
+            orbit,
+            attitude,
+            _faces(inputs),
+            thrust,
+            DT_S,
+            round(span / DT_S),
+            goal,
+            inputs.speed_limit_m_s,
+            demands,
+        )
+
+
+def stay_in(scenario: SpaceScenario, horizon_s: float) -> SpaceQuestion:
+    """`stay` in a scenario for some seconds; raises ``InvalidInput`` like :func:`question_of`."""
+    orbit, attitude, thrust = _parts(scenario)
+    with _as_asked():
+        return SpaceQuestion(orbit, attitude, _faces(scenario), thrust, DT_S, round(horizon_s / DT_S))
+
+
+def _parts(inputs: SpaceScenario) -> tuple[KeplerOrbit, SmoothAttitude, ThrustLimit]:
+    """Orbit, attitude and thrust; raises ``InvalidInput`` for objects beside the short form, and for invalid parts."""
     for name, short in (
         ("attitude", "omega_t_deg_s"),
         ("orbit", "mean_motion_rad_s"),
@@ -65,13 +95,14 @@ def question_of(inputs: SpaceInputs) -> SpaceQuestion:
         attitude = _attitude(inputs, orbit)
     with _named("thrust", _THRUST):
         thrust = _thrust(inputs)
-    goal, span = None, inputs.horizon_s
-    if inputs.question == "synchronize":
-        goal, span = Goal(inputs.ball_radius_m, inputs.rest_speed_m_s, _hold(inputs)), inputs.within_s
+    return orbit, attitude, thrust
+
+
+@contextmanager
+def _as_asked() -> Iterator[None]:
+    """Report what is wrong with a question under its wire names."""
     try:
-        return SpaceQuestion(
-            orbit, attitude, _faces(inputs), thrust, DT_S, round(span / DT_S), goal, inputs.speed_limit_m_s
-        )
+        yield
     except InvalidInput as error:
         places = {
             "faces": "corridor.faces",
@@ -107,7 +138,7 @@ def _named(part: str, names: Mapping[str, str]) -> Iterator[None]:
         raise invalid(f"{part}.{names.get(field, field)}", str(error.required), error.received) from None
 
 
-def _orbit(inputs: SpaceInputs) -> KeplerOrbit:
+def _orbit(inputs: SpaceScenario) -> KeplerOrbit:
     said = inputs.orbit
     if isinstance(said, EllipticOrbit):
         return KeplerOrbit.of(said.semi_major_axis_m, said.eccentricity, math.radians(said.true_anomaly_deg))
@@ -116,7 +147,7 @@ def _orbit(inputs: SpaceInputs) -> KeplerOrbit:
     return KeplerOrbit(1.1e-3 if inputs.mean_motion_rad_s is None else inputs.mean_motion_rad_s)
 
 
-def _attitude(inputs: SpaceInputs, orbit: KeplerOrbit) -> SmoothAttitude:
+def _attitude(inputs: SpaceScenario, orbit: KeplerOrbit) -> SmoothAttitude:
     said = inputs.attitude
     if said is None:
         phase = math.radians(inputs.phase_deg or 0.0)
@@ -138,7 +169,7 @@ def _attitude(inputs: SpaceInputs, orbit: KeplerOrbit) -> SmoothAttitude:
     return InLvlh(made, orbit) if said.reference == "inertial" else made
 
 
-def _faces(inputs: SpaceInputs) -> tuple[Face, ...]:
+def _faces(inputs: SpaceScenario) -> tuple[Face, ...]:
     said = inputs.corridor
     if isinstance(said, Faces):
         return tuple(Face(e.name, _three(e.normal), e.offset_m, e.frame) for e in said.faces)
@@ -166,7 +197,7 @@ def half_of(inputs: SpaceInputs) -> Floats | None:
     return half if half.any() else None
 
 
-def _thrust(inputs: SpaceInputs) -> ThrustLimit:
+def _thrust(inputs: SpaceScenario) -> ThrustLimit:
     said = inputs.thrust
     if said is None:
         return ball(inputs.a_max_m_s2 or 0.0)

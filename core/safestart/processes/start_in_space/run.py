@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from safestart.errors import invalid
 from safestart.exact.answer import Answer, Verdict
 from safestart.exact.space.decide import decide_in_space
@@ -31,7 +33,10 @@ def run(inputs: SpaceInputs, context: Context) -> ProcessOutput:
     states = states_of(inputs, question)
     half = half_of(inputs)
     if half is not None and not question.plain:
-        raise invalid("question", "stay without a speed limit where half-widths are given", question.kind)
+        asked_more = ", ".join(question.demands.names) or question.kind
+        raise invalid(
+            "question", "stay without speed limit and demands where half-widths are given", asked_more
+        )
     watch = space_watch_of(question)
     flown = _by_tracking(inputs, question) if inputs.method == "tracking" else None
     answers, tracking = [], []
@@ -60,7 +65,8 @@ def run(inputs: SpaceInputs, context: Context) -> ProcessOutput:
             "model_error_m": errors,
             "violated_faces": [
                 [name for name, distance in zip(watch.names, row, strict=True) if distance < 0.0]
-                for row in distances
+                + _demands_violated(question, state)
+                for row, state in zip(distances, states, strict=True)
             ],
             "position_m": states[:, :3].tolist(),
             "velocity_m_s": states[:, 3:].tolist(),
@@ -69,6 +75,7 @@ def run(inputs: SpaceInputs, context: Context) -> ProcessOutput:
                 for k, (answer, error) in enumerate(zip(answers, errors, strict=True))
             ],
             "end_s": [_end(question, answer) for answer in answers] if question.goal else None,
+            "restriction": [list(answer.restriction) for answer in answers] if question.demands else None,
             "flight": [
                 None
                 if answer.verdict is not Verdict.GO or answer.thrust is None
@@ -104,7 +111,24 @@ def _sentence(answer: Answer, error: float, told: str) -> str:
 
 
 def _told(question: SpaceQuestion, half: Floats | None, answer: Answer) -> str:
-    return asked.told(question, answer) if half is None else _from_box(question, answer)
+    if half is not None:
+        return _from_box(question, answer)
+    at_start = answer.multipliers[0].face if answer.multipliers else ""
+    if at_start in question.demands.names:
+        return f"the start itself is {-answer.upper:.2f} m on the wrong side of {at_start}"
+    told = asked.told(question, answer)
+    if answer.verdict is Verdict.GO and answer.restriction:
+        return f"{told}; found in a convex part of what is asked ({'; '.join(answer.restriction)})"
+    if answer.verdict is Verdict.NO_GO and question.demands:
+        return f"{told}, even without {', '.join(question.demands.names)}"
+    return told
+
+
+def _demands_violated(question: SpaceQuestion, state: Floats) -> list[str]:
+    if not question.demands:
+        return []
+    body = question.attitude.rotation(np.zeros(1))[0] @ state[:3]
+    return [name for name, room in question.demands.rooms(state[:3], body) if room < 0.0]
 
 
 def _from_box(question: SpaceQuestion, answer: Answer) -> str:

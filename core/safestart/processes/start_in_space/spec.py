@@ -7,20 +7,16 @@ from typing import Any, Literal
 from pydantic import Field, model_validator
 
 from safestart.engines.tracking_options import TrackingSettings
-from safestart.model.scenario import MAX_ACCELERATION, MAX_MEAN_MOTION, MIN_ACCELERATION
 from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.costs import FIRST_S, program_s
 from safestart.processes.go_no_go.question_fields import QuestionKind
+from safestart.processes.start_in_space.demand_parts import FieldOfViewInput, KeepOutInput, PlumeInput
 from safestart.processes.start_in_space.missions import MISSIONS
 from safestart.processes.start_in_space.parts import (
-    AttitudeInput,
-    CorridorChoice,
-    FiveFaces,
-    OrbitInput,
     SpaceStart,
-    ThrustInput,
     Vector,
 )
+from safestart.processes.start_in_space.space_scenario import SpaceScenario
 from safestart.processes.tracking_mpc.controller_input import TrackingAnswer
 from safestart.processes.views import Column, Facts, Findings, Layer, Picture
 from safestart.processes.wire import Horizon, Triple
@@ -30,43 +26,19 @@ MOST_PROOFS = 100
 Method = Literal["exact", "auto", "tracking"]
 
 
-class SpaceInputs(WireModel):
-    """One question in space and up to 1 000 starts; numbers of the short form stand for the objects left out."""
+class _Starts(WireModel):
+    """Stands last among the bases, so that the starts are the first field."""
 
     starts: list[SpaceStart] = Field(min_length=1, max_length=MOST_STARTS, description="States at t = 0.")
-    attitude: AttitudeInput | None = Field(None, description="How the target turns; absent: omega_t_deg_s.")
-    orbit: OrbitInput | None = Field(None, description="The target's orbit; absent: mean_motion_rad_s.")
-    corridor: CorridorChoice = Field(
-        default_factory=FiveFaces, description="What the chaser must stay inside of."
-    )
-    thrust: ThrustInput | None = Field(
-        None, description="What thrust it can hold over 2 s; absent: a_max_m_s2."
-    )
-    omega_t_deg_s: float | None = Field(
-        None,
-        ge=-60,
-        le=60,
-        description="Spin about LVLH z from the axes of LVLH on, deg/s; instead of attitude.",
-    )
-    phase_deg: float | None = Field(
-        None,
-        ge=-36000,
-        le=36000,
-        description="With omega_t_deg_s: by how much the body is ahead at t = 0, deg. Absent: 0.",
-    )
-    a_max_m_s2: float | None = Field(
-        None,
-        ge=MIN_ACCELERATION,
-        le=MAX_ACCELERATION,
-        description="Ball of thrusts, m/s^2; instead of thrust.",
-    )
-    mean_motion_rad_s: float | None = Field(
-        None, ge=0, le=MAX_MEAN_MOTION, description="Circular orbit, rad/s; instead of orbit. Default 1.1e-3."
-    )
+
+
+class SpaceInputs(SpaceScenario, _Starts):
+    """One question in space and up to 1 000 starts; numbers of the short form stand for the objects left out."""
+
     method: Method = Field(
         "exact",
-        description="exact, auto: cone programs, proved either way. tracking: the tracking MPC of paper 002 flown to "
-        "rest at the port, its thrust history proved and its plans certified; beside it the exact answer, which "
+        description="exact, auto: cone programs, proved either way. tracking: the tracking MPC of Rebollo et al. flown "
+        "to rest at the port, its thrust history proved and its plans certified; beside it the exact answer, which "
         "decides NO_GO. For five faces, a circular orbit, a spin or a torque-free body, a ball or a box of thrusts.",
     )
     tracking: TrackingSettings | None = Field(
@@ -106,6 +78,17 @@ class SpaceInputs(WireModel):
     velocity_half_width_m_s: float = Field(
         0.0, ge=0, le=10, description="Half-width of the box in velocity, m/s (stay)."
     )
+    keep_outs: list[KeepOutInput] = Field(
+        default_factory=list,
+        max_length=8,
+        description="Spheres and boxes that the chaser stays out of, beside the corridor. For keep_outs, field_of_view "
+        "and plume GO is found in a convex part of the demand that restriction names, and its proof shows the demand "
+        "itself; NO_GO only without them or from the start; else UNDECIDED. Not with half-widths or method tracking.",
+    )
+    field_of_view: FieldOfViewInput | None = Field(
+        None, description="A cone about a camera's axis in which the target stays; absent: none."
+    )
+    plume: PlumeInput | None = Field(None, description="No exhaust towards the target near it; absent: none.")
     flights: bool = Field(False, description="Return the flight of every GO as curves; at most 100 starts.")
     proofs: bool = Field(
         False, description="Return proof documents for `safestart verify`; at most 100 starts."
@@ -147,13 +130,20 @@ class SpaceOutputs(WireModel):
         description="Estimate of what two bodies with J2 would change over the horizon, m; where it exceeds the "
         "margin, the reason says so."
     )
-    violated_faces: list[list[str]] = Field(description="Faces that the start itself is outside of.")
+    violated_faces: list[list[str]] = Field(
+        description="Faces, keep-outs and field of view that the start violates."
+    )
     position_m: list[Triple] = Field(description="Starts, LVLH, m.")
     velocity_m_s: list[Triple] = Field(description="Starts, LVLH, m/s.")
     reason: list[str] = Field(description="The verdict in a sentence.")
     end_s: list[float | None] | None = Field(
         None,
         description="When the flight of a GO is at rest in the hold ball (synchronize), s; null for the others.",
+    )
+    restriction: list[list[str]] | None = Field(
+        None,
+        description="With keep_outs, field_of_view or plume: the convex part of each by which a GO was found; empty "
+        "for the others.",
     )
     flight: list[SpaceFlight | None] | None = Field(
         None, description="The flights of the GOs, when asked for; null for the others."
@@ -174,6 +164,8 @@ def _cost(inputs: SpaceInputs) -> float:
     one = 3.0 * program_s(inputs.within_s if synchronize else inputs.horizon_s)
     if inputs.position_half_width_m or inputs.velocity_half_width_m_s:
         one *= 10.0
+    if inputs.keep_outs or inputs.field_of_view or inputs.plume:
+        one *= 6.0
     flight = _FLIGHT_S if inputs.method == "tracking" else 0.0
     return FIRST_S + ((4.0 if synchronize else 1.0) * one + flight) * len(inputs.starts)
 
@@ -204,6 +196,7 @@ SPEC = ProcessSpec(
                 "velocity_m_s",
                 "violated_faces",
                 "reason",
+                "restriction",
                 "end_s",
                 "tracking",
             ),
@@ -219,6 +212,7 @@ SPEC = ProcessSpec(
                 Column("error of the model [m]", "model_error_m"),
                 Column("why", "reason"),
                 Column("faces violated at the start", "violated_faces"),
+                Column("found in", "restriction"),
                 Column("at rest after [s]", "end_s"),
             ),
         ),

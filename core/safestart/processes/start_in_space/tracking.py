@@ -34,6 +34,10 @@ def flights(inputs: SpaceInputs, question: SpaceQuestion) -> Flights:
     """
     if len(inputs.starts) > flown.MOST_STARTS:
         raise invalid("starts", f"at most {flown.MOST_STARTS} with method tracking", len(inputs.starts))
+    if question.demands:
+        raise invalid(
+            question.demands.names[0], "no such demand with method tracking", question.demands.names
+        )
     asks = {
         "question": question.plain and inputs.question == "stay",
         "hold_m": inputs.hold_m is None,

@@ -29,6 +29,8 @@ def check(document: Any) -> Verified:
         pieces = 0
         if stated.verdict == "GO":
             pieces = _fly(stated, course, motion)
+        elif stated.violated:
+            _is_outside(stated, course)
         else:
             Refutation(stated, course, motion).check()
     return Verified(stated.verdict, float(document["margin_m"]), pieces, lines(stated))
@@ -44,9 +46,10 @@ def _fly(stated: SpaceStated, course: Course, motion: Motion) -> int:
     columns += [[arb(stated.half[i]) if i == j else arb(0) for j in range(6)] for i in wide]
     still, budget = [[arb(0)] * 3] * len(wide), fresh_budget()
     for k, entry in enumerate(stated.history):
-        stretches = motion.over(k, columns, [_push(stated, course, k, entry), *still])
+        push = _push(stated, course, k, entry)
+        stretches = motion.over(k, columns, [push, *still])
         for piece in course.pieces[k]:
-            _keeps(stated, piece, stretches, stated.dt * k, budget)
+            _keeps(stated, piece, stretches, stated.dt * k, budget, push)
         if stated.limits.most is not None:
             _holds_back(stated, stretches, stated.dt * k, budget)
         columns = [[p(arb(1)) for p in each] for each in stretches[-1].flown]
@@ -83,9 +86,14 @@ def _push(stated: SpaceStated, course: Course, k: int, entry: list[fmpq]) -> lis
 
 
 def _keeps(
-    stated: SpaceStated, piece: Piece, stretches: list[Stretch], begin: fmpq, budget: list[int]
+    stated: SpaceStated,
+    piece: Piece,
+    stretches: list[Stretch],
+    begin: fmpq,
+    budget: list[int],
+    push: list[arb],
 ) -> None:
-    """Every distance is at least the claim over the piece."""
+    """Every distance is at least the claim over the piece, and every demand is kept under the thrust ``push``."""
     claim = arb(stated.claim)
     for stretch in stretches:
         first = max(piece.begin, begin + stretch.begin)
@@ -106,6 +114,11 @@ def _keeps(
             ]
             room = arb(face.offset) / length - along[0] - claim
             require_positive(room, f"distance to {name}", first, last - first, budget, along[1:])
+        if stated.demands:
+            held = [arb_poly([e]) for e in push]
+            pushes = {"lvlh": held, "body": _in_body(piece, held, first, last)}
+            span = (first, last - first)
+            stated.demands.keep({"lvlh": flown[0], "body": body[0]}, pushes, claim, span, budget)
 
 
 def _in_body(piece: Piece, position: Series, first: fmpq, last: fmpq) -> Series:
@@ -117,6 +130,14 @@ def _in_body(piece: Piece, position: Series, first: fmpq, last: fmpq) -> Series:
             row = [between(p, begin, width) for p in row]
         out.append(sum((c * p for c, p in zip(row, position, strict=True)), arb_poly([0])))
     return out
+
+
+def _is_outside(stated: SpaceStated, course: Course) -> None:
+    """The start does not keep the demand that the document names."""
+    lvlh, turn = [arb(e) for e in stated.start[:3]], course.at(fmpq(0))
+    body = [sum((turn[i, j] * lvlh[j] for j in range(3)), arb(0)) for i in range(3)]
+    at = {"lvlh": [arb_poly([e]) for e in lvlh], "body": [arb_poly([e]) for e in body]}
+    stated.demands.require_violated(stated.violated, at, arb(stated.claim))
 
 
 def _holds_back(stated: SpaceStated, stretches: list[Stretch], begin: fmpq, budget: list[int]) -> None:

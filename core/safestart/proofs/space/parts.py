@@ -53,7 +53,8 @@ class Thrust:
         return len(self.directions) if self.kind == "thrusters" else 3
 
 
-def _frame(document: Any, name: str) -> str:
+def frame_of(document: Any, name: str) -> str:
+    """The frame of a part; raises :class:`ProofRejected`."""
     frame = part(document, "frame", str)
     if frame not in _FRAMES:
         raise ProofRejected(f"{name}: required the frame lvlh or body, received {shown(frame)}")
@@ -74,7 +75,7 @@ def faces_of(rows: list[Any]) -> dict[str, Face]:
             )
         if sum((e * e for e in normal), fmpq(0)) == 0:
             raise ProofRejected(f"faces: required a normal that is not 0 for {shown(name)}")
-        out[name] = Face(normal, number(row, "offset_m", -1e12, 1e12), _frame(row, "faces"))
+        out[name] = Face(normal, number(row, "offset_m", -1e12, 1e12), frame_of(row, "faces"))
     return out
 
 
@@ -100,7 +101,7 @@ def thrust_of(said: Any) -> Thrust:
     if len(given) != size:
         raise ProofRejected(f"a_max_m_s2: required {size} numbers, received {len(given)}")
     bounds = [exact(value, "a_max_m_s2", 0.0, 1e3) for value in given]
-    return Thrust(kind, bounds, directions, "lvlh" if kind == "ball" else _frame(said, "thrust"))
+    return Thrust(kind, bounds, directions, "lvlh" if kind == "ball" else frame_of(said, "thrust"))
 
 
 def attitude_of(said: Any, horizon: fmpq) -> Attitude:

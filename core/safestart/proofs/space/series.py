@@ -86,6 +86,36 @@ def require_positive(
             work += [(centre - half / 2, half / 2), (centre + half / 2, half / 2)]
 
 
+def require_any(
+    alternatives: Sequence[Series], name: str, begin: fmpq, length: fmpq, budget: list[int]
+) -> None:
+    """Prove that at every x in [0, 1] all series of one of the ``alternatives`` are >= 0.
+
+    Pieces are halved until one alternative holds on all of a piece. Raises :class:`ProofRejected` where none does, or
+    none is shown to in time.
+    """
+    work = [(fmpq(1, 2), fmpq(1, 2))]
+    while work:
+        centre, half = work.pop()
+        budget[0] -= 1
+        here = [[between(p, arb(centre), arb(half)) for p in each] for each in alternatives]
+        if any(all(_positive(p) for p in each) for each in here):
+            continue
+        lost = all(any(p(arb(0)) < 0 for p in each) for each in here)
+        if lost or budget[0] < 0:
+            at = begin + length * centre
+            short = "" if lost else f", not settled after {_MOST_PIECES} pieces"
+            raise ProofRejected(f"{name} >= margin_m at t = {int(at.p) / int(at.q):.9g} s: it is not{short}")
+        work += [(centre - half / 2, half / 2), (centre + half / 2, half / 2)]
+
+
+def _positive(series: arb_poly) -> bool:
+    """Whether the series is >= 0 for x in [-1, 1]: the first two terms bound it, and the sizes of the others."""
+    a0, a1, *others = [*series.coeffs(), arb(0), arb(0)]
+    level = a0 - sum((c.abs_upper() for c in others), arb(0))
+    return bool(level - a1 >= 0 and level + a1 >= 0)
+
+
 def fresh_budget() -> list[int]:
     """The number of pieces that one document may take."""
     return [_MOST_PIECES]

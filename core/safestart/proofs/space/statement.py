@@ -7,6 +7,7 @@ from typing import Any
 
 from flint import fmpq
 
+from safestart.proofs.space.demands import KEYS, Demands, demands_of
 from safestart.proofs.space.parts import Attitude, Face, Thrust, attitude_of, faces_of, thrust_of
 from safestart.proofs.statement import DOCUMENT, check_seal
 from safestart.proofs.strict import LARGEST, ProofRejected, fields, number, part, shown, vector
@@ -39,11 +40,13 @@ class SpaceStated:
     faces: dict[str, Face]
     thrust: Thrust
     limits: Limits
+    demands: Demands
     start: list[fmpq]
     half: list[fmpq]
     claim: fmpq
     history: list[list[fmpq]]
     parts: list[tuple[int, int, list[Weight]]]
+    violated: str
 
 
 def read(document: Any) -> SpaceStated:
@@ -60,9 +63,11 @@ def read(document: Any) -> SpaceStated:
     proved_by = "parts" if free else "multipliers"
     if verdict == "GO":
         proved_by = "thrust_m_s2" if thrust.kind == "ball" else "throttle"
+    elif "violated" in document:
+        proved_by = "violated"
     fields(document, "document", (*DOCUMENT, proved_by))
     ends = ("earliest_step", "goal") if free else ()
-    fields(question, f"question ({kind})", (*_QUESTION, *ends), ("speed_limit",))
+    fields(question, f"question ({kind})", (*_QUESTION, *ends), ("speed_limit", *KEYS))
     steps, dt = part(question, "steps", int), number(question, "dt_s", 1e-6, 3600.0)
     if not 1 <= steps <= _MOST_STEPS:
         raise ProofRejected(f"steps: required 1..{_MOST_STEPS}, received {steps}")
@@ -74,6 +79,7 @@ def read(document: Any) -> SpaceStated:
     faces, limits = faces_of(part(question, "faces", list)), limits_of(question, 3, free)
     if any(name in faces for name in limits.norms):
         raise ProofRejected(f"faces: required names other than {', '.join(limits.norms)}")
+    demands = demands_of(question, {*faces, *limits.norms})
     start = document["start"]
     known = not (isinstance(start, dict) and _BOX[0] in start)
     fields(start, "start", ("frame", "position_m", "velocity_m_s", *(() if known else _BOX)))
@@ -87,9 +93,12 @@ def read(document: Any) -> SpaceStated:
     half = [fmpq(0)] * 6
     if not known:
         half = [e for key in _BOX for e in vector(start[key], key, 3)]
-        if any(e < 0 for e in half) or free or limits.most is not None:
-            raise ProofRejected(f"{_BOX[0]}: required half-widths >= 0, and stay without a speed limit")
-    evidence = part(document, proved_by, list)
+        if any(e < 0 for e in half) or free or limits.most is not None or demands:
+            raise ProofRejected(
+                f"{_BOX[0]}: required half-widths >= 0, and stay without a speed limit or demands"
+            )
+    violated = str(part(document, "violated", str)) if proved_by == "violated" else ""
+    evidence = [] if violated else part(document, proved_by, list)
     rows = evidence if free else [{"first_step": steps, "last_step": steps, "multipliers": evidence}]
     return SpaceStated(
         verdict=verdict,
@@ -103,11 +112,15 @@ def read(document: Any) -> SpaceStated:
         faces=faces,
         thrust=thrust,
         limits=limits,
+        demands=demands,
         start=vector(start["position_m"], "position_m", 3) + vector(start["velocity_m_s"], "velocity_m_s", 3),
         half=half,
         claim=claim,
         history=_history(evidence, earliest, steps, thrust) if verdict == "GO" else [],
-        parts=[] if verdict == "GO" else parts_of(rows, (earliest, steps), faces, limits, dt * steps, 3),
+        parts=[]
+        if verdict == "GO" or violated
+        else parts_of(rows, (earliest, steps), faces, limits, dt * steps, 3),
+        violated=violated,
     )
 
 

@@ -6,6 +6,7 @@ import math
 
 from flint import fmpq
 
+from safestart.proofs.space.demands import View
 from safestart.proofs.space.parts import Attitude
 from safestart.proofs.space.statement import SpaceStated
 from safestart.proofs.wording import margin_parts
@@ -23,6 +24,7 @@ def lines(stated: SpaceStated) -> tuple[str, ...]:
             f"face {name!a}: {_vector(face.normal)} . p <= {_number(face.offset)} m for p in {_AXES[face.frame]}"
             for name, face in stated.faces.items()
         ),
+        *_demands(stated),
         *_attitude(stated.attitude),
         f"orbit: mean motion {_number(stated.mean_motion)} rad/s, eccentricity {_number(stated.eccentricity)}, true "
         f"anomaly {_number(stated.true_anomaly)} rad ({_degrees(stated.true_anomaly)} deg) at t = 0",
@@ -41,7 +43,8 @@ def _found(stated: SpaceStated) -> str:
             if go
             else "from no start of the box a thrust history keeps more than"
         )
-    return f"{found} the margin, the least of {', '.join(margin_parts(stated.limits))}"
+    parts = [*margin_parts(stated.limits), *("distance to " + repr(name) for name in stated.demands.regions)]
+    return f"{found} the margin, the least of {', '.join(parts)}"
 
 
 def _asked(stated: SpaceStated) -> list[str]:
@@ -58,6 +61,38 @@ def _asked(stated: SpaceStated) -> list[str]:
         ]
     if limits.most is not None:
         out.append(f"speed: at most {_number(limits.most)} m/s in LVLH at all times")
+    return out
+
+
+def _demands(stated: SpaceStated) -> list[str]:
+    """The demands as they are; their margins count with the others, the plume rule has none."""
+    out = []
+    for name, region in stated.demands.regions.items():
+        axes = _AXES[region.frame]
+        if isinstance(region, View):
+            out.append(
+                f"{name}: {_vector(region.point)} m is seen within {_number(region.angle)} rad "
+                f"({_degrees(region.angle)} deg) of the direction {_vector(region.axis)}, both in {axes}"
+            )
+        elif len(region.size) == 1:
+            out.append(
+                f"keep-out {name!a}: outside the sphere of {_number(region.size[0])} m about "
+                f"{_vector(region.centre)} m in {axes}"
+            )
+        else:
+            out.append(
+                f"keep-out {name!a}: outside the box of half-widths {_vector(region.size)} m about "
+                f"{_vector(region.centre)} m along {axes}"
+            )
+    plume = stated.demands.plume
+    if plume is not None:
+        out.append(
+            f"plume: within {_number(plume.reach)} m of {_vector(plume.point)} m in {_AXES[plume.frame]} no exhaust "
+            f"(opposite to the thrust) within {_number(plume.angle)} rad ({_degrees(plume.angle)} deg) of the "
+            "direction to that point"
+        )
+    if stated.violated:
+        out.append(f"the start itself does not keep {stated.violated!a}")
     return out
 
 
