@@ -16,7 +16,7 @@ from safestart.collision_avoidance.encounters.adversary import ADVERSARIES, adve
 from safestart.collision_avoidance.encounters.clock import Clock
 from safestart.collision_avoidance.encounters.encounter import fly
 from safestart.collision_avoidance.encounters.encounter import lost as breached
-from safestart.collision_avoidance.encounters.observation import Sight
+from safestart.collision_avoidance.encounters.observation import Observer
 from safestart.collision_avoidance.encounters.pilots import PILOTS, pilot
 from safestart.collision_avoidance.encounters.slot import Slot
 from safestart.collision_avoidance.encounters.starts import certified_unsafe, near_boundary
@@ -36,10 +36,10 @@ SETTINGS = TubeSettings("very_high", (31, 15), (450.0, 6.0), kept=7)
 def study(count: int) -> int:
     """Print one line per pilot, adversary and set of starts."""
     tube = solve_tube(GAME, HORIZON_S, SETTINGS)
-    sight, slot, error = Sight(GAME, tube), Slot(), tube.grid_error_m
+    observer, slot, error = Observer(GAME, tube), Slot(), tube.grid_error_m
     print(f"grid error {error:.2f} m, keep-out {GAME.keep_out_m:g} m, {count} starts each", flush=True)
-    outside = near_boundary(sight, count, BAND_M, SEED, Context())
-    inside = certified_unsafe(sight, count, SEED + 1, Context())
+    outside = near_boundary(observer, count, BAND_M, SEED, Context())
+    inside = certified_unsafe(observer, count, SEED + 1, Context())
     failed = 0
     for kind, starts, others in (("outside", outside, ADVERSARIES), ("inside", inside, ("worst", "mirror"))):
         for name in (*PILOTS, "supervisor"):
@@ -49,11 +49,11 @@ def study(count: int) -> int:
                 supervised = name == "supervisor"
                 clock = Clock(1.0, HORIZON_S, supervised)
                 flier = (
-                    Supervisor(sight, slot, Guards(error, 10.0), clock)
+                    Supervisor(observer, slot, Guards(error, 10.0), clock)
                     if supervised
-                    else pilot(name, sight, clock, slot)
+                    else pilot(name, observer, clock, slot)
                 )
-                flights = fly(sight, starts, flier, opponent, clock)
+                flights = fly(observer, starts, flier, opponent, clock)
                 lost = int(breached(flights, GAME.keep_out_m).sum())
                 beyond = int(breached(flights, GAME.keep_out_m - error).sum())
                 low, high = wilson(lost, count) or (0.0, 1.0)

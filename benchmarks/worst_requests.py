@@ -1,7 +1,9 @@
 """The largest legal request of every operation, one at a time and sixteen at once: memory, and health meanwhile.
 
-``python -m benchmarks.worst_requests`` starts a service of its own. Memory is the proportional set size of the service
-and its helper processes, sampled every 20 ms; health is the time of ``GET /healthz``, asked every 20 ms.
+``python -m benchmarks.worst_requests [CGROUP]`` starts a service of its own, in the memory control group CGROUP where
+one is given (a folder with ``cgroup.procs``): whatever takes more than the group allows is killed.
+Memory is the proportional set size of the service and its helper processes, sampled every 20 ms; health is the time of
+``GET /healthz``, asked every 20 ms.
 """
 
 from __future__ import annotations
@@ -15,6 +17,7 @@ import tempfile
 import time
 from collections.abc import Awaitable, Callable, Iterator
 from contextlib import contextmanager, suppress
+from pathlib import Path
 from typing import Any
 
 import httpx
@@ -67,11 +70,13 @@ def operations() -> dict[str, tuple[str, bytes, dict[str, str]]]:
 
 
 @contextmanager
-def service() -> Iterator[tuple[str, psutil.Process]]:
-    """A service of its own."""
+def service(group: Path | None = None) -> Iterator[tuple[str, psutil.Process]]:
+    """A service of its own, in this control group."""
     with tempfile.TemporaryDirectory() as folder:
         port = free_port()
         command = [sys.executable, "-m", "safestart", "serve", "--port", str(port)]
+        if group is not None:
+            command = ["sh", "-c", f'echo $$ > "$0" && exec {" ".join(command)}', str(group / "cgroup.procs")]
         url = f"sqlite:///{folder}/bench.sqlite3"
         process = subprocess.Popen(
             command, env=os.environ | {"SAFESTART_DATABASE_URL": url}, stdout=subprocess.DEVNULL
@@ -148,11 +153,13 @@ async def posted(address: str, asked: tuple[str, bytes, dict[str, str]], number:
     return {status: found.count(status) for status in sorted(set(found))}
 
 
-def measure(report: Callable[[str, dict[str, Any]], None] = lambda _name, _found: None) -> dict[str, Any]:
+def measure(
+    report: Callable[[str, dict[str, Any]], None] = lambda _name, _found: None, group: Path | None = None
+) -> dict[str, Any]:
     """Every operation alone, then sixteen of each at once; a fresh service for each of the two."""
     found: dict[str, Any] = {}
     for number in (1, TOGETHER):
-        with service() as (address, process):
+        with service(group) as (address, process):
             asyncio.run(watched(address, process, asyncio.sleep(2.0)))
             for name, asked in operations().items():
                 key = f"{number} x {name}"
@@ -162,4 +169,7 @@ def measure(report: Callable[[str, dict[str, Any]], None] = lambda _name, _found
 
 
 if __name__ == "__main__":
-    measure(lambda name, found: print(f"{name:40} {found}", flush=True))
+    measure(
+        lambda name, found: print(f"{name:40} {found}", flush=True),
+        Path(sys.argv[1]) if sys.argv[1:] else None,
+    )

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 MOST_LIGHT = MOST_SUBMITTED = 400
 """Limits on light answers and on submissions that are under way or wait for it."""
+MOST_PACKED = 20
 LIGHT_THREADS, STORE_THREADS = 2, 8
 
 
@@ -46,6 +47,7 @@ class Services:
         self.access = Access(settings, self.keyring)
         self.light = Threads("answers are being computed", LIGHT_THREADS, MOST_LIGHT)
         self.submitting = Threads("submissions are under way", STORE_THREADS, MOST_SUBMITTED)
+        self.packing = Threads("bundles are being packed", 1, MOST_PACKED)  # one at a time: it is in memory
         self.helpers = Helpers(settings)
         self.following = Following(settings.max_followers, self.access)
         self.metrics = Metrics(self.jobs.vitals)
@@ -54,6 +56,7 @@ class Services:
         """Close all that was opened."""
         self.light.close()
         self.submitting.close()
+        self.packing.close()
         self.helpers.close()
         self.database.close()
 

@@ -162,14 +162,14 @@ def test_a_list_belongs_to_its_filter(visit: Visit, jobs: dict[str, str]) -> Non
     """The answer to the filter before comes last, and is dropped."""
     visit.page.add_init_script(path=FAULTS)
     page = visit.go("/dashboard/jobs")
-    expect(page.locator(".jobs li").first).to_be_visible()
+    expect(page.locator(".jobs tbody tr").first).to_be_visible()
     page.evaluate("Object.assign(window.faults, { on: true, delay: 1500, deaf: 1, seed: 3 })")
     for name in ("sweep", "atlas", "coverage", "benchmark", "flight"):
         page.select_option("#process", name)
         page.wait_for_timeout(120)
-    expect(page.locator(".jobs li a")).to_have_text(["flight"])
+    expect(page.locator(".jobs .run > a")).to_have_text(["flight"])
     page.wait_for_timeout(2500)
-    expect(page.locator(".jobs li a")).to_have_text(["flight"])
+    expect(page.locator(".jobs .run > a")).to_have_text(["flight"])
 
 
 @pytest.mark.parametrize("name", ["go-no-go", "hop-time", "passive-safety"])

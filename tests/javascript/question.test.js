@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import {
-  FIELDS, FIRST, certificate, flight, flightWords, flownWords, fromAddress, isAbout, mapLacks, mapWords, paper, proved, proven, read, region, start,
+  FIELDS, FIRST, certificate, flight, flightWords, flownWords, fromAddress, isAbout, mapLacks, mapWords, memberWords, paper, proved, proven, read, region, start,
   textsOf, toAddress, verdictWords,
 } from "../../service/safestart_service/static/logic/question.js";
 
@@ -115,4 +115,14 @@ test("stored sets are about an operating point and no other", () => {
   assert.equal(isAbout(job, values({ omega_t_deg_s: "2" })), true);
   assert.equal(isAbout(job, values({ omega_t_deg_s: "2.0", y_max_m: "80" })), true);
   for (const [name, text] of [["omega_t_deg_s", "3"], ["rest", "body"], ["c_x", "1"], ["mean_motion_rad_s", "0"]]) assert.equal(isAbout(job, values({ omega_t_deg_s: "2", [name]: text })), false, name);
+});
+
+test("members of a family: which one is the nominal, and what the others are", () => {
+  const one = (more) => ({ verdict: "GO", omega_t_deg_s: 3, a_max_m_s2: 0.1, position_m: [5, 40], ...more });
+  assert.equal(memberWords(one({ omega_t_deg_s: 3 + 1e-12 }), values(), AT), "GO at nominal");
+  assert.equal(memberWords(one({ verdict: "NO_GO", omega_t_deg_s: 3.25 }), values(), AT), "NO-GO at 3.25 deg/s, 0.1 m/s², (5, 40) m");
+  const moving = values({ velocity_half_width_m_s: "0.1" });
+  assert.equal(memberWords(one({ velocity_m_s: [0, 0] }), moving, AT), "GO at nominal");
+  assert.match(memberWords(one({ velocity_m_s: [0.1, 0] }), moving, AT), /GO at 3 deg.*\(0\.1, 0\) m\/s$/);
+  assert.equal(memberWords(one({ position_m: [5.5, 40] }), values(), AT), "GO at 3 deg/s, 0.1 m/s², (5.5, 40) m");
 });

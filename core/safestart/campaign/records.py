@@ -22,7 +22,7 @@ _TYPES = {
 
 
 def schema(columns: Iterable[Column]) -> pa.Schema:
-    """Of the recorded columns."""
+    """The Arrow schema of the recorded columns."""
     return pa.schema([pa.field(column.name, _TYPES[column.kind]) for column in columns if column.recorded])
 
 

@@ -28,7 +28,7 @@ class Spread:
         return [len(values), mean, math.fsum((values - mean) ** 2), float(values.min()), float(values.max())]
 
     def add(self, state: list[Any], more: list[Any]) -> list[Any]:
-        """Of two samples together (Chan, Golub and LeVeque 1983)."""
+        """The spread of two samples together (Chan, Golub and LeVeque 1983)."""
         if not more[0]:
             return state
         count = state[0] + more[0]

@@ -27,7 +27,7 @@ def register(app: typer.Typer) -> None:
         # Imported here, so that other commands do not load ball arithmetic.
         from safestart.proofs.checker import check
         from safestart.proofs.strict import ProofRejected
-        from safestart.proofs.wording import asked
+        from safestart.proofs.wording import question_shown
 
         document = _load(proof)
         try:
@@ -45,7 +45,7 @@ def register(app: typer.Typer) -> None:
                     "verdict": verified.verdict,
                     "margin_m": verified.margin_m,
                     "statement": verified.statement,
-                    **asked(document),
+                    **question_shown(document),
                 }
             )
             return

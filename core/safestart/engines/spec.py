@@ -19,7 +19,8 @@ class EngineSpec:
     style of its outline; an engine without one is drawn filled. ``engine`` names the class as ``module:class``,
     imported only where it runs. ``options`` is the wire model of its options: the field of the benchmark's inputs with
     the engine's name. ``default``: a benchmark that names no engines runs it. ``share`` is its part of a benchmark's
-    time, relative to 1 for a fast engine.
+    time, relative to 1 for a fast engine. ``in_space`` names its form for a plane of starts in space, ``module:class``;
+    without one ``not_in_space`` says why.
     """
 
     name: str
@@ -32,6 +33,8 @@ class EngineSpec:
     share: float = 1.0
     default: bool = True
     screen_colour: str | None = None
+    in_space: str = ""
+    not_in_space: str = "planar"
 
     def document(self) -> dict[str, str]:
         """The facts that pages show, JSON-able."""

@@ -12,7 +12,7 @@ from safestart.exact.decide import decide
 from safestart.exact.search import Search
 from safestart.families.answer import TOLERANCE, Example, ForAll, History, Witness
 from safestart.families.between import half_angle
-from safestart.families.members import Family, signs
+from safestart.families.members import Family, corner_signs
 from safestart.families.worst_member import (
     MOST_NODES,
     MOST_VALUES,
@@ -32,7 +32,7 @@ _MOST_EXAMPLES = 8
 def one_history(family: Family, state: Floats, middle: Answer, witness: Witness, tolerance: float) -> ForAll:
     """GO if such histories are found, else UNDECIDED; ``middle`` is the answer of the middle member."""
     half = family.half
-    corners = signs(half) if witness == "per_corner" else np.zeros((1, len(half)))
+    corners = corner_signs(half) if witness == "per_corner" else np.zeros((1, len(half)))
     known = family.at_known_start() if witness == "per_corner" else family
     hostile, short = _at_nodes(known, [state + corner * half for corner in corners])
     if hostile is None:
@@ -60,7 +60,7 @@ def _at_nodes(family: Family, starts: list[Floats]) -> tuple[Hostile | None, str
     parts = max(1, math.ceil(turn / _TURN))
     motion_parts = max(1, math.ceil(width * math.sqrt(bend / (8.0 * TOLERANCE))))
     count = (parts + 1) * (motion_parts + 1)
-    values = count * len(signs(family.half)) * samples_of(family)
+    values = count * len(corner_signs(family.half)) * samples_of(family)
     if count > MOST_NODES or values > MOST_VALUES:
         few = "tumble rates" if parts > motion_parts else "mean motions"
         return None, f"the {few} differ too much for so long a horizon: a proof would take {count} nodes"

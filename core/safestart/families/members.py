@@ -92,7 +92,7 @@ class Family:
         return replace(self, start=())
 
 
-def signs(half: Floats) -> Floats:
+def corner_signs(half: Floats) -> Floats:
     """Corners of a box as signs (P, 2 d): +-1 along the axes that have a width, 0 along the others."""
     wide = np.nonzero(half > 0.0)[0]
     out = np.zeros((2 ** len(wide), len(half)))

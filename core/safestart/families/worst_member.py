@@ -18,7 +18,7 @@ from safestart.constraints.cubic import dips
 from safestart.exact.norm_rows import Blocks, blocks
 from safestart.exact.watch import Cuts, Ints, Minima, Watch, watch_of
 from safestart.families.between import chord_gap, half_angle, nodes, reach, turned
-from safestart.families.members import Family, signs
+from safestart.families.members import Family, corner_signs
 from safestart.model.scenario import Floats
 
 MOST_NODES, MOST_VALUES = 128, 4_000_000
@@ -136,7 +136,7 @@ def _box(node: Watch, half: Floats) -> _Box:
     along = [node.along_normals(column) for column in columns]
     shape = (len(wide), *node.times.shape, len(node.names))
     return _Box(
-        signs(half)[:, wide],
+        corner_signs(half)[:, wide],
         np.array([value for value, _ in along]).reshape(shape),
         np.array([slope for _, slope in along]).reshape(shape),
         sum(float(np.linalg.norm(column[..., :d], axis=-1).max()) for column in columns),

@@ -14,7 +14,7 @@ from safestart.missed_burn.sets import frame
 from safestart.model.scenario import Floats
 
 _SIGNS = ((1, 1, 1, 1), (-1, -1, -1, -1), (1, -1, -1, 1), (-1, 1, 1, -1))
-"""Of radial and along-track position and velocity."""
+"""Signs of a box's corners: of radial and along-track position and velocity."""
 _SHARES = np.linspace(0.0, 1.0, 65)
 _PER_ORBIT = 400
 

@@ -32,7 +32,7 @@ def matlab_of(columns: Mapping[str, Any]) -> bytes:
 
 
 def arrays_in(data: bytes) -> dict[str, list[Any]]:
-    """Numbers or texts of each array, flat; raises ``InvalidInput`` for what is no MATLAB 5 file."""
+    """Numbers or texts of each array, flat; raises ``InvalidInput`` for anything but a MATLAB 5 file."""
     from scipy.io import loadmat
 
     try:

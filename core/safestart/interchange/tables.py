@@ -41,7 +41,7 @@ def holds_turns(data: bytes, name: str) -> bool:
 
 
 def ephemeris_of(data: bytes, name: str) -> Ephemeris:
-    """States from a table; raises ``InvalidInput`` for missing or unknown columns and what is no number."""
+    """States from a table; raises ``InvalidInput`` for missing or unknown columns and values that are not numbers."""
     columns = _columns(data, name)
     head = _head(columns, _OF_STATES, STATE)
     states = _numbers(columns, STATE)

@@ -22,7 +22,7 @@ def document_of(proof: Proof) -> dict[str, Any]:
         "schema": SCHEMA,
         "verdict": "PROVED",
         "least_distance_m": proof.least,
-        "question": asked(proof.question),
+        "question": question_document(proof.question),
         "cases": [
             {
                 "kind": finding.case.kind,
@@ -39,7 +39,7 @@ def document_of(proof: Proof) -> dict[str, Any]:
     return document
 
 
-def asked(question: Question) -> dict[str, Any]:
+def question_document(question: Question) -> dict[str, Any]:
     """The question in the document's form."""
     plan, errors, failures = question.plan, question.errors, question.failures
     return {

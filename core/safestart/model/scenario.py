@@ -30,7 +30,7 @@ MAX_CELLS = 1_000_000
 
 
 class Rest(StrEnum):
-    """The frame in which a start is at rest (paper 000 leaves it open; the two sets differ strongly)."""
+    """The frame in which a start is at rest (Iskender et al. leave it open; the two sets differ strongly)."""
 
     LVLH = "lvlh"
     BODY = "body"

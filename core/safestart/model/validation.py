@@ -57,7 +57,7 @@ def required(report: Any) -> str:
 
 
 def received(report: Any) -> str:
-    """What came, shortened."""
+    """The received value, shortened."""
     if report["type"] == "missing":
         return "nothing"
     value = report.get("input")

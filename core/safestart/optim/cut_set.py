@@ -36,7 +36,7 @@ class CutSet:
         return out
 
     def support(self, pulls: Floats) -> Floats:
-        """That of the whole set, which is not smaller."""
+        """The support of the whole set, which is not smaller."""
         return self.whole.support(pulls)
 
     def bound(self, constant: Floats, rows: Floats, weights: Floats, scale: float, channels: int) -> float:

@@ -55,6 +55,12 @@ def cost(inputs: OneStart) -> float:
     return (SPACE if isinstance(inputs, SpaceInputs) else SPEC).cost(inputs)
 
 
+def at_once(inputs: OneStart, context: Context) -> dict[str, Any] | None:
+    """The document of a question that takes microseconds, else None."""
+    found = None if isinstance(inputs, SpaceInputs) else run.at_once(inputs, context)
+    return None if found is None else found.document_of_one()
+
+
 def document_of_one(inputs: OneStart, context: Context) -> dict[str, Any]:
     """``SpaceAnswer`` or ``GoNoGoAnswer``."""
     if isinstance(inputs, SpaceInputs):

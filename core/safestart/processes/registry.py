@@ -19,6 +19,7 @@ _SPECS = {
     "atlas": "safestart.processes.atlas.spec",
     "coverage": "safestart.processes.coverage.spec",
     "benchmark": "safestart.processes.benchmark.spec",
+    "plane-benchmark": "safestart.processes.plane_benchmark.spec",
     "passive-safety": "safestart.processes.passive_safety.spec",
     "safe-abort-map": "safestart.processes.safe_abort_map.spec",
     "collision-avoidance": "safestart.processes.collision_avoidance.spec",

@@ -65,7 +65,7 @@ Seed = Annotated[int, Field(ge=0, le=2**63 - 1, description="Seed of every rando
 
 
 class CorridorInput(WireModel):
-    """Line-of-sight corridor (paper 000, eq. 4); the defaults are the paper's."""
+    """Line-of-sight corridor (Iskender et al., eq. 4); the defaults are the paper's."""
 
     c_x: float = Field(1.5, gt=0, le=100, description="Slope of the +-x sides.")
     c_z: float = Field(1.5, gt=0, le=100, description="Slope of the +-z sides.")

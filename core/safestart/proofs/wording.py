@@ -95,7 +95,7 @@ def lines_disturbed(stated: StatedDisturbed) -> tuple[str, ...]:
     )
 
 
-def asked(document: Mapping[str, Any]) -> dict[str, Any]:
+def question_shown(document: Mapping[str, Any]) -> dict[str, Any]:
     """Question, start and bounds of a checked document, without the parts that a planar question does not use."""
     question = document["question"]
     if "corridor" not in question:

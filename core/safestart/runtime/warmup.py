@@ -20,7 +20,7 @@ from safestart.levelset.warm import warm as compile_levelset
 from safestart.model.scenario import Grid, Scenario
 from safestart.passive_safety.warm import warm as passive_safety
 from safestart.runtime.progress import Context
-from safestart.simulation.planar import watched
+from safestart.simulation.planar import watched_flight
 from safestart.simulation.plant import plant_of
 
 _PROBLEM = Problem(Scenario.of(3.0, 0.1), Grid(3, 3, 60.0), horizon=4.0, dt=2.0)
@@ -30,7 +30,7 @@ def _flights() -> None:
     engine("monte_carlo").solve(_PROBLEM, Context())
     start = np.array([0.0, 30.0, 0.0, 0.0, 0.0, 0.0])
     scenario = _PROBLEM.scenario
-    watched(plant_of(scenario), [corridor_of(scenario.corridor)], start, _PROBLEM.dt).fly(np.zeros(3))
+    watched_flight(plant_of(scenario), [corridor_of(scenario.corridor)], start, _PROBLEM.dt).fly(np.zeros(3))
 
 
 def _level_sets() -> None:

@@ -12,7 +12,7 @@ from safestart.control.controller import Command, Controller
 from safestart.errors import invalid
 from safestart.model.scenario import Floats
 from safestart.simulation.noise import EXACT, Errors
-from safestart.simulation.planar import watched
+from safestart.simulation.planar import watched_flight
 from safestart.simulation.plant import Plant
 from safestart.simulation.record import Path, Record
 from safestart.simulation.watch import Watched
@@ -33,7 +33,7 @@ def fly(
     """
     if np.shape(start) != (6,):
         raise invalid("start", "an LVLH state of shape (6,)", np.shape(start))
-    return fly_watched(watched(plant, constraints, start, dt), controller, steps, dt, errors)
+    return fly_watched(watched_flight(plant, constraints, start, dt), controller, steps, dt, errors)
 
 
 def fly_watched(flight: Watched, controller: Controller, steps: int, dt: float, errors: Errors) -> Record:

@@ -67,7 +67,7 @@ class PlanarFlight:
         return np.ascontiguousarray(turned.swapaxes(1, 2))
 
 
-def watched(plant: Plant, constraints: Sequence[Constraint], start: Floats, dt: float) -> Watched:
+def watched_flight(plant: Plant, constraints: Sequence[Constraint], start: Floats, dt: float) -> Watched:
     """The flight from ``start`` (6,), compiled if its parts allow it."""
     motion, spin = plant.motion, plant.attitude
     if len(constraints) == 1 and isinstance(motion, Cwh) and isinstance(spin, Spin) and spin.planar:

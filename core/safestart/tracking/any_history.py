@@ -118,7 +118,10 @@ class AnyHistory:
         return ends[0], ends[1]
 
     def _solve(self, column: Floats, bound: Floats, sign: float) -> tuple[Any, Any]:
-        """Minimise sign times the last variable, whose column is given."""
+        """Minimise sign times the last variable, whose column is given.
+
+        Not an ``optim.cone_program``, whose blocks are dense: here thousands of starts share one banded matrix.
+        """
         import clarabel
 
         kinds: list[Any] = []

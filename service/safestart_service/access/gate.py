@@ -35,6 +35,7 @@ INSTANT = frozenset({"/go-no-go", "/go-no-go/proof", "/certificates"})
 MOST_FAILURES_PER_S = 5.0
 _LONGEST_KEY = 512
 _READING = ("GET", "HEAD", "OPTIONS")
+_COMPUTED = ("/execution", "/estimate")
 REMEDY = "a key made with `safestart keys create`, as Authorization: Bearer KEY or X-API-Key: KEY"
 
 
@@ -49,7 +50,7 @@ def needed_role(method: str, path: str) -> Role | None:
         return None
     if path == "/admin" or path.startswith("/admin/"):
         return Role.ADMIN
-    return Role.READ if method in _READING or path.endswith("/execution") else Role.SUBMIT
+    return Role.READ if method in _READING or path.endswith(_COMPUTED) else Role.SUBMIT
 
 
 class Access:

@@ -107,7 +107,7 @@ class Proxies:
         return bool(root) and root.split("/")[1] in self._own
 
     def _name_client(self, scope: Scope, chain: str) -> None:
-        """The last address that is no trusted proxy, else the first; an unreadable one names nobody.
+        """The last address that is not a trusted proxy, else the first; an unreadable one names nobody.
 
         Nobody from elsewhere becomes local by what a header says.
         """

@@ -34,6 +34,8 @@ Answer = TypeVar("Answer")
 MOST_HEAVY = 100
 """Heavy answers that are computed or wait for it."""
 GRACE_S = 0.5
+START_S = 60.0
+"""An answer waits so long for a helper process that starts, beside its own time."""
 
 log = logging.getLogger("safestart.service")
 
@@ -62,27 +64,44 @@ class Helpers:
         if cost_s > limit_s:
             raise too_long(limit_s, cost_s)
         with self.callers.place(request):
-            stop = self.place()
-            name = caller(request).key_id
-            work = asyncio.ensure_future(self._work(name, cost_s, function, stop, arguments))
             left = asyncio.ensure_future(leaves(request))
             try:
-                await asyncio.wait({work, left}, timeout=limit_s, return_when=asyncio.FIRST_COMPLETED)
-                if not work.done():
-                    if stop is not None:
-                        stop.touch()
-                        await asyncio.wait({work}, timeout=GRACE_S)
-                    raise ClientDisconnect if left.done() else too_long(limit_s)
-                return work.result()
-            except Cancelled:
-                raise ClientDisconnect from None
+                # On a busy machine a process takes longer to start than an answer may take. An answer that paid for
+                # that would be ended with its process, and the next one would begin anew.
+                await asyncio.wait({self.warm(), left}, timeout=START_S, return_when=asyncio.FIRST_COMPLETED)
+                if left.done():
+                    raise ClientDisconnect
+                return await self._in_time(request, left, cost_s, function, arguments)
             finally:
                 left.cancel()
-                work.cancel()
-                with suppress(BaseException):  # its end, not its answer, is waited for
-                    await work
+
+    async def _in_time(
+        self,
+        request: Request,
+        left: asyncio.Future[Any],
+        cost_s: float,
+        function: Callable[..., Answer],
+        arguments: tuple[Any, ...],
+    ) -> Answer:
+        limit_s = self._settings.answer_timeout_s
+        stop = self.place()
+        work = asyncio.ensure_future(self._work(caller(request).key_id, cost_s, function, stop, arguments))
+        try:
+            await asyncio.wait({work, left}, timeout=limit_s, return_when=asyncio.FIRST_COMPLETED)
+            if not work.done():
                 if stop is not None:
-                    stop.unlink(missing_ok=True)
+                    stop.touch()
+                    await asyncio.wait({work}, timeout=GRACE_S)
+                raise ClientDisconnect if left.done() else too_long(limit_s)
+            return work.result()
+        except Cancelled:
+            raise ClientDisconnect from None
+        finally:
+            work.cancel()
+            with suppress(BaseException):  # its end, not its answer, is waited for
+                await work
+            if stop is not None:
+                stop.unlink(missing_ok=True)
 
     async def _work(
         self,

@@ -11,7 +11,7 @@ from pydantic import BaseModel
 from safestart.errors import NotFound
 from safestart.processes import views
 from safestart.processes.base import ProcessSpec
-from safestart.processes.registry import process
+from safestart.processes.registry import PROCESS_IDS, process
 from safestart_service.documents.dialects import common
 from safestart_service.errors import NoSuchProcess
 from safestart_service.http.answers import link
@@ -64,6 +64,14 @@ def _looks(spec: ProcessSpec) -> dict[str, Any]:
 def output_ids(spec: ProcessSpec) -> tuple[str, ...]:
     """Names of a process's outputs."""
     return tuple(spec.outputs.model_fields)
+
+
+@cache
+def verdict_words() -> tuple[str, ...]:
+    """The words of verdicts that any process may give, those that decide for it first."""
+    found = [view for name in PROCESS_IDS for view in process(name).views if isinstance(view, views.Findings)]
+    good, bad = ([word for view in found for word in getattr(view, sense)] for sense in ("good", "bad"))
+    return tuple(dict.fromkeys((*good, *bad, "UNDECIDED")))
 
 
 def described_inputs(process_id: str) -> dict[str, Any]:

@@ -34,6 +34,8 @@ def key_inputs(process_id: str, inputs: dict[str, Any]) -> dict[str, str]:
 def _leaves(inputs: dict[str, Any], path: str) -> Iterator[tuple[str, str]]:
     for name, value in inputs.items():
         here = f"{path}.{name}" if path else name
+        if isinstance(value, list) and len(value) == 1 and isinstance(value[0], dict):
+            value = value[0]
         if isinstance(value, dict):
             yield from _leaves(value, here)
         elif value is not None and value != [] and value != "":
@@ -45,9 +47,12 @@ def _text(value: Any) -> str:
     if isinstance(value, list):
         if len(value) > _ENTRIES:
             return f"{len(value)} entries"
-        return ", ".join(f"({_text(item)})" if isinstance(item, list) else _text(item) for item in value)
+        return ", ".join(
+            f"({_text(item)})" if isinstance(item, list | dict) else _text(item) for item in value
+        )
     if isinstance(value, dict):
-        return " ".join(f"{name} {_text(item)}" for name, item in islice(value.items(), _ENTRIES))
+        told = ((name, item) for name, item in value.items() if item is not None)
+        return ", ".join(f"{name} {_text(item)}" for name, item in islice(told, _ENTRIES))
     if isinstance(value, bool) or value is None:
         return {True: "yes", False: "no", None: "–"}[value]
     return f"{value:g}" if isinstance(value, float) and value == float(f"{value:g}") else str(value)

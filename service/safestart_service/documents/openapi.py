@@ -15,6 +15,7 @@ from safestart.processes.start_in_space.one_start import SpaceAnswer
 from safestart.runtime.access import Role
 from safestart_service.access.gate import needed_role
 from safestart_service.documents import access_schemas, deprecation, schemas
+from safestart_service.documents.estimate import Estimate
 from safestart_service.documents.execution import execute_model
 from safestart_service.documents.problems import MEDIA_TYPE, Problem
 
@@ -33,6 +34,7 @@ ANSWERS: tuple[type[BaseModel], ...] = (
     schemas.Partial,
     schemas.Submitted,
     schemas.JobInputs,
+    Estimate,
     schemas.ResultDocument,
     schemas.Partial,
     schemas.Health,

@@ -23,7 +23,7 @@ def older(document: dict[str, Any]) -> dict[str, Any]:
 
 
 def _outside(node: Any, types: dict[str, str]) -> Any:
-    """A node that is no schema: here ``examples`` is a table by name and stays."""
+    """A node that is not a schema: here ``examples`` is a table by name and stays."""
     if isinstance(node, list):
         return [_outside(item, types) for item in node]
     if not isinstance(node, dict):

@@ -209,21 +209,21 @@ class JobList(BaseModel):
 
 
 class ShardsDone(BaseModel):
-    """Finished shards of a job, of how many."""
+    """Finished parts of a job, of how many."""
 
     done: int
     total: int
 
 
 class Partial(BaseModel):
-    """What the finished shards of a job say already."""
+    """What the finished parts of a job say already."""
 
     jobID: str
     processID: str
     status: JobStatus
     shards: ShardsDone
     outputs: dict[str, Any] | None = Field(
-        description="Summary of the finished shards; null before the first."
+        description="Summary of the finished parts; null before the first."
     )
     links: list[Link]
 

@@ -122,7 +122,7 @@ def _malformed(body: bytes, why: str) -> MalformedBody:
 def require_once(body: bytes, known: Container[str] | None = None) -> None:
     """Raise ``InvalidInput`` for a name that appears twice in an object, or for very many that are not ``known``.
 
-    What is no JSON is left to the reader that comes after.
+    A body that is not JSON is left to the parser.
     """
     try:
         require_unique_names(body, known)

@@ -46,7 +46,7 @@ class Message(Enum):
 
 
 class Flow(FlowControl):
-    """Reading that stays paused while bytes wait unparsed, whoever asks for more: every handler does."""
+    """Reading stays paused while bytes wait unparsed, although every handler asks for more."""
 
     full = False
 

@@ -7,6 +7,7 @@ from typing import Any
 from fastapi import APIRouter, Request
 from fastapi.responses import Response
 
+from safestart_service.documents.describe import verdict_words
 from safestart_service.documents.openapi import content, refusals
 from safestart_service.http.answers import root_path
 from safestart_service.pages import render as pages
@@ -64,7 +65,7 @@ async def submit(request: Request) -> Response:
 )
 async def jobs(request: Request) -> Response:
     """Jobs with progress, place in the queue, time left and why they wait."""
-    return _page(request, "jobs", "/dashboard/jobs", plots=False)
+    return _page(request, "jobs", "/dashboard/jobs", plots=False, verdicts=verdict_words())
 
 
 @router.get(
@@ -74,7 +75,7 @@ async def jobs(request: Request) -> Response:
     responses={200: _PAGE, **refusals(422)},
 )
 async def job(request: Request, jobID: JobId) -> Response:
-    """Live progress and log, then results, pictures and downloads of one job; unknown ids are told on the page."""
+    """Live progress and log, then results, pictures and downloads of one job; the page says when the id is unknown."""
     return _page(request, "job", "/dashboard/jobs", job=jobID)
 
 

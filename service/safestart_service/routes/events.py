@@ -38,7 +38,7 @@ async def events(
     found = services(request)
     after = resume_point(last_event_id)
     job = await run_in_threadpool(known_job, found, jobID)
-    if after:  # an id that is no event of this job says nothing about what the client has seen
+    if after:  # an id that is not an event of this job says nothing about what the client has seen
         known = await run_in_threadpool(found.jobs.events, jobID, after - 1, 1)
         after = after if known and known[0].id == after else 0
     if after and job.status.ended and not await run_in_threadpool(found.jobs.events, jobID, after, 1):

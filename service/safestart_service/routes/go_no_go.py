@@ -13,7 +13,6 @@ from safestart.errors import NotFound
 from safestart.processes import door
 from safestart.processes.door import OneStart
 from safestart.processes.flat import described
-from safestart.processes.go_no_go import run
 from safestart.processes.go_no_go.method_registry import RENAMED
 from safestart.processes.go_no_go.one_start import GoNoGoAnswer
 from safestart.processes.go_no_go.spec import SPEC, GoNoGoInputs, GoNoGoOutputs
@@ -38,10 +37,8 @@ _SILENT = Context()
 
 def _instant(inputs: OneStart, scope: Scope) -> dict[str, Any] | None:
     """The document of a question that takes microseconds, else None: a cone program would block other requests."""
-    if isinstance(inputs, SpaceInputs):
-        return None
-    found = run.at_once(inputs, _SILENT)
-    return None if found is None else _linked(found.document_of_one(), inputs, scope)
+    document = door.at_once(inputs, _SILENT)
+    return None if document is None else _linked(document, inputs, scope)
 
 
 async def _answer(request: Request, inputs: OneStart) -> Response:

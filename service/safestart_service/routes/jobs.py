@@ -178,10 +178,10 @@ async def job(
     "/jobs/{jobID}/partial",
     operation_id="getPartialResult",
     summary="Partial result of a job",
-    responses={200: answer(Partial, "Finished shards and their summary."), **refusals(404, 422, 503)},
+    responses={200: answer(Partial, "Finished parts and their summary."), **refusals(404, 422, 503)},
 )
 def partial(request: Request, jobID: JobId) -> Response:
-    """The result so far of a process that is cut into shards; once the job is successful, ask for its results."""
+    """The result so far of a process that is cut into parts; once the job is successful, ask for its results."""
     found = services(request)
     return Json(partial_document(found, known_job(found, jobID), base_url(request)))
 

@@ -10,15 +10,20 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from safestart.processes.registry import PROCESS_IDS, process
 from safestart_service.computing.dispatch import posted
+from safestart_service.computing.light import Left
 from safestart_service.documents.describe import description, known_process, summary
+from safestart_service.documents.estimate import Estimate, estimate
 from safestart_service.documents.execution import (
     execute_model,
+    parse_request,
     prefers_async,
 )
 from safestart_service.documents.openapi import TAG, answer, content, json_body, refusals
 from safestart_service.documents.schemas import ProcessDescription, ProcessList, Submitted
-from safestart_service.http.answers import base_url, link, tagged, this_url
+from safestart_service.http.answers import Json, base_url, link, tagged, this_url
+from safestart_service.http.body import MOST_PARTS, PARTS_PER_STATE, read_body
 from safestart_service.http.once import OnceRoute
+from safestart_service.state import services
 
 router = APIRouter(tags=["processes"], route_class=OnceRoute)
 ProcessId = Annotated[str, Path(description="Id of a process.")]
@@ -106,3 +111,31 @@ async def execute(
         wants_async=wants_async,
         idempotency_key=idempotency_key,
     )
+
+
+@router.post(
+    "/processes/{processID}/estimate",
+    operation_id="estimate",
+    summary="How long a run would take",
+    openapi_extra=json_body(
+        {name: execute_model(name) for name in PROCESS_IDS},
+        {name: {"inputs": process(name).example} for name in PROCESS_IDS},
+    ),
+    responses={
+        200: answer(Estimate, "The estimate, and what it is known from."),
+        **refusals(400, 404, 413, 415, 422, 429, 503),
+    },
+)
+async def estimated(request: Request, processID: ProcessId) -> Response:
+    """Takes the request of an execution and runs nothing; the time counts from the start of the run."""
+    spec, body = known_process(processID), await read_body(request)
+    found = services(request)
+
+    def work(left: Left) -> Response:
+        del left  # short
+        parts = MOST_PARTS + (PARTS_PER_STATE * found.settings.max_states if spec.states else 0)
+        inputs = parse_request(spec.id, body, parts).inputs
+        past = found.jobs.durations(spec.id, inputs.model_dump(mode="json"))
+        return Json(estimate(spec, inputs, past))
+
+    return await found.submitting(request, work)

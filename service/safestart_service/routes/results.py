@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from fastapi import APIRouter, Path, Query, Request
 from fastapi.responses import Response
 
+from safestart.errors import Conflict
+from safestart_service.computing.light import Left
 from safestart_service.documents.arrays import arrays_of
 from safestart_service.documents.formats.base import Format
 from safestart_service.documents.formats.registry import BY_NAME, BY_TYPE, FORMATS, tag_of
@@ -30,6 +32,8 @@ def _body(form: Format) -> dict[str, Any]:
 
 _CACHE = "private, no-cache"
 _ETAG = "SHA-256 of the content."
+MOST_BUNDLED = 64 * 1024**2
+"""Bytes of the files in a bundle that the service packs; it is in memory while it is packed."""
 _FILE: dict[str, Any] = {"type": "string", "format": "binary"}
 _NAMES = list(BY_NAME)
 _WITH_ROWS = [form.name for form in FORMATS if form.rows]
@@ -137,3 +141,44 @@ def arrays(
     tag = entity_tag(f"{file.sha256}-arrays")
     headers = {"ETag": tag, "Cache-Control": _CACHE}
     return not_modified(request, tag) or Json(arrays_of(file, names), headers=headers)
+
+
+@router.get(
+    "/jobs/{jobID}/bundle",
+    operation_id="getBundle",
+    summary="A job as one file",
+    responses={
+        200: content(
+            "application/zip",
+            {"type": "string", "format": "binary"},
+            "Result, files, events and a page that opens without a server.",
+            Safestart_Seal="SHA-256 of its manifest, the seal: keep it apart from the bundle.",
+        ),
+        **refusals(404, 409, 422, 429, 503),
+    },
+)
+async def bundle(request: Request, jobID: JobId) -> Response:
+    """As `safestart export` writes it, of a job that has ended; with files of more than 64 MiB only that writes it."""
+    found = services(request)
+
+    def work(left: Left) -> Response:
+        del left
+        from safestart.records.bundle import pack
+        from safestart.store.transfer import Transfer
+
+        known_job(found, jobID)
+        size = sum(file.size for file in found.results.artifacts(jobID))
+        if size > MOST_BUNDLED:
+            raise Conflict(
+                f"the files of job {jobID} have {size} bytes; required at most {MOST_BUNDLED}; "
+                "`safestart export` writes any bundle",
+                field="jobID",
+                required=f"files of at most {MOST_BUNDLED} bytes",
+                received=size,
+            )
+        data, seal = pack(Transfer(found.database).read(jobID))
+        name = f'attachment; filename="{jobID}.zip"'
+        headers = {"Content-Disposition": name, "Safestart-Seal": seal, "Cache-Control": "private, no-cache"}
+        return Response(data, headers=headers, media_type="application/zip")
+
+    return await found.packing(request, work)

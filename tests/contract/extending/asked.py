@@ -58,6 +58,22 @@ def method(client: TestClient, _: Path) -> dict[str, Any]:
     }
 
 
+def controller(client: TestClient, folder: Path) -> dict[str, Any]:
+    """The controller `damper` flown by a sweep of four starts for 10 s, in the description and in its views."""
+    inputs = {"controllers": ["damper"], "certificates": ["paper"], "omega_t_deg_s": [1], "a_max_m_s2": [0.1]}
+    written = folder / "sweep.json"
+    written.write_text(json.dumps(inputs | {"r0_m": [50], "cases_per_cell": 4, "horizon_s": 10}))
+    described = client.get("/processes/sweep").json()
+    return {
+        "outputs": _command("run", "sweep", "--input", str(written), "--json")["outputs"],
+        "offered": described["inputs"]["controllers"]["schema"]
+        | {"description": described["inputs"]["controllers"]["description"]},
+        "columns": [
+            column["title"] for view in described["safestart:views"] for column in view.get("columns", ())
+        ],
+    }
+
+
 def form(client: TestClient, folder: Path) -> dict[str, Any]:
     """The form `jsonl` by its name and by its media type, and in the description."""
     inputs = POINT | {"states": [START, {"x_m": 90, "y_m": 20}]}
@@ -101,4 +117,4 @@ if __name__ == "__main__":
     for package in (safestart, safestart_service):
         assert Path(str(package.__file__)).is_relative_to(where), "the copy is asked"
     with service(where) as asked:
-        print(json.dumps({part.__name__: part(asked, where) for part in (process, method, form)}))
+        print(json.dumps({part.__name__: part(asked, where) for part in (process, method, controller, form)}))

@@ -1,4 +1,4 @@
-"""One folder or file and one line: what docs/extending.md says of a process, a method, a form of results, a view."""
+"""One folder or file and one line, as docs/extending.md says: a process, a method, a controller, a form of results."""
 
 from __future__ import annotations
 
@@ -13,9 +13,13 @@ from tests.contract.extending.house import House
 
 PROCESSES = "core/safestart/processes"
 METHODS = f"{PROCESSES}/go_no_go"
+CONTROL = "core/safestart/control"
 FORMS = "service/safestart_service/documents/formats"
 PROCESS = '    "drift": "safestart.processes.drift.spec",'
 METHOD = '    Method("reserve", "a metre in reserve", f"{_HERE}.reserve:decide", proves=False, at_once=True),'
+CONTROLLER = (
+    '    Offered("damper", "damper", "brakes", "safestart.control.damper:for_sweep", note="It only brakes."),'
+)
 FORM = '    "json_lines",'
 
 Touched = tuple[list[str], list[str]]
@@ -32,6 +36,9 @@ def extended(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[Touched], d
     house.add("reserve.py", f"{METHODS}/methods/reserve.py")
     house.add_line(f"{METHODS}/method_registry.py", "_ALL = (", METHOD)
     touched.append(house.touched())
+    house.add("damper.py", f"{CONTROL}/damper.py")
+    house.add_line(f"{PROCESSES}/sweep/controllers.py", "_ALL = (", CONTROLLER)
+    touched.append(house.touched())
     house.add("json_lines.py", f"{FORMS}/json_lines.py")
     house.add_line(f"{FORMS}/registry.py", '"parquet"', FORM)
     touched.append(house.touched())
@@ -39,10 +46,15 @@ def extended(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[Touched], d
 
 
 def test_each_is_a_folder_or_a_file_and_a_line(extended: tuple[list[Touched], dict[str, Any]]) -> None:
-    new = [f"{PROCESSES}/drift", f"{METHODS}/methods/reserve.py", f"{FORMS}/json_lines.py"]
-    lines = [f"+{PROCESS}", f"+{METHOD}", f"+{FORM}"]
+    new = [
+        f"{PROCESSES}/drift",
+        f"{METHODS}/methods/reserve.py",
+        f"{CONTROL}/damper.py",
+        f"{FORMS}/json_lines.py",
+    ]
+    lines = [f"+{PROCESS}", f"+{METHOD}", f"+{CONTROLLER}", f"+{FORM}"]
     found = [(sorted(files), sorted(changed)) for files, changed in extended[0]]
-    assert found == [(sorted(new[:parts]), sorted(lines[:parts])) for parts in range(4)]
+    assert found == [(sorted(new[:parts]), sorted(lines[:parts])) for parts in range(5)]
 
 
 def test_a_process(extended: tuple[list[Touched], dict[str, Any]]) -> None:
@@ -87,6 +99,23 @@ def test_a_method_of_go_no_go(extended: tuple[list[Touched], dict[str, Any]]) ->
         *("reserve", "certified", "paper", "exact", "auto", "tracking", "closed_form")
     ]
     assert "reserve: a metre in reserve." in found["parameter"]["description"]
+
+
+def test_a_controller(extended: tuple[list[Touched], dict[str, Any]]) -> None:
+    found = extended[1]["controller"]
+    assert "damper" in found["offered"]["items"]["enum"]
+    assert "damper: brakes" in found["offered"]["description"]
+    outputs = found["outputs"]
+    assert (
+        outputs["evaluated"]["damper"]
+        == outputs["cells"][0]["feasible"]["damper"]
+        + outputs["confusion"]["paper"]["damper"]["fp"]
+        + outputs["confusion"]["paper"]["damper"]["tn"]
+    )
+    assert outputs["control_steps"] == {"damper": 4 * 5}
+    assert outputs["delta_v_m_s"]["damper"]["mean"] > 0.0
+    assert "damper: It only brakes." in outputs["notes"]
+    assert "stayed: damper" in found["columns"]
 
 
 def test_a_form_of_results(extended: tuple[list[Touched], dict[str, Any]]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import time
 from collections.abc import Iterator
@@ -13,6 +14,7 @@ import httpx
 import psutil
 import pytest
 
+from safestart_service.computing.heavy import Helpers
 from tests.acceptance.running import serving
 from tests.contract.api.service_client import POINT, assert_problem, service
 from tests.waiting import PATIENCE_S, until
@@ -108,6 +110,22 @@ def test_many_bodies_at_once(server: httpx.Client) -> None:
     assert server.post("/go-no-go", json=STATES).status_code == 200
 
 
+def test_a_process_that_starts_slowly_costs_no_answer(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On a busy machine loading takes longer than an answer may; no deadline ends the process meanwhile."""
+    start = Helpers._start
+
+    async def slowly(helpers: Helpers) -> None:
+        await asyncio.sleep(3.0)
+        await start(helpers)
+
+    monkeypatch.setattr(Helpers, "_start", slowly)
+    with service(tmp_path, answer_timeout_s=2.5, answer_processes=1) as client:
+        quick = {**POINT, "x_m": 5, "y_m": 40, "method": "exact"}
+        assert client.get("/go-no-go", params=quick).status_code == 200
+
+
 def test_an_answer_that_takes_too_long(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """One that would take too long is refused at once; one that does is ended, and the next one is answered."""
     region = {"inputs": POINT | {"horizon_s": 600}}
@@ -121,6 +139,8 @@ def test_an_answer_that_takes_too_long(tmp_path: Path, monkeypatch: pytest.Monke
             return time.monotonic() - begun
 
         assert refused() < 2.0
+        quick = {**POINT, "x_m": 5, "y_m": 40, "method": "exact"}
+        assert client.get("/go-no-go", params=quick).status_code == 200  # a process has started
         # As if the estimate were wrong; the helper process has its own, so the question goes there by its document.
         monkeypatch.setattr("safestart_service.computing.dispatch.cost", lambda _: 0.1)
         slow = {**POINT, "x_m": 5, "y_m": 40, "method": "exact", "horizon_s": 600}
@@ -130,7 +150,6 @@ def test_an_answer_that_takes_too_long(tmp_path: Path, monkeypatch: pytest.Monke
         assert time.monotonic() - begun < 10.0
         assert client.app.state.services.helpers.line._held.total() == 0
         monkeypatch.undo()
-        quick = {**POINT, "x_m": 5, "y_m": 40, "method": "exact"}
         answered = until(lambda: client.get("/go-no-go", params=quick).status_code == 200, "a new process")
         assert answered
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
+from threading import Barrier
+
 import pytest
 
 from safestart.errors import InvalidInput, NotFound
@@ -38,6 +41,23 @@ def test_labels_are_stored_and_written_later(database: Database, jobs: JobReposi
     assert [(entry.action, entry.detail) for entry in entries] == [("label", {"changed": ["name"]})]
     with pytest.raises(NotFound):
         jobs.label("nothing", name="x")
+
+
+def test_two_who_label_a_job_at_once_are_both_found(
+    url: str, database: Database, jobs: JobRepository
+) -> None:
+    others = [JobRepository(Database(url)) for _ in range(2)]
+    for k in range(10):
+        job = submit(jobs).id
+        start = Barrier(2)
+
+        def label(who: int, job: str = job, start: Barrier = start, k: int = k) -> None:
+            start.wait()
+            others[who].label(job, **({"name": f"name {k}"} if who else {"tags": [f"tag {k}"]}))
+
+        with ThreadPoolExecutor(2) as pool:
+            list(pool.map(label, (0, 1)))
+        assert found(jobs, words=[f"name {k}"[:4], str(k)], tags=[f"tag {k}"]) == [f"name {k}"]
 
 
 @pytest.mark.parametrize(

@@ -16,8 +16,10 @@ from safestart.errors import (
     NotFound,
     QueueFull,
 )
+from safestart.store.database import Database
 from safestart.store.jobs.filters import JobFilter
 from safestart.store.jobs.repository import JobRepository
+from safestart.store.jobs.retention import Retention
 from safestart.store.records import JobStatus
 from tests.contract.store.store_jobs import claimed, submit
 from tests.waiting import PATIENCE_S
@@ -108,6 +110,11 @@ def test_a_key_of_unfit_length_is_refused(jobs: JobRepository, key: str) -> None
         submit(jobs, idempotency_key=key)
 
 
+@pytest.mark.parametrize("key", ["k", "k" * 255])
+def test_keys_of_the_shortest_and_the_longest_length_are_taken(jobs: JobRepository, key: str) -> None:
+    assert submit(jobs, idempotency_key=key).id == submit(jobs, idempotency_key=key).id
+
+
 def test_a_full_queue_refuses_more_but_returns_what_it_has(jobs: JobRepository) -> None:
     first = submit(jobs, max_queued=2, idempotency_key="k")
     submit(jobs, max_queued=2)
@@ -138,6 +145,16 @@ def test_pages_are_newest_first_and_complete(jobs: JobRepository) -> None:
     onward = jobs.list(limit=3, cursor=page.next_cursor)
     assert onward.prev_cursor is not None
     assert jobs.list(limit=3).prev_cursor is None
+
+
+def test_a_page_whose_jobs_were_deleted_meanwhile_is_empty(database: Database, jobs: JobRepository) -> None:
+    old = submit(jobs).id
+    submit(jobs)
+    page = jobs.list(limit=1)
+    jobs.dismiss(old)
+    assert Retention(database).purge(-60.0) == 1
+    after = jobs.list(limit=1, cursor=page.next_cursor)
+    assert (after.jobs, after.next_cursor, after.prev_cursor) == ((), None, None)
 
 
 def test_a_last_page_that_is_full_has_no_cursor(jobs: JobRepository) -> None:

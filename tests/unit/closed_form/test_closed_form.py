@@ -147,6 +147,16 @@ def test_body_rest_limit_is_where_station_keeping_needs_full_thrust(
     assert np.linalg.norm(demand) <= thrust * (1 + 1e-9)
 
 
+@pytest.mark.parametrize("rate", [0.0, 0.5, 3.0])
+def test_body_rest_limit_is_reached_on_the_radial_axis(rate: float) -> None:
+    scenario = Scenario.of(rate, 0.05)
+    w, n = scenario.target.tumble_rate, scenario.target.mean_motion
+    place = np.array([range_limit(scenario, Rest.BODY), 0.0, 0.0])
+    position, velocity = body_to_lvlh(place, np.zeros(3), w, 0.0)
+    demand = -w * w * position + feedforward(n, position, velocity)
+    assert np.linalg.norm(demand) == pytest.approx(0.05, rel=1e-12)
+
+
 @pytest.mark.parametrize("points", [[np.nan, 1.0], [np.inf, 1.0], [1.0], [1.0, 2.0, 3.0, 4.0], 3.0])
 def test_bad_points(points: object) -> None:
     with pytest.raises(InvalidInput):

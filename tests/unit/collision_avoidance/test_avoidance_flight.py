@@ -12,7 +12,7 @@ from safestart.collision_avoidance.encounters.clock import Clock
 from safestart.collision_avoidance.encounters.encounter import fly, lost
 from safestart.collision_avoidance.encounters.escape import MODES
 from safestart.collision_avoidance.encounters.escape import fly as escape
-from safestart.collision_avoidance.encounters.observation import Sight
+from safestart.collision_avoidance.encounters.observation import Observer
 from safestart.collision_avoidance.encounters.pilots import PILOTS, pilot
 from safestart.collision_avoidance.encounters.slot import EVASIVE, RECOVERY, Slot
 from safestart.collision_avoidance.encounters.starts import certified_unsafe, near_boundary
@@ -36,13 +36,13 @@ SLOT, CLOCK = Slot(), Clock(1.0, T)
 
 
 @pytest.fixture(scope="module")
-def sight() -> Sight:
-    return Sight(GAME, solve_tube(GAME, T, TubeSettings(shape=(15, 9), half=(450.0, 6.0), kept=5)))
+def observer() -> Observer:
+    return Observer(GAME, solve_tube(GAME, T, TubeSettings(shape=(15, 9), half=(450.0, 6.0), kept=5)))
 
 
 @pytest.fixture(scope="module")
-def hard(sight: Sight) -> np.ndarray:
-    return near_boundary(sight, 120, 20.0, 1, Context())
+def hard(observer: Observer) -> np.ndarray:
+    return near_boundary(observer, 120, 20.0, 1, Context())
 
 
 def rates(game: Game, push) -> object:
@@ -155,12 +155,12 @@ def test_coasting_is_worth_no_more_than_the_game(horizon: float) -> None:
             assert (bound <= flown.min(axis=0) - GAME.keep_out_m + 1e-6).all()
 
 
-def test_separation_between_samples_is_not_overlooked(sight: Sight) -> None:
+def test_separation_between_samples_is_not_overlooked(observer: Observer) -> None:
     """Against a dense flight: never above it, and at most by millimetres below."""
     start = np.array([[160.0, -104.0, -7.7, 0.3]])
     push = np.array([0.1, -0.1])
     flown = fly(
-        sight,
+        observer,
         GAME.to_lvlh(start),
         Burn(GAME.thrust_to_lvlh(push)),
         lambda m, u: 0.0 * u,
@@ -177,13 +177,15 @@ def test_separation_between_samples_is_not_overlooked(sight: Sight) -> None:
     assert flown.peak[0] == pytest.approx(np.hypot(0.1, 0.1))
 
 
-def test_certified_evasion_holds_what_coasting_and_the_gradient_lose(sight: Sight, hard: np.ndarray) -> None:
+def test_certified_evasion_holds_what_coasting_and_the_gradient_lose(
+    observer: Observer, hard: np.ndarray
+) -> None:
     """Hard starts outside the unsafe set: nothing is lost; the other pilots lose some to the same adversaries."""
     breached = {}
     for name in ("certified", "hj", "mode1", "pd", "coast"):
         for other in ADVERSARIES:
             opponent = adversary(other, GAME, T, len(hard), 3, 10)
-            flights = fly(sight, hard, pilot(name, sight, CLOCK, SLOT), opponent, CLOCK)
+            flights = fly(observer, hard, pilot(name, observer, CLOCK, SLOT), opponent, CLOCK)
             breached[name, other] = int(lost(flights, GAME.keep_out_m).sum())
     assert [breached["certified", other] for other in ADVERSARIES] == [0] * len(ADVERSARIES)
     assert 0 < breached["hj", "worst"] < 0.2 * len(hard)
@@ -193,22 +195,22 @@ def test_certified_evasion_holds_what_coasting_and_the_gradient_lose(sight: Sigh
     assert (lower(GAME, GAME.from_lvlh(hard), T, goal_m=1e-6) > 0.0).all()
 
 
-def test_certified_unsafe_starts_are_all_lost_to_the_mirror(sight: Sight) -> None:
-    inside = certified_unsafe(sight, 60, 2, Context())
+def test_certified_unsafe_starts_are_all_lost_to_the_mirror(observer: Observer) -> None:
+    inside = certified_unsafe(observer, 60, 2, Context())
     assert (np.linalg.norm(inside[:, :3], axis=1) > GAME.keep_out_m).all()
     for name in PILOTS:
         opponent = adversary("mirror", GAME, T, len(inside), 3, 10)
-        flights = fly(sight, inside, pilot(name, sight, CLOCK, SLOT), opponent, CLOCK)
+        flights = fly(observer, inside, pilot(name, observer, CLOCK, SLOT), opponent, CLOCK)
         assert lost(flights, GAME.keep_out_m).all(), name
 
 
 @pytest.mark.parametrize("other", ["worst", "mirror", "pursuit", "random"])
-def test_adversaries_stay_in_their_set(sight: Sight, hard: np.ndarray, other: str) -> None:
+def test_adversaries_stay_in_their_set(observer: Observer, hard: np.ndarray, other: str) -> None:
     opponent = adversary(other, GAME, T, len(hard), 3, 5)
     pushes = []
     for step in range(12):
-        moment = sight.look(step, GAME.from_lvlh(hard), T)
-        thrust = pilot("hj", sight, CLOCK, SLOT).command(step, hard).thrust
+        moment = observer.look(step, GAME.from_lvlh(hard), T)
+        thrust = pilot("hj", observer, CLOCK, SLOT).command(step, hard).thrust
         pushes.append(opponent(moment, GAME.thrust_from_lvlh(thrust)))
     assert np.abs(pushes).max() <= D * (1.0 + 1e-12)
     if other == "random":
@@ -216,14 +218,14 @@ def test_adversaries_stay_in_their_set(sight: Sight, hard: np.ndarray, other: st
         assert (pushes[4] != pushes[5]).all()
 
 
-def test_supervisor_goes_through_its_modes(sight: Sight) -> None:
+def test_supervisor_goes_through_its_modes(observer: Observer) -> None:
     """A threat that ends: nominal to evasive to recovery to nominal, and separation is kept."""
     start = GAME.to_lvlh(np.array([[420.0, 3.0, -5.5, 0.1], [1000.0, 0.0, 0.0, 0.0]]))
-    guards = Guards(sight.tube.grid_error_m, 10.0)
+    guards = Guards(observer.tube.grid_error_m, 10.0)
     clock = Clock(1.0, 1800.0, receding=True)
-    supervisor = Supervisor(sight, SLOT, guards, clock)
+    supervisor = Supervisor(observer, SLOT, guards, clock)
     opponent = until(adversary("worst", GAME, T, 2, 0, 10), 120)
-    flights = fly(sight, start, supervisor, opponent, clock, keep_paths=True)
+    flights = fly(observer, start, supervisor, opponent, clock, keep_paths=True)
     assert not lost(flights, GAME.keep_out_m).any()
     assert supervisor.switches[Mode.NOMINAL, Mode.EVASIVE] >= 1
     assert supervisor.switches[Mode.EVASIVE, Mode.RECOVERY] >= 1
@@ -232,19 +234,19 @@ def test_supervisor_goes_through_its_modes(sight: Sight) -> None:
     assert all(SLOT.holds(GAME.from_lvlh(path.states[-1])) for path in flights.paths)
 
 
-def test_refusals_and_dismissal(sight: Sight, hard: np.ndarray) -> None:
+def test_refusals_and_dismissal(observer: Observer, hard: np.ndarray) -> None:
     with pytest.raises(InvalidInput, match="period_s"):
         Clock(2.0, 1.0)
     with pytest.raises(InvalidInput, match="slot"):
         Slot(half=(50.0, 25.0, 0.0, 0.01))
     with pytest.raises(InvalidInput, match="level_m"):
         Guards(float("inf"), 10.0)
-    coast, idle = pilot("coast", sight, CLOCK, SLOT), adversary("none", GAME, T, 1, 0, 1)
+    coast, idle = pilot("coast", observer, CLOCK, SLOT), adversary("none", GAME, T, 1, 0, 1)
     with pytest.raises(InvalidInput, match="starts"):
-        fly(sight, np.zeros((1, 4)), coast, idle, CLOCK)
+        fly(observer, np.zeros((1, 4)), coast, idle, CLOCK)
     with pytest.raises(InvalidInput, match="speed"):
         PdGains((1e-4, 1e-4), (1e-2,))
     with pytest.raises(Cancelled):
-        fly(sight, hard[:1], coast, idle, CLOCK, Context(cancelled=lambda: True))
+        fly(observer, hard[:1], coast, idle, CLOCK, Context(cancelled=lambda: True))
     with pytest.raises(InvalidInput, match="encounters"):
-        near_boundary(sight, 10, 1e-9, 1, Context())
+        near_boundary(observer, 10, 1e-9, 1, Context())

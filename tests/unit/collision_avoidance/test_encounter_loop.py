@@ -9,7 +9,7 @@ from safestart.collision_avoidance.encounters.clock import Clock
 from safestart.collision_avoidance.encounters.encounter import fly
 from safestart.collision_avoidance.encounters.escape import MODES
 from safestart.collision_avoidance.encounters.escape import fly as escape
-from safestart.collision_avoidance.encounters.observation import Sight
+from safestart.collision_avoidance.encounters.observation import Observer
 from safestart.collision_avoidance.encounters.pilots import PILOTS, pilot
 from safestart.collision_avoidance.encounters.slot import Slot
 from safestart.collision_avoidance.encounters.starts import near_boundary
@@ -40,42 +40,42 @@ PLANT = Plant(Cwh(GAME.mean_motion), Spin(0.0))
 
 
 @pytest.fixture(scope="module")
-def sight() -> Sight:
-    return Sight(GAME, solve_tube(GAME, HORIZON, TubeSettings(shape=(15, 9), half=(450.0, 6.0), kept=5)))
+def observer() -> Observer:
+    return Observer(GAME, solve_tube(GAME, HORIZON, TubeSettings(shape=(15, 9), half=(450.0, 6.0), kept=5)))
 
 
 @pytest.fixture(scope="module")
-def starts(sight: Sight) -> Floats:
-    return near_boundary(sight, 6, 20.0, 1, Context())
+def starts(observer: Observer) -> Floats:
+    return near_boundary(observer, 6, 20.0, 1, Context())
 
 
 class Opposed(Exact):
     """The other player as a push from outside."""
 
-    def __init__(self, sight: Sight, clock: Clock, opponent: Adversary) -> None:
-        self.sight, self.clock, self.opponent = sight, clock, opponent
+    def __init__(self, observer: Observer, clock: Clock, opponent: Adversary) -> None:
+        self.observer, self.clock, self.opponent = observer, clock, opponent
 
     def push(self, k: int, state: Floats, thrust: Floats) -> Floats:
-        to_go = self.clock.to_go(k, self.sight.tube.horizon_s)
-        moment = self.sight.look(k, GAME.from_lvlh(state[None]), to_go)
+        to_go = self.clock.to_go(k, self.observer.tube.horizon_s)
+        moment = self.observer.look(k, GAME.from_lvlh(state[None]), to_go)
         return GAME.thrust_to_lvlh(self.opponent(moment, GAME.thrust_from_lvlh(thrust[None]))[0])
 
 
-def slowly(sight: Sight, controller: Controller, start: Floats, clock: Clock, name: str) -> Record:
-    errors = Opposed(sight, clock, adversary(name, GAME, HORIZON, 1, 3, 10))
+def slowly(observer: Observer, controller: Controller, start: Floats, clock: Clock, name: str) -> Record:
+    errors = Opposed(observer, clock, adversary(name, GAME, HORIZON, 1, 3, 10))
     return fly_slowly(PLANT, [KeepOut(-BELOW)], controller, start, clock.steps, clock.period_s, errors)
 
 
 @pytest.mark.parametrize("name", PILOTS)
 @pytest.mark.parametrize("other", ["worst", "mirror", "pursuit", "none"])
 def test_encounters_in_step_are_those_of_the_slow_loop(
-    sight: Sight, starts: Floats, name: str, other: str
+    observer: Observer, starts: Floats, name: str, other: str
 ) -> None:
-    flier = pilot(name, sight, CLOCK, SLOT)
+    flier = pilot(name, observer, CLOCK, SLOT)
     opponent = adversary(other, GAME, HORIZON, len(starts), 3, 10)
-    together = fly(sight, starts, flier, opponent, CLOCK, keep_paths=True)
+    together = fly(observer, starts, flier, opponent, CLOCK, keep_paths=True)
     for row, start in enumerate(starts):
-        alone = slowly(sight, flier, start, CLOCK, other)
+        alone = slowly(observer, flier, start, CLOCK, other)
         np.testing.assert_allclose(together.paths[row].states, alone.paths[0].states, atol=1e-7)
         np.testing.assert_allclose(together.paths[row].thrust, alone.paths[0].thrust, atol=1e-9)
         assert together.peak[row] == pytest.approx(alone.peak[0], abs=1e-9)
@@ -88,7 +88,7 @@ def test_encounters_in_step_are_those_of_the_slow_loop(
             assert separation - 0.1 < together.margin[row] <= separation + 1e-6
 
 
-def test_a_supervised_flight_is_that_of_the_slow_loop(sight: Sight) -> None:
+def test_a_supervised_flight_is_that_of_the_slow_loop(observer: Observer) -> None:
     class One(Supervisor):
         """The supervisor of a single flight."""
 
@@ -101,12 +101,12 @@ def test_a_supervised_flight_is_that_of_the_slow_loop(sight: Sight) -> None:
 
     clock = Clock(1.0, 400.0, receding=True)
     start = GAME.to_lvlh(np.array([420.0, 3.0, -5.5, 0.1]))
-    guards = Guards(sight.tube.grid_error_m, 10.0)
-    many, one = Supervisor(sight, SLOT, guards, clock), One(sight, SLOT, guards, clock)
+    guards = Guards(observer.tube.grid_error_m, 10.0)
+    many, one = Supervisor(observer, SLOT, guards, clock), One(observer, SLOT, guards, clock)
     together = fly(
-        sight, start[None], many, adversary("worst", GAME, HORIZON, 1, 3, 10), clock, keep_paths=True
+        observer, start[None], many, adversary("worst", GAME, HORIZON, 1, 3, 10), clock, keep_paths=True
     )
-    alone = slowly(sight, one, start, clock, "worst")
+    alone = slowly(observer, one, start, clock, "worst")
     np.testing.assert_allclose(together.paths[0].states, alone.paths[0].states, atol=1e-5)
     assert (many.switches == one.switches).all()
     assert many.switches.sum() > 0

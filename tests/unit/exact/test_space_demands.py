@@ -116,20 +116,35 @@ def test_a_go_keeps_the_demands_themselves(demands: Demands, changes: dict[str, 
 
 def test_the_demands_bind() -> None:
     """The best flight without them breaks each of these; so a GO is not that flight."""
-    # A ball where that flight is farthest from its start: flights with the best margin are many.
-    _, body, _ = flown(question(Demands()), START, decide_in_space(question(Demands()), START))
-    far = body[np.linalg.norm(body - body[0], axis=1).argmax()]
+    plain = question(Demands())
+    free = decide_in_space(plain, START)
+    _, body, _ = flown(plain, START, free)
+    on_the_way = tuple(body[len(body) // 2].tolist())
     for demands in (
-        Demands((KeepOut("near", (float(far[0]), float(far[1]), float(far[2])), (3.0,)),)),
+        Demands((KeepOut("near", on_the_way, (1.0,)),)),
+        Demands((KeepOut("near", on_the_way, (1.0, 0.5, 1.0)),)),
         Demands(view=VIEW),
-        Demands(plume=replace(RULE, half_angle=math.radians(80.0))),
     ):
         asked = question(demands)
-        free = decide_in_space(replace(asked, demands=Demands()), START)
         assert least(asked, START, free) < 0.0
         answer = decide_in_space(asked, START)
         assert answer.verdict is Verdict.GO
         assert least(asked, START, answer) > 0.0
+
+
+@pytest.mark.parametrize("thrust", [ball(0.1), ThrustLimit("box", (0.1, 0.1, 0.1), frame="body")])
+def test_the_plume_rule_binds(thrust: ThrustLimit) -> None:
+    """The target far on the side to which the corridor turns: the best thrust leads away from it."""
+    plain = question(Demands(), thrust=thrust)
+    free = decide_in_space(plain, START)
+    lvlh, _, push = flown(plain, START, free)
+    strongest = int(np.argmax(np.linalg.norm(push, axis=1)))
+    point = tuple((lvlh[strongest] - 15.0 * push[strongest] / np.linalg.norm(push[strongest])).tolist())
+    asked = question(Demands(plume=Plume(math.radians(45.0), 50.0, point, "lvlh")), thrust=thrust)
+    assert least(asked, START, free) < 0.0
+    answer = decide_in_space(asked, START)
+    assert answer.verdict is Verdict.GO
+    assert least(asked, START, answer) > 0.0
 
 
 def test_random_cases_claim_nothing_false() -> None:

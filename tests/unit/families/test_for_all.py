@@ -17,7 +17,7 @@ from safestart.exact.question import Question
 from safestart.families.answer import Witness
 from safestart.families.between import chord_gap, half_angle, nodes, reach, turned
 from safestart.families.decide import decide_for_all
-from safestart.families.members import Family, signs
+from safestart.families.members import Family, corner_signs
 from safestart.model.scenario import Floats, Scenario
 from safestart.optim.largest_margin import Solved
 from safestart.optim.prediction import prediction_of
@@ -63,7 +63,7 @@ def test_no_member_comes_closer_than_the_common_history_promises(made: Family, s
     kept = distances(made.question, *draw(made, state, 1000, 1), thrust)
     assert kept.min() >= answer.margin_m - 1e-9
     # And the promise is no smaller than it need be: a corner comes this close.
-    corner = signs(made.half) * made.half + state
+    corner = corner_signs(made.half) * made.half + state
     for rate in made.rates:
         at = np.full(len(corner), rate), np.full(len(corner), made.motions[0]), corner
         kept = np.append(kept, distances(made.question, *at, thrust))

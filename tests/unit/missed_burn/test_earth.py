@@ -175,7 +175,11 @@ def _hole(document):
     cells.remove(sorted(cells)[len(cells) // 2])
 
 
-@pytest.mark.parametrize("bent", [_raise, _wider, _moved, _flatter, _narrow, _hole])
+def _longer(document):
+    document["question"]["target"]["position_m"].append(0.0)
+
+
+@pytest.mark.parametrize("bent", [_raise, _wider, _moved, _flatter, _narrow, _hole, _longer])
 def test_what_is_bent_is_refused(kept, bent) -> None:
     document = json.loads(kept[0])
     bent(document)

@@ -20,7 +20,7 @@ from safestart.exact.space.prove import proof_in_space
 from safestart.exact.space.question import SpaceQuestion
 from safestart.proofs.checker import check
 from safestart.proofs.strict import ProofRejected
-from tests.unit.exact.test_space_demands import BOX, PANEL, RULE, START, VIEW, question
+from tests.unit.exact.test_space_demands import BOX, PANEL, RULE, START, VIEW, flown, question
 from tests.unit.proofs.forgery import assert_all_is_read, assert_every_digit_counts, changed, sealed
 
 Document = dict[str, Any]
@@ -140,14 +140,19 @@ def test_a_demand_that_is_easier_stays_proved() -> None:
 
 def test_a_flight_that_breaks_a_demand_is_refused() -> None:
     """The best flight without a demand, claimed for the question with it."""
+    plain = question(Demands())
+    free = decide_in_space(plain, START)
+    lvlh, body, push = flown(plain, START, free)
+    there = tuple(body[len(body) // 2].tolist())
+    strongest = int(np.argmax(np.linalg.norm(push, axis=1)))
+    point = tuple((lvlh[strongest] - 15.0 * push[strongest] / np.linalg.norm(push[strongest])).tolist())
     for demands, said in (
-        (Demands((KeepOut("near", (0.0, 32.0, 0.0), (6.5,)),)), "near"),
-        (Demands((KeepOut("near", (0.0, 32.0, 0.0), (6.5, 6.5, 6.5)),)), "near"),
+        (Demands((KeepOut("near", there, (1.0,)),)), "near"),
+        (Demands((KeepOut("near", there, (1.0, 0.5, 1.0)),)), "near"),
         (Demands(view=FieldOfView((0.0, -1.0, 0.0), math.radians(20.0))), "field_of_view"),
-        (Demands(plume=Plume(math.radians(80.0), 100.0)), "plume"),
+        (Demands(plume=Plume(math.radians(45.0), 50.0, point, "lvlh")), "plume"),
     ):
         asked = question(demands)
-        free = decide_in_space(replace(asked, demands=Demands()), START)
         answer = Answer(Verdict.GO, 1e-3, 1e-3, 1.0, free.thrust, (), 1)
         with pytest.raises(ProofRejected, match=said):
             check(json.loads(json.dumps(proof_in_space(asked, START, answer))))

@@ -106,6 +106,13 @@ def test_a_harder_go_and_an_easier_no_go_are_refused(
         assert refused(document(kind, "NO_GO"), path, easier)
 
 
+@pytest.mark.parametrize("key", ["position_half_width_m", "velocity_half_width_m_s"])
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_a_box_counts_along_every_axis(key: str, axis: int) -> None:
+    made = document("box", "GO")
+    assert refused(made, ("start", key, axis), 1e3 if made["start"][key][axis] else 1.0)
+
+
 @pytest.mark.parametrize("kind", ["synchronize", "both"])
 def test_ends_are_checked(kind: str) -> None:
     made = document(kind, "GO")

@@ -16,7 +16,7 @@ from safestart.errors import InvalidInput
 from safestart.model.scenario import CorridorShape, Floats
 from safestart.simulation.loop import fly, fly_watched
 from safestart.simulation.noise import EXACT, Drawn, Exact, draws, truth_of
-from safestart.simulation.planar import PlanarFlight, watched
+from safestart.simulation.planar import PlanarFlight, watched_flight
 from safestart.simulation.plant import Plant
 from safestart.simulation.record import Record
 from safestart.simulation.watch import WatchedFlight
@@ -157,7 +157,7 @@ def test_the_compiled_flight_is_the_general_one(spin: Spin) -> None:
         start[[0, 1, 3, 4]] = rng.normal(size=4) * [12.0, 15.0, 0.4, 0.4] + [0.0, 45.0, 0.0, -0.5]
         commands = [Command(np.append(rng.normal(size=2) * 0.05, 0.0)) for _ in range(15)]
         commands[4] = Command(commands[4].thrust, impulse=np.array([0.1, -0.2, 0.0]))
-        compiled = watched(plant, corridor, start, 2.0)
+        compiled = watched_flight(plant, corridor, start, 2.0)
         assert isinstance(compiled, PlanarFlight)
         one = fly_watched(compiled, Given(commands), 15, 2.0, EXACT)
         other = fly_watched(WatchedFlight(plant, corridor, start, 2.0), Given(commands), 15, 2.0, EXACT)

@@ -162,8 +162,9 @@ def test_the_tail_of_a_plan_is_admissible_to_its_end() -> None:
             watch = watch_of(left, step * 2.0 * scenario.target.tumble_rate)
             assert watch.minima(plan.nodes[step], plan.thrust[step:]).lowest >= plan.margin - 1e-6
             assert planner.kept(plan, 0, step, plan.nodes[step]) is plan
-        pushed = plan.nodes[10] + np.array([0.0, 0.0, 0.3, 0.3])
-        assert planner.kept(plan, 0, 10, pushed) is None or plan.margin > 5.0
+        drift = np.array([0.0, 0.0, 1.0, 1.0])
+        assert planner.kept(plan, 0, 10, plan.nodes[10] + 1e-4 * drift) is plan
+        assert planner.kept(plan, 0, 10, plan.nodes[10] + 0.1 * drift) is None
 
 
 def test_disturbed_flights_are_planned_anew_and_say_when_they_could_not() -> None:
@@ -174,7 +175,7 @@ def test_disturbed_flights_are_planned_anew_and_say_when_they_could_not() -> Non
         start = start_states(scenario, np.array([[5.0 * case - 20.0, 35.0]]), Rest.LVLH)[0]
         drawn = draws(truth, 1, np.array([case]), 30)
         flights.append(approach(scenario, start, errors=Drawn(truth, drawn[0])))
-    assert sum(flown.safe[0] for flown in flights) >= 4
+    assert all(flown.safe[0] for flown in flights)
     labels = [[command.label for command in flown.paths[0].commands] for flown in flights]
     assert all(label[0] == "planned" for label in labels)
     assert {"planned", "kept"} == {name for label in labels for name in label[1:]}

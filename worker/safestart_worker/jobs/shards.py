@@ -74,7 +74,7 @@ class Sharded:
         missing = [number for number, wanted in enumerate(contents) if kept.get(number) != wanted]
         self._total, self._done = len(parts), len(parts) - len(missing)
         if self._done:
-            self._journal.notes.append(f"{self._done} of {self._total} shards are done already")
+            self._journal.notes.append(f"{self._done} of {self._total} parts are done already")
             self._journal.track.found = self._done / (self._total + 1)
         return await self._shards(parts, contents, deque(missing)) or await self._merge()
 
@@ -110,7 +110,7 @@ class Sharded:
         await self._store(lambda: save(part.document, part.data))
         self._shares.pop(number, None)
         self._done += 1
-        self._show(f"{self._done} of {self._total} shards")
+        self._show(f"{self._done} of {self._total} parts")
 
     async def _merge(self) -> Outcome:
         claim = self._claim
@@ -169,7 +169,7 @@ class Sharded:
             self._shares[number] = 0.0
         elif number in self._shares:
             self._shares[number] = data["done"] / data["total"] if data["total"] > 0 else 0.0
-            self._show(data["message"] if number == self._total else f"{self._done} of {self._total} shards")
+            self._show(data["message"] if number == self._total else f"{self._done} of {self._total} parts")
 
     def _show(self, message: str) -> None:
         done = self._done + sum(self._shares.values())

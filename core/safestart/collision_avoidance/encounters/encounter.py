@@ -11,7 +11,7 @@ import numpy as np
 from safestart.collision_avoidance.bounds.closest_approach import segment_distance
 from safestart.collision_avoidance.encounters.adversary import Adversary
 from safestart.collision_avoidance.encounters.clock import Clock
-from safestart.collision_avoidance.encounters.observation import Sight
+from safestart.collision_avoidance.encounters.observation import Observer
 from safestart.control.controller import Controller
 from safestart.errors import invalid
 from safestart.model.scenario import Bools, Floats
@@ -25,7 +25,7 @@ def lost(flown: Record, distance_m: float) -> Bools:
 
 
 def fly(
-    sight: Sight,
+    observer: Observer,
     starts: Floats,
     pilot: Controller,
     opponent: Adversary,
@@ -40,7 +40,7 @@ def fly(
     samples a path deviates from its chord by at most h^2 / 8 of its acceleration, which is subtracted. ``delta_v`` adds
     up the channels of a box, or the length for a disk. The pilot commands all flights at once.
     """
-    game, m = sight.game, sight.game.channels
+    game, m = observer.game, observer.game.channels
     if starts.ndim != 2 or starts.shape[1] != 6:
         raise invalid("starts", "an array of shape (N, 6)", starts.shape)
     context = context or Context()
@@ -51,10 +51,10 @@ def fly(
     least = np.linalg.norm(states[:, :m], axis=1)
     spent, peak = np.zeros(len(states)), np.zeros(len(states))
     path, held = [game.to_lvlh(states)], []
-    horizon = sight.tube.horizon_s
+    horizon = observer.tube.horizon_s
     for step in range(clock.steps):
         context.step(step, clock.steps, "periods")
-        moment = sight.look(step, states, clock.to_go(step, horizon))
+        moment = observer.look(step, states, clock.to_go(step, horizon))
         thrust = pilot.command(step, game.to_lvlh(states)).thrust
         u = game.thrust_from_lvlh(thrust)
         total = u + opponent(moment, u)
@@ -83,6 +83,6 @@ def fly(
 
 
 def _paths(clock: Clock, states: Floats, thrust: Floats) -> tuple[Path, ...]:
-    """Of states (K + 1, N, 6) and thrust (K, N, 3): views."""
+    """The paths of states (K + 1, N, 6) and thrust (K, N, 3), as views."""
     times: Floats = clock.period_s * np.arange(len(states), dtype=np.float64)
     return tuple(Path(times, states[:, n], thrust[:, n]) for n in range(states.shape[1]))

@@ -19,12 +19,12 @@ class Moment:
     The value function is read at the first request, and only once.
     """
 
-    def __init__(self, sight: Sight, step: int, to_go: float, states: Floats) -> None:
-        self._sight, self.step, self.to_go, self.states = sight, step, to_go, states
+    def __init__(self, observer: Observer, step: int, to_go: float, states: Floats) -> None:
+        self._observer, self.step, self.to_go, self.states = observer, step, to_go, states
 
     @cached_property
     def _reading(self) -> tuple[Floats, Floats]:
-        return self._sight.read(self.states, self.to_go)
+        return self._observer.read(self.states, self.to_go)
 
     @property
     def value(self) -> Floats:
@@ -38,13 +38,13 @@ class Moment:
 
     def only(self, chosen: Bools) -> Moment:
         """The same of the chosen encounters."""
-        some = Moment(self._sight, self.step, self.to_go, self.states[chosen])
+        some = Moment(self._observer, self.step, self.to_go, self.states[chosen])
         some.__dict__["_reading"] = self.value[chosen], self.gradient[chosen]
         return some
 
 
 @dataclass(eq=False)
-class Sight:
+class Observer:
     """Reads a tube at any state; outside its lattice it uses a closed-form lower bound of the value."""
 
     game: Game

@@ -16,7 +16,7 @@ import numpy as np
 from safestart.collision_avoidance.bounds.certified import witness
 from safestart.collision_avoidance.encounters.clock import Clock
 from safestart.collision_avoidance.encounters.escape import MODES
-from safestart.collision_avoidance.encounters.observation import Moment, Sight
+from safestart.collision_avoidance.encounters.observation import Moment, Observer
 from safestart.collision_avoidance.encounters.slot import EVASIVE, Slot
 from safestart.collision_avoidance.game import Game
 from safestart.control.controller import Command, Controller
@@ -39,7 +39,7 @@ PILOTS = tuple(name for name in TITLES if name != "supervisor")
 class Watching:
     """The controller of a ``law`` that gives u (N, m) at a moment, for one state or many."""
 
-    sight: Sight
+    observer: Observer
     clock: Clock
     law: Callable[[Moment], Floats]
 
@@ -48,23 +48,23 @@ class Watching:
 
     def command(self, k: int, state: Floats) -> Command:
         """See :class:`safestart.control.controller.Controller`."""
-        sight = self.sight
-        seen = np.atleast_2d(sight.game.from_lvlh(state))
-        push = self.law(sight.look(k, seen, self.clock.to_go(k, sight.tube.horizon_s)))
-        return Command(sight.game.thrust_to_lvlh(push).reshape(*state.shape[:-1], 3))
+        observer = self.observer
+        seen = np.atleast_2d(observer.game.from_lvlh(state))
+        push = self.law(observer.look(k, seen, self.clock.to_go(k, observer.tube.horizon_s)))
+        return Command(observer.game.thrust_to_lvlh(push).reshape(*state.shape[:-1], 3))
 
 
-def pilot(name: str, sight: Sight, clock: Clock, slot: Slot, fuel_price: float = 0.0) -> Controller:
+def pilot(name: str, observer: Observer, clock: Clock, slot: Slot, fuel_price: float = 0.0) -> Controller:
     """The pilot of that name, for one state or many; no pilot has a memory.
 
     ``hj`` raises the value as fast as it can, and coasts if that is not worth ``fuel_price`` (m per m/s); a mode always
     burns at full thrust; ``pd`` follows the evasive PD law to the slot.
     """
-    game = sight.game
+    game = observer.game
     if name == "certified":
-        return Watching(sight, clock, lambda moment: evade(game, moment))
+        return Watching(observer, clock, lambda moment: evade(game, moment))
     if name == "hj":
-        return Watching(sight, clock, lambda moment: climb(game, moment, fuel_price))
+        return Watching(observer, clock, lambda moment: climb(game, moment, fuel_price))
     if name == "pd":
         return Pd(game.axes, slot.centre, EVASIVE, game.control)
     for mode in MODES:

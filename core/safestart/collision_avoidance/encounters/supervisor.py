@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from safestart.collision_avoidance.encounters.clock import Clock
-from safestart.collision_avoidance.encounters.observation import Moment, Sight
+from safestart.collision_avoidance.encounters.observation import Moment, Observer
 from safestart.collision_avoidance.encounters.pilots import evade
 from safestart.collision_avoidance.encounters.slot import RECOVERY, Slot
 from safestart.control.controller import Command
@@ -50,7 +50,7 @@ class Supervisor:
     keeps it above. Recovery ends in the slot's box, whose speeds are the guard's epsilons.
     """
 
-    sight: Sight
+    observer: Observer
     slot: Slot
     guards: Guards
     clock: Clock
@@ -64,9 +64,9 @@ class Supervisor:
 
     def command(self, k: int, state: Floats) -> Command:
         """See :class:`safestart.control.controller.Controller`; ``state`` (N, 6). Switches modes first."""
-        game = self.sight.game
+        game = self.observer.game
         seen = game.from_lvlh(state)
-        moment = self.sight.look(k, seen, self.clock.to_go(k, self.sight.tube.horizon_s))
+        moment = self.observer.look(k, seen, self.clock.to_go(k, self.observer.tube.horizon_s))
         steady = pd_thrust(seen, np.array(self.slot.centre), self.gains, game.control)
         ahead = self._ahead(moment, steady)
         threatened = ahead <= self.guards.level_m
@@ -82,12 +82,12 @@ class Supervisor:
 
     def _ahead(self, moment: Moment, steady: Floats) -> Floats:
         """Value (N,) after one period of the command against the push that lowers it fastest."""
-        game = self.sight.game
+        game = self.observer.game
         worst = game.disturbance.extreme(-moment.gradient[:, game.channels :])
         period = self.clock.period_s
         states = moment.states @ game.transition(period).T
         states += (steady + worst) @ game.held_input(period).T
-        return self.sight.read(states, moment.to_go)[0]
+        return self.observer.read(states, moment.to_go)[0]
 
     def _switch(self, before: Mode, after: Mode, where: Bools) -> None:
         chosen = (self.modes == before) & where

@@ -26,6 +26,6 @@ class HamiltonJacobiInput(WireModel):
     nodes_v: int = Field(15, ge=7, le=31, description="Nodes per velocity axis.")
     frame: Literal["auto", "lvlh", "body"] = Field(
         "auto",
-        description="Frame of the grid: lvlh (the corridor turns), body (paper 000; the corridor stands still), "
+        description="Frame of the grid: lvlh (the corridor turns), body (Iskender et al.; the corridor stands still), "
         "auto: lvlh, but body for tubes of starts at rest in the body frame.",
     )

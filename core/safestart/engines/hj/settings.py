@@ -14,7 +14,7 @@ Shape = tuple[int, int, int, int]
 BOUNDARY = "edge"
 """The grid's padding: repeat the last value, so that nothing flows in from outside."""
 PRECISION = "float32"
-"""Of the values on the grid; both solvers have it."""
+"""Type of the values on the grid in both solvers."""
 
 
 @dataclass(frozen=True, slots=True)

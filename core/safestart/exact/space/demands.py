@@ -145,7 +145,7 @@ class Demands:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of the keep-outs, then those of the other two."""
+        """Names of the keep-outs, then of the field of view and the plume."""
         out = tuple(one.name for one in self.keep_outs)
         return out + ((VIEW,) if self.view else ()) + ((PLUME,) if self.plume else ())
 

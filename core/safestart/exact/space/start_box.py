@@ -37,7 +37,7 @@ class _Watched:
         self.offsets = watch.offsets
 
     def blocks(self, names: Sequence[str], times: Floats) -> Blocks:
-        """Of no limits: the question has none."""
+        """The watch's rows: a question about a box has no other limits."""
         return self.watch.blocks(names, times)
 
 

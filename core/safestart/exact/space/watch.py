@@ -217,6 +217,16 @@ class SpaceWatch:
         start, thrust = self.prediction.position_rows(times, directions)
         return Cuts(times, faces, offset, start, self._by_channels(thrust))
 
+    def position_rows(self, time: float, directions: Floats) -> tuple[Floats, Floats]:
+        """Of the position at a time (s) along directions (J, 3), LVLH: rows over start (J, 6) and points (J, N C)."""
+        start, thrust = self.prediction.position_rows(np.full(len(directions), time), directions)
+        return start, self._by_channels(thrust)
+
+    def normals_at(self, time: float) -> Floats:
+        """Unit normals (F, 3) of the faces in LVLH axes at a time, s."""
+        normals: Floats = self._turned(np.array([time]))[0]
+        return normals
+
     def _planes(self, times: Floats, faces: Ints) -> tuple[Floats, Floats]:  # noqa: ARG002
         """Unit normals (J, 3) in their own frames and offsets (J,) of faces (J,) at times (J,)."""
         return self._own[faces], self.offsets[faces]

@@ -20,7 +20,7 @@ def _first_order(
 
 @inlined
 def _bends(src: Floats, a: Word, b: Word, c: Word, d: Word, e: Word, scale: float) -> tuple[Value, ...]:
-    """Of five values: the slopes to either neighbour of the middle one, and the three second differences."""
+    """For five values: the slopes to either neighbour of the middle one, and the three second differences."""
     d0, d1 = (src[b] - src[a]) * scale, (src[c] - src[b]) * scale
     d2, d3 = (src[d] - src[c]) * scale, (src[e] - src[d]) * scale
     return d1, d2, d1 - d0, d2 - d1, d3 - d2
@@ -60,7 +60,7 @@ def _weno3(
 def _third_order(
     src: Floats, a: Word, b: Word, c: Word, d: Word, e: Word, f: Word, g: Word, scale: float
 ) -> tuple[Value, ...]:
-    """Of seven values: third-order derivatives at the middle one by four stencils, and the five second differences."""
+    """For seven values: third-order derivatives at the middle one by four stencils, and the five second differences."""
     real = src.dtype.type
     third, five, six = real(1.0 / 3.0), real(5.0 / 6.0), real(1.0 / 6.0)
     seven, eleven = real(7.0 / 6.0), real(11.0 / 6.0)

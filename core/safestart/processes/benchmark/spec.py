@@ -66,7 +66,7 @@ BenchmarkInputs = create_model(
 
 
 class PublishedRow(WireModel):
-    """What paper 000 prints for this engine in Table 2 (0.10 m/s^2; 1, 3 and 5 deg/s)."""
+    """What Iskender et al. print for this engine in Table 2 (0.10 m/s^2; 1, 3 and 5 deg/s)."""
 
     iou_vs_hj: float
     area_ratio: float

@@ -11,7 +11,7 @@ import numpy as np
 from safestart.collision_avoidance.encounters.adversary import adversary, until
 from safestart.collision_avoidance.encounters.clock import Clock
 from safestart.collision_avoidance.encounters.encounter import fly, lost
-from safestart.collision_avoidance.encounters.observation import Sight
+from safestart.collision_avoidance.encounters.observation import Observer
 from safestart.collision_avoidance.encounters.pilots import pilot
 from safestart.collision_avoidance.encounters.slot import Slot
 from safestart.collision_avoidance.encounters.starts import approaching, certified_unsafe, near_boundary
@@ -51,9 +51,9 @@ class Flown:
             self.notes.append(error.detail)
             return None
 
-    def add(self, starts: str, pilot: str, opponent: str, flights: Record, sight: Sight) -> None:
+    def add(self, starts: str, pilot: str, opponent: str, flights: Record, observer: Observer) -> None:
         """Count one batch."""
-        keep_out, error = sight.game.keep_out_m, sight.tube.grid_error_m
+        keep_out, error = observer.game.keep_out_m, observer.tube.grid_error_m
         breached, count = int(lost(flights, keep_out).sum()), len(flights)
         low, high = wilson(breached, count) or (0.0, 1.0)
         self.rows.append(
@@ -73,27 +73,30 @@ class Flown:
         )
 
 
-def encounters(inputs: CollisionAvoidanceInputs, sight: Sight, slot: Slot, context: Context) -> Flown:
+def encounters(inputs: CollisionAvoidanceInputs, observer: Observer, slot: Slot, context: Context) -> Flown:
     """Fly all encounters of the inputs."""
     flown = Flown()
     quiet = Context(cancelled=context.cancelled)
-    game, count, seed = sight.game, inputs.encounters, inputs.seed
-    guards = Guards(sight.tube.grid_error_m, CLEARANCE * game.keep_out_m)
+    game, count, seed = observer.game, inputs.encounters, inputs.seed
+    guards = Guards(observer.tube.grid_error_m, CLEARANCE * game.keep_out_m)
     hold = max(1, round(RANDOM_HOLD_S / inputs.period_s))
     clock = Clock(inputs.period_s, inputs.horizon_s)
     sets: dict[str, tuple[Floats | None, Sequence[str]]] = {
-        "outside": (flown.drawn(lambda: near_boundary(sight, count, inputs.band_m, seed, quiet)), inputs.adversaries),
+        "outside": (
+            flown.drawn(lambda: near_boundary(observer, count, inputs.band_m, seed, quiet)),
+            inputs.adversaries,
+        ),
         # Only these two adversaries force the loss from a start that is proved lost.
         "inside": (
-            flown.drawn(lambda: certified_unsafe(sight, count, seed + 1, quiet)),
+            flown.drawn(lambda: certified_unsafe(observer, count, seed + 1, quiet)),
             [name for name in inputs.adversaries if name in ("worst", "mirror")],
         ),
     }  # fmt: skip
 
     def flier(name: str, when: Clock) -> Controller:
         if name == "supervisor":
-            return Supervisor(sight, slot, guards, when)
-        return pilot(name, sight, when, slot, inputs.fuel_price_s)
+            return Supervisor(observer, slot, guards, when)
+        return pilot(name, observer, when, slot, inputs.fuel_price_s)
 
     batches = [
         (kind, starts, name, other)
@@ -108,20 +111,20 @@ def encounters(inputs: CollisionAvoidanceInputs, sight: Sight, slot: Slot, conte
         opponent = adversary(other, game, inputs.horizon_s, len(starts), seed + 2, hold)
         when = Clock(clock.period_s, clock.duration_s, receding=name == "supervisor")
         shown = kind == "outside" and other == inputs.adversaries[0] and name in ("certified", "hj", "pd")
-        flights = fly(sight, starts, flier(name, when), opponent, when, quiet, keep_paths=shown)
-        flown.add(kind, name, other, flights, sight)
+        flights = fly(observer, starts, flier(name, when), opponent, when, quiet, keep_paths=shown)
+        flown.add(kind, name, other, flights, observer)
         if shown:
             worst = np.argsort(flights.margin)[:SHOWN]
             flown.paths[name] = _in_game(game, [flights.paths[n] for n in worst])
     if inputs.supervised:
         context.step(len(batches), total, "supervised flights")
-        _supervised(inputs, sight, slot, guards, hold, flown, quiet)
+        _supervised(inputs, observer, slot, guards, hold, flown, quiet)
     return flown
 
 
 def _supervised(
     inputs: CollisionAvoidanceInputs,
-    sight: Sight,
+    observer: Observer,
     slot: Slot,
     guards: Guards,
     hold: int,
@@ -129,11 +132,11 @@ def _supervised(
     quiet: Context,
 ) -> None:
     """Flights towards a close pass: first Player 2 acts, then the chaser must return to its slot."""
-    game, count = sight.game, inputs.supervised
+    game, count = observer.game, inputs.supervised
     radius = 1.5 * max(float(np.hypot(*slot.centre[:2])), 3.0 * game.keep_out_m)
-    speed = float(sight.tube.lattice.high[-1])
+    speed = float(observer.tube.lattice.high[-1])
     starts = flown.drawn(
-        lambda: approaching(sight, radius, speed, count, guards.level_m, inputs.seed + 3, quiet)
+        lambda: approaching(observer, radius, speed, count, guards.level_m, inputs.seed + 3, quiet)
     )
     if starts is None:
         return
@@ -141,9 +144,9 @@ def _supervised(
     opponent = adversary(name, game, inputs.horizon_s, count, inputs.seed + 4, hold)
     quiet_from = round(inputs.threat_s / inputs.period_s)
     clock = Clock(inputs.period_s, inputs.supervised_s, receding=True)
-    supervisor = Supervisor(sight, slot, guards, clock)
-    flights = fly(sight, starts, supervisor, until(opponent, quiet_from), clock, quiet, keep_paths=True)
-    flown.add("approaching", "supervisor", name, flights, sight)
+    supervisor = Supervisor(observer, slot, guards, clock)
+    flights = fly(observer, starts, supervisor, until(opponent, quiet_from), clock, quiet, keep_paths=True)
+    flown.add("approaching", "supervisor", name, flights, observer)
     paths = _in_game(game, flights.paths)
     flown.paths["supervisor"] = paths
     flown.supervisor = {

@@ -10,7 +10,7 @@ import numpy as np
 
 from safestart.collision_avoidance.encounters.escape import MODES
 from safestart.collision_avoidance.encounters.escape import fly as escape
-from safestart.collision_avoidance.encounters.observation import Sight
+from safestart.collision_avoidance.encounters.observation import Observer
 from safestart.collision_avoidance.encounters.slot import Slot
 from safestart.collision_avoidance.game import Game, Players
 from safestart.collision_avoidance.tube import Tube, solve_tube
@@ -90,7 +90,7 @@ def run(inputs: CollisionAvoidanceInputs, context: Context) -> ProcessOutput:
     escapes = [escape(game, mode, np.zeros(6), inputs.burn_s, orbit) for mode in MODES]
     flown = Flown()
     if not tube.failure and inputs.players == "avoid":
-        flown = encounters(inputs, Sight(game, tube), slot, context.part(0.5, 0.4, 1.0, "encounters"))
+        flown = encounters(inputs, Observer(game, tube), slot, context.part(0.5, 0.4, 1.0, "encounters"))
     judged = judge(inputs, tube, game_of(inputs, in_space=True), context.part(0.9, 0.05, 1.0, "states"))
     context.step(0.95, 1.0, "pictures")
     drawn = slices(inputs, tube)

@@ -23,7 +23,7 @@ class FlightInputs(ScenarioInput):
     question: QuestionKind = Field(
         "stay",
         description="stay: in the corridor for horizon_s. synchronize: also at rest in the hold ball at the end, "
-        "within within_s; where that is no GO, the best attempt to stay is flown.",
+        "within within_s; where that is not GO, the best attempt to stay is flown.",
     )
     horizon_s: Horizon = Field(60.0, description="How long to stay in the corridor, s.")
     within_s: Horizon = Field(200.0, description="Latest end of synchronize, s.")
@@ -48,7 +48,7 @@ class FlightOutputs(WireModel):
 
 
 def _cost(inputs: FlightInputs) -> float:
-    """Two programs at most: where synchronize is no GO, the best attempt to stay is flown."""
+    """Two programs at most: where synchronize is not GO, the best attempt to stay is flown."""
     synchronize = program_s(inputs.within_s) if inputs.question == "synchronize" else 0.0
     return FIRST_S + synchronize + program_s(inputs.horizon_s)
 

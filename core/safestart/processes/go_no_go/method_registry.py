@@ -47,7 +47,7 @@ _ALL = (
     ),
     Method(
         "paper",
-        "the conditions of paper 000, at once; NOT SOUND, a GO may be impossible to fly",
+        "the conditions of Iskender et al., at once; NOT SOUND, a GO may be impossible to fly",
         f"{_HERE}.paper:decide",
         proves=False,
         at_once=True,
@@ -62,8 +62,8 @@ _ALL = (
     ),
     Method(
         "tracking",
-        "the tracking MPC of paper 002 flown to rest at the port, its thrust history proved and its plans certified; "
-        "beside it the exact answer, which decides NO_GO",
+        "the tracking MPC of Rebollo et al. flown to rest at the port, its thrust history proved and its plans "
+        "certified; beside it the exact answer, which decides NO_GO",
         f"{_HERE}.tracking:decide",
         sound=True,
         start_s=0.5,

@@ -25,7 +25,7 @@ FORMS: dict[str, ClosedForm] = {"certified": "certified", "analytical": "paper"}
 
 
 def fine_atlas(inputs: ChainInputs) -> Atlas:
-    """Who can stay for the horizon, for :func:`sliver`."""
+    """Which starts can stay for the horizon, for :func:`sliver`."""
     return build(question_of("stay", inputs), inputs.grid.y_max_m)
 
 

@@ -30,7 +30,7 @@ def _near() -> BrysonInput:
 
 
 class RendezvousInputs(WireModel):
-    """The switched rendezvous of paper 003 and its variants."""
+    """The switched rendezvous of Chan and Mitra and its variants."""
 
     model: Literal["linear", "nonlinear"] = Field(
         "linear",

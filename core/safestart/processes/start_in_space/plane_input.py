@@ -42,7 +42,7 @@ class PlaneInput(WireModel):
     second: PlaneAxis = Field(description="Coordinate b, drawn upwards.")
 
     def labels(self) -> tuple[str, str]:
-        """Of the two axes, with their units."""
+        """Names of the two axes, with their units."""
         first, second = (
             f"{axis.kind} along {_short(axis.direction)}, {self.frame} [{'m' if axis.kind == 'position' else 'm/s'}]"
             for axis in (self.first, self.second)

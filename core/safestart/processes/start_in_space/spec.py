@@ -37,8 +37,8 @@ class SpaceInputs(SpaceScenario, _Starts):
 
     method: Method = Field(
         "exact",
-        description="exact, auto: cone programs, proved either way. tracking: the tracking MPC of paper 002 flown to "
-        "rest at the port, its thrust history proved and its plans certified; beside it the exact answer, which "
+        description="exact, auto: cone programs, proved either way. tracking: the tracking MPC of Rebollo et al. flown "
+        "to rest at the port, its thrust history proved and its plans certified; beside it the exact answer, which "
         "decides NO_GO. For five faces, a circular orbit, a spin or a torque-free body, a ball or a box of thrusts.",
     )
     tracking: TrackingSettings | None = Field(

@@ -16,8 +16,10 @@ from safestart.control.sequence_mpc import SequenceMpc, start_verdict
 from safestart.control.three_regimes import ThreeRegimes
 from safestart.exact.question import Question
 from safestart.model.scenario import Rest, Scenario
+from safestart.processes.sharding import load
 from safestart.processes.sweep.cases import Cases
-from safestart.processes.sweep.inputs import FINE_DT_S, SweepInputs
+from safestart.processes.sweep.controllers import CONTROLLERS
+from safestart.processes.sweep.inputs import SweepInputs
 from safestart.processes.sweep.judge import UNASKED, Verdicts, of
 from safestart.processes.wire import DT_S
 from safestart.simulation.compiled_loop import fly
@@ -81,15 +83,14 @@ def truth_from(inputs: SweepInputs) -> Truth:
 
 def timing(inputs: SweepInputs, controller: str) -> tuple[float, int, int]:
     """Control interval (s), number of intervals and forecast nodes: the filter looks 12 s ahead at any interval."""
-    if controller != "filter_fine":
-        return DT_S, inputs.steps, NODES
-    ratio = round(DT_S / FINE_DT_S)
-    return FINE_DT_S, inputs.steps * ratio, NODES * ratio
+    dt = CONTROLLERS[controller].dt
+    ratio = round(DT_S / dt)
+    return dt, inputs.steps * ratio, NODES * ratio
 
 
 def fly_all(inputs: SweepInputs, controller: str, cases: Cases, poll: Callable[[int], None]) -> Outcome:
-    """Fly every case; ``poll`` is told the number flown and may raise."""
-    if controller == "sequence" or inputs.truth.model != "cwh":
+    """Fly every case; ``poll`` gets the number flown and may raise."""
+    if not CONTROLLERS[controller].compiled or inputs.truth.model != "cwh":
         return _one_by_one(inputs, controller, cases, poll)
     dt, steps, nodes = timing(inputs, controller)
     truth = truth_from(inputs)
@@ -125,23 +126,18 @@ def fly_one(
 
 def controller_of(inputs: SweepInputs, controller: str, cases: Cases) -> Controller:
     """The controller of that name for a scenario."""
-    return CONTROLLERS[controller](inputs, cases.scenario, *timing(inputs, controller))
+    made: Controller = load(CONTROLLERS[controller].make)(inputs, cases.scenario, *timing(inputs, controller))
+    return made
 
 
-def _filter(inputs: SweepInputs, scenario: Scenario, dt: float, steps: int, nodes: int) -> Controller:
+def filter_of(inputs: SweepInputs, scenario: Scenario, dt: float, steps: int, nodes: int) -> Controller:
+    """The safety filter of the paper, with the request's gains."""
     return ThreeRegimes(flight_plan(scenario, gains_of(inputs), dt, steps, nodes=nodes))
 
 
-def _sequence(_: SweepInputs, scenario: Scenario, dt: float, steps: int, __: int) -> Controller:
+def sequence_of(_: SweepInputs, scenario: Scenario, dt: float, steps: int, __: int) -> Controller:
+    """MPC over the whole thrust sequence."""
     return SequenceMpc(Question(scenario, dt, steps))
-
-
-CONTROLLERS: dict[str, Callable[[SweepInputs, Scenario, float, int, int], Controller]] = {
-    "filter": _filter,
-    "filter_fine": _filter,
-    "sequence": _sequence,
-}
-"""The controllers that a sweep can fly, by name."""
 
 
 def _one_by_one(inputs: SweepInputs, controller: str, cases: Cases, poll: Callable[[int], None]) -> Outcome:

@@ -8,9 +8,9 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from safestart.model.scenario import MAX_MEAN_MOTION, MAX_RANGE
 from safestart.model.wire_model import WireModel
+from safestart.processes.sweep.controllers import CONTROLLERS, TEXTS, Controller, slow
 from safestart.processes.wire import DISTINCT, DT_S, CorridorInput, Horizon, Seed, Thrust, TumbleRate
 
-Controller = Literal["filter", "filter_fine", "sequence"]
 CertificateName = Literal["certified", "paper", "exact"]
 RENAMED = {"closed_form": "paper"}
 """Deprecated names of certificates, still taken."""
@@ -20,8 +20,8 @@ def _by_present_name(names: Any) -> Any:
     return [RENAMED.get(name, name) for name in names] if isinstance(names, list) else names
 
 
-FINE_DT_S = 0.5
 MAX_CASES = 10_000_000
+_SLOW = ", ".join(name for name in CONTROLLERS if slow([name]))
 # Flown interval by interval from Python, or with a scenario of its own per case.
 MAX_SLOW_CASES = 200_000
 
@@ -80,9 +80,8 @@ class SweepInputs(WireModel):
     controllers: Annotated[list[Controller], DISTINCT] = Field(
         ["filter", "sequence"],
         min_length=1,
-        max_length=3,
-        description="filter: the paper's; filter_fine: the same commanded every 0.5 s; sequence: MPC over the whole "
-        "thrust sequence.",
+        max_length=len(CONTROLLERS),
+        description=f"{TEXTS}.",
     )
     certificates: Annotated[list[CertificateName], DISTINCT, BeforeValidator(_by_present_name)] = Field(
         ["certified", "paper", "exact"],
@@ -123,10 +122,9 @@ class SweepInputs(WireModel):
             raise ValueError("r0_m: more than corridor.r_h_m")
         if self.total > MAX_CASES:
             raise ValueError(f"cases_per_cell: at most {MAX_CASES} cases in all, not {self.total}")
-        slow = "sequence" in self.controllers or self.truth.model != "cwh"
-        if slow and self.total > MAX_SLOW_CASES:
+        if self.one_by_one and self.total > MAX_SLOW_CASES:
             raise ValueError(
-                f"cases_per_cell: at most {MAX_SLOW_CASES} cases with sequence or two_body_j2, not {self.total}"
+                f"cases_per_cell: at most {MAX_SLOW_CASES} cases with {_SLOW} or two_body_j2, not {self.total}"
             )
         if self.truth.model != "cwh" and self.mean_motion_rad_s < 1e-4:
             raise ValueError("mean_motion_rad_s: at least 1e-4 for two_body_j2")
@@ -138,6 +136,11 @@ class SweepInputs(WireModel):
         if self.distribution != "grid":
             return self.cases
         return len(self.omega_t_deg_s) * len(self.a_max_m_s2) * len(self.r0_m) * self.cases_per_cell
+
+    @property
+    def one_by_one(self) -> bool:
+        """Whether starts are flown one after another, in Python."""
+        return slow(self.controllers) or self.truth.model != "cwh"
 
     @property
     def steps(self) -> int:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from pydantic import Field
 
 from safestart.model.wire_model import WireModel
-from safestart.processes.sweep.inputs import CertificateName, Controller
+from safestart.processes.sweep.controllers import Controller
+from safestart.processes.sweep.inputs import CertificateName
 from safestart.processes.wire import Confusion
 
 

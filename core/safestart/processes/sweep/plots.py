@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from safestart.model.scenario import Floats
 from safestart.processes.plotting import draw_corridor, drawn_as, figure
+from safestart.processes.sweep.controllers import CONTROLLERS
 from safestart.processes.sweep.inputs import SweepInputs
 
 Path = tuple[dict[str, Any], Floats, Floats]
@@ -19,9 +20,7 @@ NAMES = {
     "certified": "certified",
     "paper": "paper (not sound)",
     "exact": "exact",
-    "filter": "filter",
-    "filter_fine": "filter, 0.5 s",
-    "sequence": "sequence",
+    **{one.name: one.title for one in CONTROLLERS.values()},
 }
 _SAFE, _LOST = "#0072B2", "#D55E00"
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from safestart.processes.base import ProcessSpec
 from safestart.processes.sharding import Sharding
+from safestart.processes.sweep.controllers import CONTROLLERS
 from safestart.processes.sweep.inputs import SweepInputs
 from safestart.processes.sweep.outputs import SweepOutputs
 from safestart.processes.views import Column, Facts, Flights, Matrices, Rows
@@ -77,9 +78,7 @@ SPEC = ProcessSpec(
                 Column("certified", "certified.certified"),
                 Column("by the paper's conditions, not sound", "certified.paper"),
                 Column("proved by exact", "certified.exact"),
-                Column("stayed: filter", "feasible.filter"),
-                Column("stayed: fine filter", "feasible.filter_fine"),
-                Column("stayed: sequence", "feasible.sequence"),
+                *(Column(f"stayed: {one.title}", f"feasible.{one.name}") for one in CONTROLLERS.values()),
             ),
         ),
     ),

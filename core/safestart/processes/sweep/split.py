@@ -22,8 +22,7 @@ def split(inputs: SweepInputs) -> list[dict[str, Any]]:
     if inputs.distribution != "grid":
         shards = [[[0, first, count]] for first, count in runs(inputs.cases, DRAWN_OWN)]
     else:
-        slow = "sequence" in inputs.controllers or inputs.truth.model != "cwh"
         points = len(inputs.omega_t_deg_s) * len(inputs.a_max_m_s2)
-        shards = packed(points, len(inputs.r0_m), inputs.cases_per_cell, SLOW if slow else FAST)
+        shards = packed(points, len(inputs.r0_m), inputs.cases_per_cell, SLOW if inputs.one_by_one else FAST)
     dumped = inputs.model_dump(mode="json")
     return [{"inputs": dumped, "number": number, "pieces": pieces} for number, pieces in enumerate(shards)]

@@ -13,6 +13,7 @@ from safestart.campaign.spread import Spread
 from safestart.campaign.study import Study
 from safestart.campaign.table import Column, Kind
 from safestart.campaign.tally import Flagged, Known, Rows, Tally, Total
+from safestart.processes.sweep.controllers import CONTROLLERS
 from safestart.processes.sweep.inputs import SweepInputs
 from safestart.processes.sweep.split import DRAWN_OWN
 
@@ -131,10 +132,7 @@ def notes(inputs: SweepInputs) -> list[str]:
         "staying longer, is not asked for.",
         f"filter: preset {inputs.preset}, one command per 2 s; its false positives are the controller's.",
     ]
-    if "sequence" in inputs.controllers:
-        said.append(
-            "sequence: the least impulse that keeps a margin; it may loiter. It is always checked at all times."
-        )
+    said += [f"{name}: {note}" for name in inputs.controllers if (note := CONTROLLERS[name].note)]
     if "exact" in inputs.certificates:
         if inputs.distribution == "grid" or "sequence" in inputs.controllers:
             said.append("exact: every start (thrust held for 2 s, CWH without disturbance).")

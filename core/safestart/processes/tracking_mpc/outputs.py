@@ -13,7 +13,7 @@ from safestart.processes.wire import Confusion
 class ThetaMax(WireModel):
     """Distance from the target up to which the input suffices to stay, m; null: any (printed: or thrust is held)."""
 
-    printed: float | None = Field(description="Paper 002, (39)-(41): leaves out the centripetal term.")
+    printed: float | None = Field(description="Rebollo et al., (39)-(41): leaves out the centripetal term.")
     ball: float | None = Field(description="Rigorous, closed form, all attitudes.")
     exact_low: float | None = Field(
         description="The exact one over all phases and attitudes is at least this."

@@ -21,7 +21,7 @@ Triple = list[float]
 
 
 class DockingCorridorInput(WireModel):
-    """Prism of paper 002, eq. (4), fixed in the body: y >= 0, |x| <= x0 + y / c_x, |z| <= z0 + y / c_z."""
+    """Prism of Rebollo et al., eq. (4), fixed in the body: y >= 0, |x| <= x0 + y / c_x, |z| <= z0 + y / c_z."""
 
     c_x: float = Field(1.0, gt=0, le=1000, description="Slope of the +-x sides.")
     c_z: float = Field(1.0, gt=0, le=1000, description="Slope of the +-z sides.")

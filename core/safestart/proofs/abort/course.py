@@ -134,7 +134,7 @@ class Course:
 
 
 def inverse(phi: arb_mat) -> arb_mat:
-    """Of a symplectic (6, 6)."""
+    """The inverse of a symplectic matrix (6, 6)."""
     out = arb_mat(6, 6)
     for i in range(3):
         for j in range(3):

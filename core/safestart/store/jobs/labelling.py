@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
+from sqlalchemy import select
+
 from safestart.records.labels import labels_of
 from safestart.runtime.access import Caller
 from safestart.store.access.audit import add_audit
 from safestart.store.database import Database
 from safestart.store.jobs.finding import find
+from safestart.store.models import JobRow
 from safestart.store.records import Job
 
 
@@ -34,6 +37,8 @@ class Labelling:
         """
         told: dict[str, Any] = labels_of(name=name, tags=tags, note=note)
         with self._database.session(write=True) as session:
+            # PostgreSQL: two who label the same job wait for each other, as the searched text is made of both labels.
+            session.execute(select(JobRow.seq).where(JobRow.id == job_id).with_for_update())
             row = find(session, job_id)
             changed = [key for key, value in told.items() if getattr(row, key) != value]
             for key in changed:

@@ -6,6 +6,7 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from safestart.store.dialect import after
+from safestart.store.jobs.durations import Past
 from safestart.store.jobs.events import EventLog
 from safestart.store.jobs.finding import find
 from safestart.store.jobs.listing import Listing
@@ -19,7 +20,7 @@ from safestart.store.queue.tally import tallies
 from safestart.store.records import Job, JobStatus, Vitals
 
 
-class JobRepository(Submissions, Listing, Claims, Shards, Queue, EventLog, Presence):
+class JobRepository(Submissions, Listing, Past, Claims, Shards, Queue, EventLog, Presence):
     """All operations on jobs; safe to share between threads."""
 
     def get(self, job_id: str) -> Job:

@@ -15,7 +15,7 @@ def courses_in(record: Record) -> FlightCourses:
     """The courses of a flight's record; raises ``NotAcceptable`` for another process, ``InvalidInput``."""
     if record.get("process", {}).get("id") != "flight" or "lvlh_m_s" not in record["outputs"]:
         raise NotAcceptable(
-            "this result is no flight; required application/json",
+            "this result is not a flight; required application/json",
             field="Accept",
             required="application/json",
         )

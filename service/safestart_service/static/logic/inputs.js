@@ -10,6 +10,7 @@ export function leaves(inputs, path = "") {
     const here = path ? `${path}.${name}` : name;
     if (value === null || value === undefined) return [];
     if (isObject(value)) return leaves(value, here);
+    if (Array.isArray(value) && value.length === 1 && isObject(value[0])) return leaves(value[0], here);
     const text = Array.isArray(value) ? (isPlain(value) ? value.join(", ") : value.map((item) => JSON.stringify(item)).join(", ")) : String(value);
     return text === "" ? [] : [[here, text.length > LONGEST ? `${text.slice(0, LONGEST - 2)} …` : text]];
   });

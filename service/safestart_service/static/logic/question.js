@@ -26,6 +26,8 @@ export const FIELDS = {
 export const FIRST = Object.fromEntries(Object.entries(FIELDS).map(([name, field]) => [name, field.first]));
 const SPREADS = ["omega_t_half_width_deg_s", "a_max_half_width_m_s2", "position_half_width_m", "velocity_half_width_m_s", "disturbance_m_s2"];
 const SHAPE = ["c_x", "x0_m", "r_h_m"];
+/** What a verdict's question has besides its start. */
+export const ASKED = ["omega_t_deg_s", "a_max_m_s2", "question", "horizon_s", "within_s", "rest", "mean_motion_rad_s", ...SHAPE, ...SPREADS];
 
 /** Texts that an HTML number field accepts; any other text would be in the address but not in the field. */
 const NUMBER = /^-?(\d+(\.\d+)?|\.\d+)(e[+-]?\d+)?$/i;
@@ -85,11 +87,11 @@ export const flight = (values, start) => ({
 });
 
 /** The verdict's question as inputs of the process that answers it for many starts. */
-export const asProcess = (values, start) => ({
+export const asProcess = (values, ...starts) => ({
   id: "go-no-go",
   inputs: {
     ...scenario(values), rest: values.rest, question: values.question, horizon_s: values.horizon_s,
-    ...(values.question === "synchronize" ? { within_s: values.within_s } : {}), ...spreads(values), states: [start],
+    ...(values.question === "synchronize" ? { within_s: values.within_s } : {}), ...spreads(values), states: starts,
   },
 });
 
@@ -126,6 +128,16 @@ export const DECIDED = {
   certified: "by the certificate in closed form: a known manoeuvre, for ever", exact: "by a cone program", atlas: "by an atlas of cone programs",
   families: "by cone programs", tube: "by a cone program in the tightened corridor", tracking: "by a flight of the tracking MPC, proved and certified",
 };
+
+/** A decided member of a family in words: `GO at nominal`, or `NO-GO at` the values that it has. */
+export function memberWords({ verdict, omega_t_deg_s: rate, a_max_m_s2: thrust, position_m: [x, y], velocity_m_s: speed = [] }, values, at) {
+  const near = (one, two) => Math.abs(one - two) <= 1e-9 * Math.max(1, Math.abs(two));
+  // Where the velocity is uncertain, only one at rest in LVLH is known here to be as given.
+  const moves = values.velocity_half_width_m_s !== 0, still = !moves || (values.rest === "lvlh" && speed.every((one) => near(one, 0)));
+  const given = still && near(rate, values.omega_t_deg_s) && near(thrust, values.a_max_m_s2) && near(x, at.x_m) && near(y, at.y_m);
+  const where = `${figure(rate)} deg/s, ${figure(thrust)} m/s², (${figure(x)}, ${figure(y)}) m${moves ? `, (${speed.map((one) => figure(one, 3)).join(", ")}) m/s` : ""}`;
+  return `${verdict.replace("_", "-")} at ${given ? "nominal" : where}`;
+}
 
 /** How sure the verdict is, beside its word. */
 export function proved(verdict, values) {

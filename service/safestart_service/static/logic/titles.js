@@ -23,6 +23,12 @@ export function titled(name) {
 /** A description without what only its source needs: powers as people write them, no backticks. */
 export const plainly = (text) => (text ?? "").replaceAll("^2", "²").replaceAll("^3", "³").replaceAll("+-", "±").replaceAll("`", "");
 
+/** An input and its value in words: `omega_t_deg_s`, 3 is tumble rate 3 deg/s. */
+export function inputWords(path, value) {
+  const { text, unit } = titled(path.split(".").at(-1));
+  return `${text.length > 1 ? `${text[0].toLowerCase()}${text.slice(1)}` : text} ${value}${unit ? ` ${unit}` : ""}`;
+}
+
 /** The title of an input by its path, with its unit: `grid.y_max_m` is Grid: corridor cut at [m]. */
 export function inputTitle(path) {
   const parts = path.split(".").map(titled), { unit } = parts.at(-1);

@@ -17,7 +17,22 @@ export function duration(seconds) {
   return `${(seconds / 3600).toFixed(1)} h`;
 }
 
-export const moment = (text) => (text ? `${new Date(text).toISOString().slice(0, 19).replace("T", " ")} UTC` : "–");
+const two = (number) => String(number).padStart(2, "0");
+
+/** The time of day of a moment, in UTC or in the browser's zone. */
+export function clock(text, local = false) {
+  const at = new Date(text);
+  return local ? [at.getHours(), at.getMinutes(), at.getSeconds()].map(two).join(":") : at.toISOString().slice(11, 19);
+}
+
+/** A moment, in UTC or in the browser's zone, which stands behind it. */
+export function moment(text, local = false) {
+  if (!text) return "–";
+  const at = new Date(text), minutes = -at.getTimezoneOffset();
+  if (!local) return `${at.toISOString().slice(0, 10)} ${clock(text)} UTC`;
+  const zone = `${minutes < 0 ? "−" : "+"}${two(Math.floor(Math.abs(minutes) / 60))}:${two(Math.abs(minutes) % 60)}`;
+  return `${at.getFullYear()}-${two(at.getMonth() + 1)}-${two(at.getDate())} ${clock(text, true)} ${zone}`;
+}
 
 /** A text as a sentence: begins with a capital, ends with one full stop. */
 export const sentence = (text) => (text ? `${text[0].toUpperCase()}${text.slice(1)}${/[.!?]$/.test(text) ? "" : "."}` : "");

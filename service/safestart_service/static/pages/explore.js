@@ -1,6 +1,7 @@
 // Explore: the operating point, the regions, one start, its flight. Store and address hold the text of every field.
 
 import { nearest, within } from "../logic/geometry.js";
+import { pinned } from "../logic/pins.js";
 import { PRESETS } from "../logic/presets.js";
 import { FIELDS, asProcess, certificate, flight as flightOf, flightWords, fromAddress, mapLacks, mapWords, paper, proven, read, region as regionOf, start as startOf, toAddress } from "../logic/question.js";
 import { Store } from "../logic/store.js";
@@ -10,14 +11,25 @@ import { execute, get, post } from "../parts/api.js";
 import { saveButtons } from "../parts/chart.js";
 import { copies } from "../parts/copies.js";
 import { Flight } from "../parts/flight.js";
+import { explain } from "../parts/glossary.js";
 import { drawMap, pointAt } from "../parts/map.js";
 import { $, el, fail, save } from "../parts/page.js";
+import { Pins } from "../parts/pins.js";
 import { listStored, storedInputs, storedNote, storedSets } from "../parts/stored.js";
 import { verdict as verdictCards } from "../parts/verdict.js";
+import { waiting } from "../parts/waiting.js";
 
 const { texts, unknown } = fromAddress(location.search);
 const store = new Store({ ...texts, job: "" });
 const map = $("map"), flight = new Flight(redraw);
+const pins = new Pins({
+  given: () => given(store.inputs),
+  open(values) {
+    change(Object.fromEntries(Object.keys(FIELDS).filter((name) => values[name] !== null).map((name) => [name, String(values[name])])));
+    store.hasten();
+  },
+  changed: redraw,
+});
 const query = (question) => `/go-no-go?${new URLSearchParams(question)}`;
 let begun = 0;
 
@@ -99,7 +111,7 @@ function redraw() {
   const done = drawMap(map, {
     values, certified: certified.answer, region: region.answer, sets: setsOf(values), says: mapWords(values),
     turn: inOrbit ? flight.turn(values.omega_t_deg_s) : null,
-    overlay: (frame) => flight.traces(frame, startOf(values)),
+    overlay: (frame) => [...(frame === "body" ? pins.traces(values) : []), ...flight.traces(frame, startOf(values))],
   });
   if (certified.answer) done.then(() => { map.dataset.drawnMs = (performance.now() - begun).toFixed(1); });
   return undefined;
@@ -118,14 +130,18 @@ function showMapState() {
   $("map-lacks").textContent = lacks.length ? `The map does not ask: ${lacks.join("; ")}. The verdict does.` : "";
   if (values === null) place.replaceChildren(el("p", { class: "empty" }, "No map: a field cannot be read."));
   else if (failed) fail(place, failed.error, () => store.hasten());
-  else if (region.state === "asking") place.replaceChildren(el("p", { class: "note", role: "status" }, "Proving the exact region …"));
-  else place.replaceChildren();
+  else if (region.state === "asking") {
+    // Drawn anew with every change of the map: what has been told of this question goes on.
+    if (place.dataset.awaits !== region.digest || !place.hasChildNodes()) waiting(place, "Proving the exact region", { id: "safe-region", inputs: region.question });
+  } else place.replaceChildren();
+  place.dataset.awaits = region.state === "asking" ? region.digest : "";
 }
 
 function showVerdict(panel) {
   const place = $("verdict");
   place.dataset.digest = panel.state === "there" ? panel.digest : "";
   showFlight(flown);
+  $("pin").disabled = panel.state !== "there";
   if (panel.state === "failed") return fail(place, panel.error, () => store.hasten());
   const shown = panel.answer ?? panel.old;
   if (shown) return place.replaceChildren(...verdictCards(shown, panel.answer === null));
@@ -235,6 +251,10 @@ $("frame").addEventListener("change", redraw);
 $("stored").addEventListener("change", ({ target }) => change({ job: target.value, ...storedInputs(target.value) }));
 map.after(saveButtons(map, "safe-start-region", el));
 $("verdict").after(copies(() => { const asked = started(store.inputs); return asked && asProcess(asked.values, asked.start); }));
+$("pin").addEventListener("click", () => {
+  const { values, start, found } = verdict.answer;
+  pins.add([pinned(values, start, found)]);
+});
 $("flight-tools").append(el("button", { type: "button", class: "plain", onclick: () => save("flight.csv", csv(rowsOf(flight.data))) }, "Flight as CSV"));
 $("preset").append(...PRESETS.map(({ title }, k) => el("option", { value: String(k) }, title)));
 $("preset").addEventListener("change", ({ target }) => {
@@ -248,6 +268,7 @@ if (unknown.length) $("address").textContent = `The address has settings that th
 for (const details of document.querySelectorAll("#controls details")) {
   details.open = [...details.querySelectorAll("input[name]")].some(({ name }) => store.inputs[name] !== FIELDS[name].first);
 }
+explain($("controls"));
 change({});
 store.hasten();
 listStored();

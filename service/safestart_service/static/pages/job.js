@@ -1,10 +1,12 @@
 // One job: live while it waits or runs, then its results. Everything is on the server and survives a reload.
 
 import { newest } from "../logic/store.js";
-import { duration, moment } from "../logic/words.js";
-import { Problem, call, follow, get, post, remove, root } from "../parts/api.js";
+import { duration } from "../logic/words.js";
+import { Problem, call, follow, get, remove, root } from "../parts/api.js";
+import { again } from "../parts/bulk.js";
 import { copies } from "../parts/copies.js";
-import { $, definition, el, fail, loading, status } from "../parts/page.js";
+import { labelled } from "../parts/labels.js";
+import { $, coded, definition, download, el, fail, hour, loading, status, statusWord, time } from "../parts/page.js";
 import { description } from "../parts/process.js";
 import { known, results, verdictBadge } from "../parts/results.js";
 import { shown } from "../parts/views.js";
@@ -20,32 +22,47 @@ const isActive = () => ["accepted", "running"].includes(job.status);
 
 function tell(at, text) {
   const low = log.scrollTop + log.clientHeight >= log.scrollHeight - 4;
-  log.append(el("p", {}, `${at.slice(11, 19)}  ${text}`));
+  log.append(el("p", {}, hour(at), `  ${text}`));
   if (low) log.scrollTop = log.scrollHeight;
 }
 
 function title() {
-  $("title").replaceChildren(...[`${job.processID} `, verdict, status(job)].filter(Boolean));
-  document.title = `${job.processID} ${job.status} · safestart`;
+  $("title").replaceChildren(...[`${job.name || job.processID} `, verdict, status(job)].filter(Boolean));
+  $("process").textContent = job.name ? `${job.processID} ` : "";
+  document.title = `${job.name || job.processID} ${job.status} · safestart`;
+}
+
+/** Name, tags and note, unless somebody is writing them. */
+function labels() {
+  if ($("labels").contains(document.activeElement) && $("labels").querySelector("form")) return;
+  $("labels").replaceChildren(labelled(job, fail, (now) => {
+    job = now;
+    title();
+    $("labels").replaceChildren();
+    labels();
+    $("label").focus();
+  }));
 }
 
 function frame() {
   title();
+  labels();
   $("inputs").textContent = JSON.stringify(job.inputs, null, 1);
   const active = isActive();
   $("tools").replaceChildren(...[
     active && !job.dismissal_requested ? el("button", { type: "button", class: "danger", onclick: cancel }, "Cancel") : null,
-    active ? null : el("button", { type: "button", onclick: again }, job.status === "successful" ? "Run again" : "Try again"),
+    active ? null : el("button", { type: "button", onclick: repeat }, job.status === "successful" ? "Run again" : "Try again"),
     el("a", { href: `${root}/dashboard/submit?process=${job.processID}&from=${id}` }, "Change inputs"),
+    active ? null : download(call, `/jobs/${id}/bundle`, `${id}.zip`, "Bundle"),
     copies(() => ({ id: job.processID, inputs: job.inputs })),
   ].filter(Boolean));
-  const facts = [["Submitted", moment(job.created)], ["Started", moment(job.started)], ["Finished", moment(job.finished)], ["Attempts", String(job.attempts)]];
+  const facts = [["Submitted", time(job.created)], ["Started", time(job.started)], ["Finished", time(job.finished)], ["Attempts", String(job.attempts)]];
   if (job.position) facts.push(["Place in the queue", String(job.position)]);
   if (job.starts_in_s) facts.push(["Starts in about", duration(job.starts_in_s)]);
   const parts = [];
-  if (job.problem) parts.push(el("section", { class: "problem", role: "alert" }, el("h2", {}, job.problem.title ?? "Failed"), el("p", {}, job.problem.detail ?? "")));
+  if (job.problem) parts.push(el("section", { class: "problem", role: "alert" }, el("h2", {}, job.problem.title ?? "Failed"), el("p", {}, ...coded(job.problem.detail ?? ""))));
   if (active) parts.push(el("div", { class: "line big" }, bar, percent, left), message, connection);
-  if (job.reason) parts.push(el("p", { class: "note" }, `Waits: ${job.reason}.`));
+  if (job.reason) parts.push(el("p", { class: "note" }, ...coded(`Waits: ${job.reason}.`)));
   $("state").replaceChildren(...parts);
   $("course").replaceChildren(el("h2", {}, "Course of the job"), el("dl", {}, ...facts.map(([name, value]) => definition(name, value))), ...(log.childElementCount ? [log] : []));
   progress(job.progress, job.message, job.eta_s);
@@ -89,7 +106,7 @@ async function heard(kind, data) {
     tell(data.at, `${Math.floor(data.progress)} %  ${data.message}`);
   } else if (kind === "log") tell(data.at, data.message);
   else if (kind === "status") {
-    tell(data.at, [data.status, data.message].filter(Boolean).join(": "));
+    tell(data.at, [statusWord(data.status), data.message].filter(Boolean).join(": "));
     await show();
   }
 }
@@ -122,11 +139,10 @@ async function cancel() {
   }
 }
 
-async function again({ target }) {
+async function repeat({ target }) {
   target.disabled = true;
   try {
-    const next = await post(`/processes/${job.processID}/execution`, { inputs: job.inputs }, { headers: { Prefer: "respond-async" } });
-    location.assign(`${root}/dashboard/jobs/${next.jobID}`);
+    location.assign(`${root}/dashboard/jobs/${await again(job)}`);
   } catch (error) {
     fail($("tools"), error, () => location.reload());
   }

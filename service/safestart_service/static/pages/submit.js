@@ -1,17 +1,21 @@
 // Submit: any process, by a form made from its schema; light ones answer here, others become jobs.
 
+import { estimateWords } from "../logic/estimate.js";
 import { Store } from "../logic/store.js";
 import { call, execute, get, root } from "../parts/api.js";
 import { copies } from "../parts/copies.js";
 import { field, mark } from "../parts/form.js";
+import { explain } from "../parts/glossary.js";
+import { labelFields } from "../parts/labels.js";
 import { $, el, fail, loading } from "../parts/page.js";
 import { description } from "../parts/process.js";
 import { firstScreen, known, rest, verdictBadge } from "../parts/results.js";
 import { shown } from "../parts/views.js";
+import { estimated, waiting } from "../parts/waiting.js";
 
 const address = new URLSearchParams(location.search);
 const isLight = (one) => one.jobControlOptions.includes("sync-execute");
-let entry = null;
+let entry = null, labels = null;
 
 // `entered` is the content of the form, `sent` the inputs of the run; the answer is shown while both are equal.
 const store = new Store({ process: null, from: address.get("from"), entered: null, sent: null });
@@ -20,9 +24,18 @@ store.panel({
   poses: ({ process, from }) => process && { process, from },
   asks: async ({ process, from }, signal) => {
     const [spec, job] = await Promise.all([description(process), from ? get(`/jobs/${from}`, { signal }) : null]);
-    return { spec, given: job?.inputs };
+    return { spec, given: job?.inputs, named: job ? { name: job.name, tags: job.tags, note: job.note } : {} };
   },
   shows: showForm,
+});
+
+// How long a run of the form's content would take.
+store.panel({
+  quiet: 400,
+  poses: ({ process, entered }) => (process && entered !== null ? { process, inputs: JSON.parse(entered) } : null),
+  asks: ({ process, inputs }, signal) => estimated(process, inputs, { signal }),
+  // What is wrong with the inputs is told when they are sent.
+  shows: ({ state, answer }) => { if ($("estimate")) $("estimate").textContent = state === "there" ? estimateWords(answer) : ""; },
 });
 
 store.panel({
@@ -42,12 +55,15 @@ function showForm({ state, answer, error }) {
     loading($("form"));
     return;
   }
-  const { spec, given } = answer, schema = whole(spec), light = isLight(spec);
+  const { spec, given, named } = answer, schema = whole(spec), light = isLight(spec);
   $("what").textContent = spec.description;
   entry = field(schema, schema, "", "", given);
-  $("form").replaceChildren(entry.node, el("div", { class: "tools" },
+  labels = labelFields(named);
+  $("form").replaceChildren(entry.node, el("details", { class: "rare", open: !light }, el("summary", {}, `Name, tags and note${light ? " of a queued run" : ""}`), ...labels.nodes), el("div", { class: "tools" },
     el("button", { type: "submit" }, light ? "Run now" : "Submit"),
-    light ? el("button", { type: "button", class: "plain", onclick: queue }, "Queue it") : null), copies(() => ({ id: spec.id, inputs: entry.value() })));
+    light ? el("button", { type: "button", class: "plain", onclick: queue }, "Queue it") : null), el("p", { class: "note", id: "estimate", role: "status" }), copies(() => ({ id: spec.id, inputs: entry.value() })));
+  explain($("form"));
+  store.set({ entered: entered() });
 }
 
 /** One schema of all inputs, from the description's separate schemas. */
@@ -72,7 +88,7 @@ function showAnswer({ state, answer, error, question }) {
   if (state === "failed") {
     fail(place, error, () => store.hasten());
     mark($("form"), error.document?.field, error.message);
-  } else if (state === "asking") loading(place, "Running");
+  } else if (state === "asking") waiting(place, "Running", { id: question.process, inputs: question.inputs });
   else if (state === "none") place.replaceChildren();
   else {
     const result = known(answer.spec, answer.outputs, question.inputs), { head, pictures, parts, draws } = shown(result), [first, ...more] = pictures;
@@ -98,7 +114,7 @@ async function queue() {
   loading($("state"), "Sending");
   try {
     const headers = { Prefer: "respond-async" };
-    const { jobID } = await (await call(`/processes/${process}/execution`, { method: "POST", json: { inputs: entry.value() }, headers })).json();
+    const { jobID } = await (await call(`/processes/${process}/execution`, { method: "POST", json: { inputs: entry.value(), ...labels.value() }, headers })).json();
     location.assign(`${root}/dashboard/jobs/${jobID}`);
   } catch (error) {
     for (const button of buttons) button.disabled = false;

@@ -1,5 +1,6 @@
 // Plotly in our colours, light and dark.
 
+import { recoloured } from "../logic/recolour.js";
 import { lines } from "../logic/words.js";
 
 const shades = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
@@ -9,6 +10,7 @@ const SHADES = ["ink", "soft", "line", "card", "certified", "exact", "limit", "l
 export const theme = () => Object.fromEntries(SHADES.map((name) => [name, shades(`--${name}`)]));
 
 const drawn = new Map(), paper = matchMedia("print");
+let worn = theme();
 
 /**
  * Draw or redraw; the picture follows the colour scheme and the width of its place. A title that is too long is broken
@@ -34,9 +36,13 @@ export function draw(place, traces, layout = {}, config = {}) {
 }
 
 /** Colours and sizes change with these; printing a page resizes no window. */
-for (const medium of [matchMedia("(prefers-color-scheme: dark)"), paper]) medium.addEventListener("change", () => {
-  for (const [place, args] of drawn) if (place.isConnected) draw(place, ...args);
-});
+function anew() {
+  const next = theme(), pairs = new Map(SHADES.map((name) => [worn[name], next[name]]));
+  worn = next;
+  for (const [place, args] of drawn) if (place.isConnected) draw(place, ...recoloured(args, pairs));
+}
+for (const medium of [matchMedia("(prefers-color-scheme: dark)"), paper]) medium.addEventListener("change", anew);
+document.addEventListener("colours", anew);
 
 export function saveButtons(place, name, el) {
   const button = (format) => el("button", {

@@ -16,7 +16,7 @@ function body({ values, certified, region, sets }) {
   if (region?.inner_polygon_m.length) {
     line("exact: proved GO", closed(region.inner_polygon_m), blue, { fill: "toself", fillcolor: "rgba(59,111,212,0.16)" });
   }
-  if (region?.outer_polygon_m.length) line("outside: proved NO_GO", closed(region.outer_polygon_m), blue, { dash: "dot" });
+  if (region?.outer_polygon_m.length) line("outside: proved NO GO", closed(region.outer_polygon_m), blue, { dash: "dot" });
   if (certified) {
     traces.push({
       name: "certified, for ever", type: "contour", x: certified.x_m, y: certified.y_m, z: certified.margin_m,

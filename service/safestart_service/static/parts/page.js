@@ -1,6 +1,6 @@
 // Shared by all pages: elements, tables, the states empty, loading and failed, the key dialog.
 
-import { figure } from "../logic/words.js";
+import { clock, figure, moment } from "../logic/words.js";
 import { Problem, hasKey, useKey } from "./api.js";
 
 /** An element with attributes and children; text stays text. */
@@ -14,6 +14,9 @@ export function el(tag, attributes = {}, ...children) {
   node.append(...children.filter((child) => child !== null && child !== undefined));
   return node;
 }
+
+/** A text of the service in which commands stand between backticks: they become code. */
+export const coded = (text) => text.split(/`+([^`]+)`+/).map((part, k) => (k % 2 ? el("code", {}, part) : part));
 
 export const $ = (id) => document.getElementById(id);
 
@@ -30,7 +33,7 @@ export function fail(place, error, again) {
   }
   const box = el("div", { class: "problem", role: "alert" });
   box.append(el("h2", {}, known ? error.document.title ?? "Refused" : "This page has a fault"));
-  box.append(el("p", {}, error.message));
+  box.append(el("p", {}, ...coded(error.message)));
   if (known && error.document.required && !error.message.includes(error.document.required)) {
     box.append(el("p", { class: "note" }, `Required: ${error.document.required}. Received: ${error.document.received}.`));
   }
@@ -65,6 +68,26 @@ export const badge = (about, word, kind) => el("span", { class: `badge ${about}`
 /** The words for a job's status; the wire's own stay the classes. */
 const STATUS = { accepted: "waiting", dismissed: "cancelled" };
 
+/** A status of the wire in a word for people. */
+export const statusWord = (wire) => STATUS[wire] ?? wire;
+
+/** The name under which the browser keeps the zone of times. */
+export const TIMES = "safestart-times";
+
+function isLocal() {
+  try {
+    return localStorage.getItem(TIMES) === "local";
+  } catch {
+    return false;
+  }
+}
+
+/** A moment, for people and for programs; in the zone that the header chooses. */
+export const time = (text) => (text ? el("time", { datetime: text }, moment(text, isLocal())) : "–");
+
+/** The time of day of a moment. */
+export const hour = (text) => el("time", { datetime: text, "data-clock": true }, clock(text, isLocal()));
+
 export const status = (job) => badge("job", job.dismissal_requested && job.status === "running" ? "stopping" : STATUS[job.status] ?? job.status, job.status);
 
 /** A link to a file of the API, fetched with the key. */
@@ -83,7 +106,7 @@ export function download(call, href, name, text) {
   return anchor;
 }
 
-export const definition = (name, value) => el("div", {}, el("dt", {}, name), el("dd", {}, value));
+export const definition = (name, value, behind = []) => el("div", {}, el("dt", {}, name, ...behind), el("dd", {}, value));
 
 /** A table: columns of [title, function of the row]; numbers to the right. */
 export function table(rows, columns, label) {

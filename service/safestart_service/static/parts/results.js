@@ -5,7 +5,8 @@ import { outcome } from "../logic/outcome.js";
 import { columnsOf, tablesOf } from "../logic/tables.js";
 import { inputTitle } from "../logic/titles.js";
 import { figure } from "../logic/words.js";
-import { badge, definition, download, el } from "./page.js";
+import { explained } from "./glossary.js";
+import { badge, definition, download, el, time } from "./page.js";
 import { names } from "./process.js";
 import { listed, shown } from "./views.js";
 
@@ -25,7 +26,7 @@ export function verdictBadge({ spec, tables }) {
 /** What the first screen of a result holds: the head of its views and its inputs beside the first of its pictures. */
 export function firstScreen(result, head, picture) {
   const inputs = keyInputs(result.spec, result.inputs), short = !head.some((node) => node.matches(".findings, .scroll, .two"));
-  const told = el("section", { class: "key-inputs", "aria-label": "Key inputs" }, el("h2", {}, "Asked with"), el("dl", {}, ...inputs.map(([path, value]) => definition(inputTitle(path), value))));
+  const told = el("section", { class: "key-inputs", "aria-label": "Key inputs" }, el("h2", {}, "Asked with"), el("dl", {}, ...inputs.map(([path, value]) => definition(inputTitle(path), value, explained(inputTitle(path).replace(/ \[[^\]]*\]$/, ""))))));
   return el("div", { class: "first" }, el("div", { class: "said" }, ...head, ...(short ? [told] : [])), el("div", { class: "beside" }, ...(picture ? [picture] : []), ...(short ? [] : [told])));
 }
 
@@ -42,7 +43,7 @@ export async function results(place, job, spec, call) {
     ...Object.keys(result.tables).filter(Boolean).map((name) => el("li", {}, download(call, `/jobs/${job.jobID}/results?${new URLSearchParams({ format: "csv", table: name })}`, `${name}.csv`, `table ${name} (CSV)`)))),
   el("div", { class: "tools" }, el("button", { type: "button", class: "plain", onclick: () => print() }, "Print a report")),
   el("h2", {}, "Provenance"), el("dl", {}, definition("SHA-256 of the result", document.sha256),
-    ...Object.entries(document.provenance ?? {}).filter(([, value]) => typeof value !== "object" && value !== null).map(([name, value]) => definition(name, String(value)))));
+    ...Object.entries(document.provenance ?? {}).filter(([, value]) => typeof value !== "object" && value !== null).map(([name, value]) => definition(name.replaceAll("_", " "), ["started", "finished"].includes(name) ? time(value) : String(value)))));
   place.replaceChildren(...parts);
   for (const drawn of draws) await drawn();
   return result;

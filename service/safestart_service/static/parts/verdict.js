@@ -1,8 +1,9 @@
 // Explore's verdict: one word, its question, the deciding method, and beside it, small, the paper's conditions.
 
-import { DECIDED, proved, verdictWords } from "../logic/question.js";
+import { DECIDED, memberWords, proved, verdictWords } from "../logic/question.js";
 import { figure, sentence } from "../logic/words.js";
 import { call } from "./api.js";
+import { explained } from "./glossary.js";
 import { download, el } from "./page.js";
 
 const margin = (name, value) => el("li", { class: value > 0 ? "in" : "out" }, `${name} `, el("b", {}, `${figure(value, 3)} m`));
@@ -14,9 +15,9 @@ export function verdict({ values, start, found, paper }, old) {
     ? el("p", {}, download(call, found.proof_url, "proof.json", "Download the proof"), " (checked by ", el("code", {}, "safestart verify"), ")") : null;
   return [
     el("div", { class: `answer ${old ? "old" : found.verdict}` },
-      el("h2", {}, el("span", { class: "word" }, word), el("span", { class: "how" }, old ? "old: the inputs have changed" : proved(found.verdict, values))),
+      el("h2", {}, el("span", { class: "word" }, word), ...explained(word), el("span", { class: "how" }, old ? "old: the inputs have changed" : proved(found.verdict, values))),
       el("p", { class: "asked" }, verdictWords(values, start)), el("p", { class: "why" }, sentence(found.reason)),
-      found.decided_by ? el("p", { class: "note" }, `Decided ${DECIDED[found.decided_by] ?? `by ${found.decided_by}`}.`) : null, members(found.examples), proof),
+      found.decided_by ? el("p", { class: "note" }, `Decided ${DECIDED[found.decided_by] ?? `by ${found.decided_by}`}.`) : null, members(found.examples, values, start), proof),
     el("details", { class: `aside${old ? " old" : ""}` },
       el("summary", {}, el("h3", {}, "The paper's conditions, not sound: ", el("span", { class: "closed-word" }, paper.verdict.replace("_", " ")))),
       el("p", {}, `${sentence(paper.reason)} They know neither the mean motion nor time nor ranges; a GO of theirs may be impossible to fly.`),
@@ -26,8 +27,7 @@ export function verdict({ values, start, found, paper }, old) {
 }
 
 /** Decided members of an undecided family, which show why there is no verdict for all. */
-function members(examples) {
+function members(examples, values, start) {
   if (!examples?.length) return null;
-  return el("ul", { class: "members" }, ...examples.map((one) => el("li", {},
-    `${one.verdict.replace("_", "-")} at ${figure(one.omega_t_deg_s)} deg/s, ${figure(one.a_max_m_s2)} m/s², LVLH (${one.position_m.map((at) => figure(at)).join(", ")}) m`)));
+  return el("ul", { class: "members" }, ...examples.map((one) => el("li", {}, memberWords(one, values, start))));
 }

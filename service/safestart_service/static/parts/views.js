@@ -7,6 +7,7 @@ import { each } from "../logic/tables.js";
 import { csv, figure } from "../logic/words.js";
 import { root } from "./api.js";
 import { drawFlights, drawOverlay } from "./arrays.js";
+import { explained } from "./glossary.js";
 import { definition, el, save, table } from "./page.js";
 import { drawPicture } from "./picture.js";
 import { drawScene, sceneParts } from "./scene.js";
@@ -46,7 +47,7 @@ const KINDS = {
 
   facts({ columns }, { tables, names }, parts) {
     const [row] = tables[""], said = used(columns, [row], names);
-    if (said.length) parts.push(el("dl", { class: "facts" }, ...said.map(([title, of]) => definition(title, figure(of(row))))));
+    if (said.length) parts.push(el("dl", { class: "facts" }, ...said.map(([title, of]) => definition(title, figure(of(row)), explained(title)))));
   },
 
   rows(view, { tables, names, inputs }, parts) {

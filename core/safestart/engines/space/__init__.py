@@ -1,0 +1,1 @@
+"""The engines over a plane of starts in space: any attitude, orbit, faces and thrusts."""

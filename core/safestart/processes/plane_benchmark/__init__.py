@@ -1,0 +1,1 @@
+"""The plane-benchmark process: the reachability engines on a plane of starts in space."""
