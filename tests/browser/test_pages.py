@@ -311,6 +311,7 @@ def test_no_finding_of_axe(
     ready = {
         f"/dashboard?{SLIVER}": ".answer",
         "/dashboard/trade": "#table tbody tr",
+        "/dashboard/approach?angle_deg=0": "#burns tbody tr",
         "/dashboard/submit?process=benchmark": "#in-omega_t_deg_s",
         "/dashboard/jobs": ".jobs tbody tr",
         f"/dashboard/jobs/{benchmarks[0]}": ".matrix",

@@ -17,6 +17,7 @@ _SPECS = {
     "thrust-map": "safestart.processes.thrust_map.spec",
     "flight": "safestart.processes.flight.spec",
     "atlas": "safestart.processes.atlas.spec",
+    "atlas-in-space": "safestart.processes.atlas_in_space.spec",
     "coverage": "safestart.processes.coverage.spec",
     "benchmark": "safestart.processes.benchmark.spec",
     "plane-benchmark": "safestart.processes.plane_benchmark.spec",

@@ -54,14 +54,15 @@ _AXES = {"x": [1.0, 0.0, 0.0], "y": [0.0, 1.0, 0.0], "z": [0.0, 0.0, 1.0]}
 
 
 def coordinate_planes(centre: list[float], size: float, rest: Rest = Rest.LVLH) -> list[PlaneInput]:
-    """The three planes of the body frame through ``centre`` (m), ``size`` m to every side."""
+    """The three planes of the body frame through ``centre`` (m), ``size`` m to every side, in body coordinates."""
+    at = dict(zip(_AXES, centre, strict=True))
     return [
         PlaneInput(
             name=a + b,
-            origin_m=centre,
+            origin_m=[0.0 if name in (a, b) else value for name, value in at.items()],
             rest=rest,
-            first=PlaneAxis(direction=_AXES[a], low=-size, high=size),
-            second=PlaneAxis(direction=_AXES[b], low=-size, high=size),
+            first=PlaneAxis(direction=_AXES[a], low=at[a] - size, high=at[a] + size),
+            second=PlaneAxis(direction=_AXES[b], low=at[b] - size, high=at[b] + size),
         )
         for a, b in (("x", "y"), ("z", "y"), ("x", "z"))
     ]
