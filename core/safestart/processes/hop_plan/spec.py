@@ -10,7 +10,7 @@ from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.hopping.spec import MOST_HOPS, PlanOutput, SigmaInput
 from safestart.processes.passive_abort.wire import KeepOut, Orbits, SemiMajorAxis
 from safestart.processes.views import Column, Facts, Findings, Layer, Picture, Rows
-from safestart.processes.wire import Triple
+from safestart.processes.wire import Pair, Triple
 
 Verdict = Literal["PROVED", "VIOLATED", "UNKNOWN"]
 
@@ -87,7 +87,7 @@ class HopPlanOutputs(WireModel):
     plan: PlanOutput
     proofs: list[HopProofOutput]
     burns: list[HopPlanBurnOutput]
-    path: list[list[float]] = Field(description="Of all hops, LVLH: radial and along-track, m.")
+    path: list[Pair] = Field(description="Of all hops, LVLH: radial and along-track, m.")
     drifts: list[DriftOutput]
     notes: list[str]
 

@@ -6,6 +6,7 @@ from pydantic import Field
 
 from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.views import Column, Facts, Layer, Picture
+from safestart.processes.wire import Pair
 
 
 class HopTimeInputs(WireModel):
@@ -32,7 +33,7 @@ class HopTimeOutputs(WireModel):
     fold_deg: float | None = Field(
         description="Angle, modulo 180 deg, beyond which there is no such hop; null: every angle has one."
     )
-    path: list[list[float]] = Field(
+    path: list[Pair] = Field(
         description="The hop's path in LVLH: radial and along-track, in shares of the distance at its start."
     )
 
