@@ -7,6 +7,7 @@ BENCHMARKS = (
     "closed_loop",
     "sweep",
     "exact_answers",
+    "exact_in_space",
     "passive_safety",
     "atlas",
     "http",

@@ -156,16 +156,15 @@ def check(names: Sequence[str], keep: str = "") -> dict[str, list[str]]:
 
 
 def store(names: Sequence[str], keep: str = "") -> list[str]:
-    """Write the digests of these answers beside the others; returns the questions that have none."""
-    found, failed = stored(), []
+    """Write the digests of these answers beside the others, each as it comes; returns the questions that have none."""
+    found, failed, known = stored(), [], questions.names()
     for answer in answers(names, keep):
         print(f"{answer['seconds']:7.1f} s  {answer['name']}  {answer.get('error', '')}", flush=True)
         if "error" in answer:
             failed.append(answer["name"])
         else:
             found[answer["name"]] = answer["files"]
-    known = questions.names()
-    _write({name: found[name] for name in sorted(found) if name in known})
+            _write({name: found[name] for name in sorted(found) if name in known})
     return failed
 
 

@@ -16,6 +16,8 @@ from safestart.optim.largest_margin import solve
 
 _FIRST_TIMES = 9
 FINEST = 2e-7
+# Programs are solved to the last digits only where the bracket (m) is this narrow: a wide one closes by rows.
+NARROW = 1e-2
 MOST_ROUNDS = 40
 # Rows without weight are dropped when farther from binding than this many brackets, but only in the first rounds,
 # because later drops could cycle.
@@ -86,14 +88,14 @@ class Search:
 
         ``share``: for a NO_GO a bracket narrower than this share of its margin is enough.
         """
-        fine = tolerance < TOLERANCE
+        fine = False
         for _ in range(MOST_ROUNDS):
             failed = self.round(fine)
             if failed:
                 return failed
             decided = self.lower > GUARD or self.upper < -GUARD
             goal = max(tolerance, -share * self.upper) if decided else FINEST
-            fine = goal < TOLERANCE
+            fine = goal < TOLERANCE and self.upper - self.lower < NARROW
             if self.upper - self.lower <= goal or (decided and verdict_only) or not self.cut(goal):
                 break
         return BETWEEN

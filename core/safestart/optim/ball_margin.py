@@ -20,9 +20,11 @@ import numpy as np
 
 from safestart.runtime.kernels import compiled
 
-SOLVED, SINGULAR, SLOW = 0, 1, 2
-"""Status: within the tolerance; the system of a step was not positive definite; too many iterations."""
+SOLVED, SINGULAR, SLOW, CLOSE = 0, 1, 2, 3
+"""Status: within the tolerance; the system of a step was not positive definite; too many iterations; one of these two,
+but within 2e-9 of the farthest that thrusts can move a row."""
 MOST_ITERATIONS = 40
+_USABLE = 2e-9
 
 # The share of the way to the boundary that a step goes, and how far below the rows the first margin lies, as a share
 # of the farthest that thrusts can move a row.
@@ -36,7 +38,7 @@ _LEAST_CURVATURE = 1e-6
 _LEAST_PIVOT = 1e-15
 
 
-@compiled()
+@compiled(error_model="numpy")
 def _dot(a: Any, b: Any, count: int) -> float:
     # Eight sums side by side: vector instructions without the freedom to reorder, so every processor gives these bits.
     s0 = s1 = s2 = s3 = s4 = s5 = s6 = s7 = 0.0
@@ -56,7 +58,7 @@ def _dot(a: Any, b: Any, count: int) -> float:
     return total
 
 
-@compiled()
+@compiled(error_model="numpy")
 def _factor(matrix: Any) -> bool:
     """Cholesky factor into the lower triangle, in place; False where the matrix is not positive definite."""
     size = len(matrix)
@@ -77,7 +79,7 @@ def _factor(matrix: Any) -> bool:
     return True
 
 
-@compiled()
+@compiled(error_model="numpy")
 def _back(factor: Any, x: Any) -> None:
     """Solve with the factor, in place."""
     size = len(x)
@@ -93,7 +95,7 @@ def _back(factor: Any, x: Any) -> None:
         x[j] = value / factor[j, j]
 
 
-@compiled()
+@compiled(error_model="numpy")
 def _pull(rows: Any, ends: Any, z: Any, pull: Any) -> None:
     """sum_j z_j r_j into ``pull``; row j is 0 from ``ends[j]`` on."""
     for i in range(len(pull)):
@@ -103,7 +105,7 @@ def _pull(rows: Any, ends: Any, z: Any, pull: Any) -> None:
             pull[i] += z[j] * rows[j, i]
 
 
-@compiled()
+@compiled(error_model="numpy")
 def _reach(pull: Any, d: int) -> float:
     """Largest pull . w over the balls: the sum of norms."""
     total = 0.0
@@ -115,7 +117,7 @@ def _reach(pull: Any, d: int) -> float:
     return total
 
 
-@compiled()
+@compiled(error_model="numpy")
 def _through_root(v: Any, w: Any, gamma: float, root: float, begin: int, d: int, out: Any) -> None:
     """B^(-1/2) v for one ball, B = 2 y (I + (2 / h) w w^T): ``root`` (I - ``gamma`` w w^T) v."""
     along = 0.0
@@ -126,7 +128,7 @@ def _through_root(v: Any, w: Any, gamma: float, root: float, begin: int, d: int,
         out[i] = root * (v[i] - along * w[i])
 
 
-@compiled()
+@compiled(error_model="numpy")
 def largest_margin(constant: Any, rows: Any, d: int, tolerance: float) -> Any:
     """Points w (N d,), weights z (J,) of sum 1, status and the number of iterations.
 
@@ -160,7 +162,7 @@ def largest_margin(constant: Any, rows: Any, d: int, tolerance: float) -> Any:
     for k in range(balls):
         h[k], y[k] = 1.0, 0.5 * reach / balls
     least = _LEAST_CURVATURE * reach / balls
-    bound, stuck = np.inf, False
+    bound, gap, stuck = np.inf, np.inf, False
     for iteration in range(MOST_ITERATIONS):
         # Slacks anew from the point, so that no rounding gathers; then the bound, the margin and the mean product.
         lowest, product, total, weighted = np.inf, 0.0, 0.0, 0.0
@@ -176,7 +178,8 @@ def largest_margin(constant: Any, rows: Any, d: int, tolerance: float) -> Any:
             bound = here
             for j in range(count):
                 best[j] = z[j] / total
-        if bound - (margin + lowest) <= tolerance:
+        gap = bound - (margin + lowest)
+        if gap <= tolerance:
             return w, best, SOLVED, iteration
         for k in range(balls):
             product += y[k] * h[k]
@@ -192,7 +195,7 @@ def largest_margin(constant: Any, rows: Any, d: int, tolerance: float) -> Any:
             system[j, j] += s[j] / z[j]
             ones[j] = 1.0
         if not (lowest > 0.0 and _factor(system)):
-            return w, best, SINGULAR, iteration
+            return w, best, CLOSE if gap <= _USABLE * reach else SINGULAR, iteration
         _back(system, ones)
         target, dm = 0.0, 0.0
         primal, dual = 1.0, 1.0
@@ -273,5 +276,5 @@ def largest_margin(constant: Any, rows: Any, d: int, tolerance: float) -> Any:
             h[k] = 1.0 - square
             y[k] += dual * dy[k]
             if not (h[k] > 0.0 and y[k] > 0.0):
-                return w, best, SINGULAR, iteration
-    return w, best, SLOW, MOST_ITERATIONS
+                return w, best, CLOSE if gap <= _USABLE * reach else SINGULAR, iteration
+    return w, best, CLOSE if gap <= _USABLE * reach else SLOW, MOST_ITERATIONS

@@ -47,6 +47,17 @@ async def trade(request: Request) -> Response:
 
 
 @router.get(
+    "/dashboard/approach",
+    operation_id="getApproachPage",
+    summary="Approach designer",
+    responses={200: _PAGE, **refusals()},
+)
+async def approach(request: Request) -> Response:
+    """Hops along a line that is dragged, what is proved of them, and the study of the same approach."""
+    return _page(request, "approach", "/dashboard/approach", plan="hop-plan", study="hopping")
+
+
+@router.get(
     "/dashboard/submit",
     operation_id="getSubmitPage",
     summary="Submit a process",

@@ -19,12 +19,13 @@ from safestart.exact.search import (
     FINEST,
     FIRST_GUESS,
     MOST_ROUNDS,
+    NARROW,
     NO_WEIGHT,
     SAME_S,
     SOME_WEIGHT,
     TOUCH_STEPS,
 )
-from safestart.optim.ball_margin import SOLVED, largest_margin
+from safestart.optim.ball_margin import CLOSE, SOLVED, largest_margin
 from safestart.optim.largest_margin import COARSE_M, FINE_M, LEAST_WEIGHT
 from safestart.optim.thrust_ball import INSIDE
 from safestart.runtime.kernels import compiled
@@ -47,6 +48,10 @@ class Tables(NamedTuple):
     mean_motion: float
     dt: float
     step: float
+
+
+_MOST_ROWS = 160
+"""More rows than this are so alike that the method slows down: then Clarabel is quicker."""
 
 
 @compiled()
@@ -137,11 +142,11 @@ def narrow(
     best = np.zeros((columns // d, d))
     known_times, known_faces, known_weights = np.empty(0), np.empty(0, np.int64), np.empty(0)
     dips = np.full((len(tables.offsets), 2), math.nan)
-    fine = tolerance < TOLERANCE
+    fine = False
     while rounds < MOST_ROUNDS:
         rounds += 1
         w, load, status, _ = largest_margin(constant, rows, d, FINE_M if fine else COARSE_M)
-        if status != SOLVED:
+        if status not in (SOLVED, CLOSE):
             return False, lower, upper, rounds, best, known_times, known_faces, known_weights
         bound = _proved(constant, rows, load, d)
         if bound + rounding < upper:
@@ -177,7 +182,7 @@ def narrow(
             lower, best = lowest - rounding, thrust
         decided = lower > GUARD or upper < -GUARD
         goal = tolerance if decided else FINEST
-        fine = goal < TOLERANCE
+        fine = goal < TOLERANCE and upper - lower < NARROW
         if upper - lower <= goal or (decided and verdict_only):
             break
         # Cuts: the minima below the program's margin, then the guessed touches.
@@ -188,6 +193,8 @@ def narrow(
                 count += 1
         if count == 0:
             break
+        if len(load) > _MOST_ROWS:
+            return False, lower, upper, rounds, best, known_times, known_faces, known_weights
         for k in range(count):
             touch = _touch(new_times[k], new_faces[k], times, faces, load, dips, tables.dt, horizon)
             if touch >= 0.0:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import NamedTuple
 
-from safestart.exact.answer import BETWEEN, GUARD, Answer, concluded, face_multipliers
+from safestart.exact.answer import GUARD, Answer, concluded, face_multipliers
 from safestart.exact.kernels.narrow import Tables, narrow
 from safestart.exact.search import first_rows, rounding_of
 from safestart.exact.watch import Ints, Watch
@@ -16,7 +16,7 @@ from safestart.optim.largest_margin import SOLVED_BY
 def stay(watch: Watch, state: Floats, tolerance: float, *, verdict_only: bool) -> Answer | None:
     """The answer, from the same rounds as a :class:`~safestart.exact.search.Search`.
 
-    None where the start is outside or the compiled method leaves a program open.
+    None where the start is outside, and where a program or the verdict stays open or the bracket wide.
     """
     known, question = _known(watch), watch.question
     distances = watch.offsets - watch.normals @ state[: question.dimensions]
@@ -40,11 +40,13 @@ def stay(watch: Watch, state: Floats, tolerance: float, *, verdict_only: bool) -
         tolerance,
         verdict_only,
     )
-    if not settled:
+    if not settled or (lower <= GUARD and upper >= -GUARD):
+        return None
+    if upper - lower > tolerance and not verdict_only:
         return None
     SOLVED_BY["compiled"] += rounds
     proof = () if lower > GUARD else tuple(face_multipliers(times, faces, weights, watch.names))
-    return concluded((lower, upper), thrust, proof, rounds, BETWEEN)
+    return concluded((lower, upper), thrust, proof, rounds, "")
 
 
 class _Known(NamedTuple):

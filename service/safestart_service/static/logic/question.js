@@ -1,6 +1,7 @@
 // The question of Explore's inputs: from the texts of its fields to each panel's request, and to words.
 
-import { figure } from "./words.js";
+import { NUMBER, addressOf, textsFrom } from "./fields.js";
+import { figure, spoken } from "./words.js";
 
 /** Fields by name: their initial texts and their labels. `words` are the choices of a select. */
 export const FIELDS = {
@@ -28,9 +29,6 @@ const SPREADS = ["omega_t_half_width_deg_s", "a_max_half_width_m_s2", "position_
 const SHAPE = ["c_x", "x0_m", "r_h_m"];
 /** What a verdict's question has besides its start. */
 export const ASKED = ["omega_t_deg_s", "a_max_m_s2", "question", "horizon_s", "within_s", "rest", "mean_motion_rad_s", ...SHAPE, ...SPREADS];
-
-/** Texts that an HTML number field accepts; any other text would be in the address but not in the field. */
-const NUMBER = /^-?(\d+(\.\d+)?|\.\d+)(e[+-]?\d+)?$/i;
 
 /**
  * Values of the texts, and errors by field: `{ values, wrong }`. A start has both coordinates or none. Only texts that
@@ -161,9 +159,9 @@ export function flownWords(verdict, values) {
 export function flightWords(flown, values) {
   const [first] = flown.distance_m, outside = first.reduce((least, distance, k) => (distance < first[least] ? k : least), 0);
   if (first[outside] < 0) {
-    return { flies: false, text: `Nothing is flown: the start lies outside the corridor, ${figure(-first[outside])} m beyond ${flown.faces[outside]}.` };
+    return { flies: false, text: `Nothing is flown: the start lies outside the corridor, ${figure(-first[outside])} m beyond ${spoken(flown.faces[outside])}.` };
   }
-  const nearest = flown.closest_m < 0 ? `${figure(-flown.closest_m)} m beyond ${flown.closest_face}` : `${figure(flown.closest_m)} m from ${flown.closest_face}`;
+  const nearest = flown.closest_m < 0 ? `${figure(-flown.closest_m)} m beyond ${spoken(flown.closest_face)}` : `${figure(flown.closest_m)} m from ${spoken(flown.closest_face)}`;
   return {
     flies: true,
     text: `${flownWords(flown.verdict, values)}. At worst ${nearest}, at ${figure(flown.closest_s)} s; delta-v ${figure(flown.delta_v_m_s, 3)} m/s.`,
@@ -182,17 +180,7 @@ export const isAbout = (inputs, values) => Object.entries(textsOf(inputs)).every
   ([name, text]) => name === "y_max_m" || (FIELDS[name].words ? values[name] === text : values[name] === Number(text)));
 
 /** Texts for the fields from an address; `unknown` are its names without a field. */
-export function fromAddress(search) {
-  const texts = { ...FIRST }, unknown = [];
-  for (const [name, text] of new URLSearchParams(search)) {
-    if (name in FIELDS) texts[name] = text;
-    else unknown.push(name);
-  }
-  return { texts, unknown };
-}
+export const fromAddress = (search) => textsFrom(FIELDS, search);
 
 /** The address that gives these texts; it leaves initial texts out. */
-export function toAddress(texts) {
-  const told = new URLSearchParams(Object.entries(texts).filter(([name, text]) => name in FIELDS && text !== FIELDS[name].first));
-  return told.size ? `?${told}` : "";
-}
+export const toAddress = (texts) => addressOf(FIELDS, texts);

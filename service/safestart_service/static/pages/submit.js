@@ -2,7 +2,7 @@
 
 import { estimateWords } from "../logic/estimate.js";
 import { Store } from "../logic/store.js";
-import { call, execute, get, root } from "../parts/api.js";
+import { call, execute, get, plain, root } from "../parts/api.js";
 import { copies } from "../parts/copies.js";
 import { field, mark } from "../parts/form.js";
 import { explain } from "../parts/glossary.js";
@@ -79,9 +79,6 @@ function whole({ inputs, example }) {
   }
   return { properties, required, $defs: defs, examples: example ? [example] : [] };
 }
-
-/** Outputs of an instant answer, in which the standard wraps objects. */
-const plain = (outputs) => Object.fromEntries(Object.entries(outputs).map(([name, value]) => [name, value?.mediaType === "application/json" ? value.value : value]));
 
 function showAnswer({ state, answer, error, question }) {
   const place = $("state");

@@ -51,6 +51,9 @@ export const remove = async (path) => (await call(path, { method: "DELETE" })).j
 /** Outputs of a light process, run at once. */
 export const execute = (id, inputs, options) => post(`/processes/${id}/execution`, { inputs }, options);
 
+/** Outputs of an instant answer, in which the standard wraps objects. */
+export const plain = (outputs) => Object.fromEntries(Object.entries(outputs).map(([name, value]) => [name, value?.mediaType === "application/json" ? value.value : value]));
+
 /** Events of a job, also across broken connections, until it has ended or `signal` aborts. */
 export async function follow(job, onEvent, onBreak, signal) {
   let last = "";
