@@ -70,7 +70,7 @@ def _row(k: int, chance: random.Random, first: datetime, inputs: dict[str, Any])
     word = chance.choice(("GO", "NO_GO", "UNDECIDED", None))
     status = chance.choices(("successful", "failed", "dismissed"), (90, 7, 3))[0]
     begun = first + timedelta(seconds=30 * k)
-    job = f"{chance.getrandbits(32):08x}-{k:04x}-4000-8000-{chance.getrandbits(48):012x}"
+    job = f"{chance.getrandbits(32):08x}-{k % 65536:04x}-4000-8000-{chance.getrandbits(48):012x}"
     outcome = {"word": word, "sense": "open", "count": 1, "of": 1, "basis": None} if word else None
     return {
         "id": job, "process_id": kind, "status": status, "priority": 0, "inputs": inputs[kind],

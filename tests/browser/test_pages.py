@@ -124,7 +124,7 @@ def test_hover_tells_margins(visit: Visit) -> None:
     box = page.locator("#map .nsewdrag").first.bounding_box()
     assert box is not None
     page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.6 * box["height"])
-    expect(page.locator("#cursor")).to_contain_text("hold_plane")
+    expect(page.locator("#cursor")).to_contain_text("hold plane")
 
 
 def test_trade_study_leads_to_explore(visit: Visit) -> None:

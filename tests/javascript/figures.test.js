@@ -4,6 +4,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { arc, closed, corridor, turned } from "../../service/safestart_service/static/logic/geometry.js";
+import { layerTitle } from "../../service/safestart_service/static/logic/layers.js";
 import { agreement, wilson } from "../../service/safestart_service/static/logic/statistics.js";
 import { csv, duration, figure, lines, moment, sentence } from "../../service/safestart_service/static/logic/words.js";
 
@@ -63,4 +64,12 @@ test("agreement counts each kind of cell", () => {
   const { z, counts } = agreement([[true, true], [true, true], [false, true]], [[1, 1], [0, 0], [1, 1]], [[1, 0], [1, 0], [1, 1]]);
   assert.deepEqual(z, [[2, 3], [4, 1], [0, 2]]);
   assert.deepEqual(counts, [1, 1, 2, 1, 1]);
+});
+
+test("a layer is called as the outputs call it", () => {
+  const outputs = { faces: ["hold_plane", "right"], method: "exact" };
+  assert.equal(layerTitle("{faces.0}", outputs), "hold plane");
+  assert.equal(layerTitle("to {faces.1}, {method}", outputs), "to right, exact");
+  assert.equal(layerTitle("{faces.7}", outputs), "faces.7");
+  assert.equal(layerTitle("plain", outputs), "plain");
 });

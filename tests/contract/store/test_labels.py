@@ -12,6 +12,7 @@ from safestart.records.labels import Labels
 from safestart.store.access.audit import AuditLog
 from safestart.store.backup import backup, restore
 from safestart.store.database import Database
+from safestart.store.jobs import listing
 from safestart.store.jobs.filters import JobFilter, Order
 from safestart.store.jobs.repository import JobRepository
 from safestart.store.transfer import Transfer
@@ -107,6 +108,20 @@ def test_a_list_is_searched_by_words_tags_and_outcome(jobs: JobRepository) -> No
     assert jobs.list(JobFilter(words=["burn"]), limit=1, cursor=page.next_cursor).total == 2
     jobs.label(claim.job_id, name="renamed")
     assert found(jobs, words=["burn"]) == ["burn TWO"]
+
+
+def test_few_and_many_that_are_found_are_the_same(jobs: JobRepository, monkeypatch) -> None:
+    for k in range(12):
+        submit(jobs, labels=Labels(name=f"{'even' if k % 2 == 0 else 'odd'} {k}"))
+    pages = []
+    for few in (1000, 2):
+        monkeypatch.setattr(listing, "_FEW", few)
+        first = jobs.list(JobFilter(words=["even"]), limit=4)
+        last = jobs.list(JobFilter(words=["even"]), limit=4, cursor=first.next_cursor)
+        pages.append((first, last, jobs.list(JobFilter(words=["even"]), by=Order.NAME, offset=1)))
+    assert pages[0] == pages[1]
+    assert [job.name for job in pages[0][1].jobs] == ["even 2", "even 0"]
+    assert {page.total for page in pages[0]} == {6}
 
 
 def test_a_list_is_sorted_by_what_is_asked(database: Database, jobs: JobRepository) -> None:

@@ -90,7 +90,7 @@ SPEC = ProcessSpec(
             "Distance to each face",
             "time [s]",
             "distance [m]",
-            tuple(Layer(f"face {k + 1}", "line", "flight", "time_s", f"distance_m.{k}") for k in range(5)),
+            tuple(Layer(f"{{faces.{k}}}", "line", "flight", "time_s", f"distance_m.{k}") for k in range(5)),
         ),
     ),
     keywords=("exact", "trajectory"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from sqlalchemy import ColumnElement, func, select
+from sqlalchemy import ColumnElement, Select, func, select
 from sqlalchemy.orm import aliased
 
 from safestart.store.dialect import after, seconds_between
@@ -15,8 +15,20 @@ from safestart.store.models import JobRow
 from safestart.store.records import JobStatus
 
 
+def matching(wanted: JobFilter) -> Select[int] | None:
+    """The numbers of the jobs with the words and tags of a filter; None for a filter without.
+
+    It is a query of its own, which an index alone answers: rows hold their inputs.
+    """
+    texts = [word.lower() for word in wanted.words] + [of_tag(tag) for tag in wanted.tags]
+    if not texts:
+        return None
+    row = aliased(JobRow)
+    return select(row.seq).where(*(row.search.contains(text, autoescape=True) for text in texts))
+
+
 def conditions(wanted: JobFilter) -> Iterator[ColumnElement[bool]]:
-    """The conditions of a filter on the table of jobs."""
+    """The conditions of a filter on the table of jobs, all but its words and tags."""
     if wanted.statuses:
         yield JobRow.status.in_([JobStatus(status).value for status in wanted.statuses])
     if wanted.process_ids:
@@ -29,12 +41,6 @@ def conditions(wanted: JobFilter) -> Iterator[ColumnElement[bool]]:
         yield JobRow.created_at <= wanted.created_to
     if wanted.verdicts:
         yield JobRow.verdict.in_(wanted.verdicts)
-    texts = [word.lower() for word in wanted.words] + [of_tag(tag) for tag in wanted.tags]
-    if texts:
-        # Of its own, so that an index alone answers it: rows hold their inputs.
-        row = aliased(JobRow)
-        found = select(row.seq).where(*(row.search.contains(text, autoescape=True) for text in texts))
-        yield JobRow.seq.in_(found)
     duration = _duration()
     if wanted.least_s is not None:
         yield duration >= wanted.least_s

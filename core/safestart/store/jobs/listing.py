@@ -6,12 +6,12 @@ from base64 import urlsafe_b64decode, urlsafe_b64encode
 from dataclasses import fields
 from typing import Any
 
-from sqlalchemy import Row, Text, case, cast, exists, func, select
+from sqlalchemy import ColumnElement, Row, Text, case, cast, exists, func, select
 from sqlalchemy.orm import Session
 
 from safestart.errors import InvalidInput, invalid
 from safestart.store.database import Database
-from safestart.store.jobs.conditions import conditions, order_of
+from safestart.store.jobs.conditions import conditions, matching, order_of
 from safestart.store.jobs.filters import EVERY, JobFilter, Order
 from safestart.store.models import JobRow, table
 from safestart.store.records import JobEntry, JobPage, JobStatus
@@ -19,6 +19,7 @@ from safestart.store.records import JobEntry, JobPage, JobStatus
 MAX_PAGE = 1000
 MAX_OFFSET = 10_000_000
 _SHORT_INPUTS = 20_000
+_FEW = 1000
 _BEFORE, _AFTER = "before:", "after:"
 _JOBS = table(JobRow)
 _INPUTS = case((func.length(cast(_JOBS.c.inputs, Text)) <= _SHORT_INPUTS, _JOBS.c.inputs)).label("inputs")
@@ -55,19 +56,31 @@ class Listing:
         if cursor is not None and not by_cursor:
             raise invalid("cursor", "none with an offset or another order than the newest first", cursor)
         with self._database.session() as session:
-            total = session.scalar(select(func.count()).select_from(JobRow).where(*conditions(wanted))) or 0
+            meets = (*conditions(wanted), *_found(session, wanted))
+            total = session.scalar(select(func.count()).select_from(JobRow).where(*meets)) or 0
             if by_cursor:
-                return _beside(session, wanted, limit, cursor, total)
+                return _beside(session, meets, limit, cursor, total)
             order = order_of(by, descending=descending)
-            query = select(JobRow.seq).where(*conditions(wanted)).order_by(*order).limit(limit).offset(offset)
+            query = select(JobRow.seq).where(*meets).order_by(*order).limit(limit).offset(offset)
             numbers = session.scalars(query).all()
             rows = {row.seq: row for row in session.execute(select(*_ENTRY).where(JobRow.seq.in_(numbers)))}
         return _page([rows[number] for number in numbers], None, None, total)
 
 
-def _beside(session: Session, wanted: JobFilter, limit: int, cursor: str | None, total: int) -> JobPage:
+def _found(session: Session, wanted: JobFilter) -> tuple[ColumnElement[bool], ...]:
+    """The condition of a filter's words and tags. Few jobs are looked up once for the page, its count and its ends."""
+    query = matching(wanted)
+    if query is None:
+        return ()
+    numbers = session.scalars(query.limit(_FEW + 1)).all()
+    return (JobRow.seq.in_(query if len(numbers) > _FEW else numbers),)
+
+
+def _beside(
+    session: Session, meets: tuple[ColumnElement[bool], ...], limit: int, cursor: str | None, total: int
+) -> JobPage:
     newer, seq = (False, None) if cursor is None else _decode(cursor)
-    query = select(*_ENTRY).where(*conditions(wanted)).limit(limit + 1)
+    query = select(*_ENTRY).where(*meets).limit(limit + 1)
     if seq is not None:
         query = query.where(JobRow.seq > seq if newer else JobRow.seq < seq)
     rows = list(session.execute(query.order_by(JobRow.seq if newer else JobRow.seq.desc())))
@@ -77,7 +90,7 @@ def _beside(session: Session, wanted: JobFilter, limit: int, cursor: str | None,
         others = False
     else:  # on the side that the client came from
         beyond = JobRow.seq < rows[-1].seq if newer else JobRow.seq > rows[0].seq
-        others = bool(session.scalar(select(exists().where(*conditions(wanted), beyond))))
+        others = bool(session.scalar(select(exists().where(*meets, beyond))))
     older, later = (others, more) if newer else (more, others)
     return _page(
         rows,

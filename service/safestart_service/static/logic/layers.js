@@ -1,6 +1,7 @@
 // The points of a picture's layers, from tables of outputs and the inputs beside them.
 
 import { flat } from "./tables.js";
+import { spoken } from "./words.js";
 
 const DEFAULT = { c_x: 1.5, x0_m: 2.5, r_h_m: 0.5 };
 
@@ -13,6 +14,9 @@ export function layersOf(view, tables, inputs) {
     return { ...layer, rows: whole.map((row) => ({ x: row[layer.x], y: row[layer.y], value: row[layer.value] })).filter(({ x, y }) => isNumber(x) && isNumber(y)) };
   }).filter(({ rows }) => rows.length);
 }
+
+/** The title of a layer: `{faces.0}` in it is the first of the outputs' faces. */
+export const layerTitle = (title, outputs) => title.replace(/\{([\w.]+)\}/g, (_, path) => spoken(String(path.split(".").reduce((part, key) => part?.[key], outputs) ?? path)));
 
 /** The corridor of the inputs, if it is the usual one of three numbers; absent numbers have their usual values. */
 export function shapeOf({ corridor }) {

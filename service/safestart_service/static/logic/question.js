@@ -1,7 +1,7 @@
 // The question of Explore's inputs: from the texts of its fields to each panel's request, and to words.
 
 import { NUMBER, addressOf, textsFrom } from "./fields.js";
-import { figure } from "./words.js";
+import { figure, spoken } from "./words.js";
 
 /** Fields by name: their initial texts and their labels. `words` are the choices of a select. */
 export const FIELDS = {
@@ -159,9 +159,9 @@ export function flownWords(verdict, values) {
 export function flightWords(flown, values) {
   const [first] = flown.distance_m, outside = first.reduce((least, distance, k) => (distance < first[least] ? k : least), 0);
   if (first[outside] < 0) {
-    return { flies: false, text: `Nothing is flown: the start lies outside the corridor, ${figure(-first[outside])} m beyond ${flown.faces[outside]}.` };
+    return { flies: false, text: `Nothing is flown: the start lies outside the corridor, ${figure(-first[outside])} m beyond ${spoken(flown.faces[outside])}.` };
   }
-  const nearest = flown.closest_m < 0 ? `${figure(-flown.closest_m)} m beyond ${flown.closest_face}` : `${figure(flown.closest_m)} m from ${flown.closest_face}`;
+  const nearest = flown.closest_m < 0 ? `${figure(-flown.closest_m)} m beyond ${spoken(flown.closest_face)}` : `${figure(flown.closest_m)} m from ${spoken(flown.closest_face)}`;
   return {
     flies: true,
     text: `${flownWords(flown.verdict, values)}. At worst ${nearest}, at ${figure(flown.closest_s)} s; delta-v ${figure(flown.delta_v_m_s, 3)} m/s.`,

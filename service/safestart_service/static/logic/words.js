@@ -9,6 +9,9 @@ export function figure(value, digits = 4) {
   return String(Number(value.toPrecision(digits)));
 }
 
+/** A name of the wire as people write it. */
+export const spoken = (name) => name.replaceAll("_", " ");
+
 export function duration(seconds) {
   if (seconds === null || seconds === undefined) return "–";
   if (seconds < 10) return `${seconds.toFixed(1)} s`;

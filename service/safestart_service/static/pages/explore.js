@@ -6,7 +6,7 @@ import { PRESETS } from "../logic/presets.js";
 import { FIELDS, asProcess, certificate, flight as flightOf, flightWords, fromAddress, mapLacks, mapWords, paper, proven, read, region as regionOf, start as startOf, toAddress } from "../logic/question.js";
 import { Store } from "../logic/store.js";
 import { rowsOf } from "../logic/tables.js";
-import { csv, figure } from "../logic/words.js";
+import { csv, figure, spoken } from "../logic/words.js";
 import { execute, get, post } from "../parts/api.js";
 import { saveButtons } from "../parts/chart.js";
 import { copies } from "../parts/copies.js";
@@ -189,7 +189,7 @@ function showPointed({ state, answer: found, question }) {
   }
   const point = [question.x_m, question.y_m], said = [`(${point.join(", ")}) m`, ...known(point)];
   if (state === "there") {
-    const margins = Object.entries(found.face_margins_m).map(([face, margin]) => `${face} ${figure(margin, 3)} m`);
+    const margins = Object.entries(found.face_margins_m).map(([face, margin]) => `${spoken(face)} ${figure(margin, 3)} m`);
     if (found.range_margin_m !== null) margins.push(`range ${figure(found.range_margin_m, 3)} m`);
     said.push(`the paper's conditions, not sound: ${found.verdict.replace("_", " ")} (${margins.join(", ")})`);
   }

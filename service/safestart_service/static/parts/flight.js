@@ -1,6 +1,6 @@
 // One flight: its curves, its clock, and its state on the map at the clock's time.
 
-import { figure } from "../logic/words.js";
+import { figure, spoken } from "../logic/words.js";
 import { draw, theme } from "./chart.js";
 import { $ } from "./page.js";
 
@@ -66,7 +66,7 @@ export class Flight {
     const { time_s: x, thrust_m_s2: thrust, distance_m: distance, faces } = this.data;
     const { soft, ink, limit } = theme(), ends = [x[0], x.at(-1)];
     const traces = faces.map((face, k) => ({
-      name: face, x, y: distance.map((row) => row[k]), mode: "lines", line: { color: FACES[k], width: 2 }, hovertemplate: "%{y:.2f} m",
+      name: spoken(face), x, y: distance.map((row) => row[k]), mode: "lines", line: { color: FACES[k], width: 2 }, hovertemplate: "%{y:.2f} m",
     }));
     traces.push({
       name: "thrust", x, y: thrust.map((u) => Math.hypot(...u)), mode: "lines", line: { color: soft, width: 1.5, shape: "hv", dash: "dot" },
@@ -85,7 +85,7 @@ export class Flight {
     const { time_s: time, body_m: body, lvlh_m: orbit, lvlh_m_s: speed, thrust_m_s2: thrust, distance_m: distance, faces } = this.data, k = this.step;
     const at = (vector, digits) => `(${vector.map((value) => figure(value, digits)).join(", ")})`;
     const near = distance[k].indexOf(Math.min(...distance[k]));
-    return `At ${figure(time[k], 4)} s: body ${at(body[k], 4)} m · LVLH ${at(orbit[k], 4)} m, ${at(speed[k], 3)} m/s · thrust ${at(thrust[k], 3)} m/s² · ${figure(distance[k][near], 4)} m to ${faces[near]}`;
+    return `At ${figure(time[k], 4)} s: body ${at(body[k], 4)} m · LVLH ${at(orbit[k], 4)} m, ${at(speed[k], 3)} m/s · thrust ${at(thrust[k], 3)} m/s² · ${figure(distance[k][near], 4)} m to ${spoken(faces[near])}`;
   }
 
   mark() {

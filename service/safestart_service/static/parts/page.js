@@ -111,7 +111,7 @@ export const definition = (name, value, behind = []) => el("div", {}, el("dt", {
 /** A table: columns of [title, function of the row]; numbers to the right. */
 export function table(rows, columns, label) {
   const isNumber = (of) => rows.some((row) => typeof of(row) === "number");
-  const head = el("tr", {}, ...columns.map(([title, of]) => el("th", { scope: "col", class: isNumber(of) ? "number" : null }, title)));
+  const head = el("tr", {}, ...columns.map(([title, of]) => (title === "" ? el("td") : el("th", { scope: "col", class: isNumber(of) ? "number" : null }, title))));
   const body = rows.map((row) => el("tr", {}, ...columns.map(([, of]) => {
     const value = of(row);
     if (value instanceof Node) return el("td", {}, value);

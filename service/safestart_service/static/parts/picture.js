@@ -1,7 +1,7 @@
 // A picture that a process's description declares: layers of table rows over two axes.
 
 import { corridor } from "../logic/geometry.js";
-import { shapeOf } from "../logic/layers.js";
+import { layerTitle, shapeOf } from "../logic/layers.js";
 import { sense } from "../logic/outcome.js";
 import { roundTicks } from "../logic/words.js";
 import { draw, saveButtons, theme } from "./chart.js";
@@ -51,7 +51,7 @@ export async function drawPicture({ view, result, chart, layers }) {
   for (const layer of layers) {
     // Several lines of one colour would be one: they take the colours of the palette in turn.
     const colour = plain.length > 1 && layer.colour === "ink" ? LINES[plain.indexOf(layer) % LINES.length] : shades[layer.colour];
-    traces.push({ name: layer.title, ...DRAWN[layer.drawn](layer, colour, senses) });
+    traces.push({ name: layerTitle(layer.title, result.outputs), ...DRAWN[layer.drawn](layer, colour, senses) });
   }
   const equal = view.equal ? { scaleanchor: "x", constrain: "domain" } : {};
   await draw(chart, traces, {

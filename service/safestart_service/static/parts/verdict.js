@@ -1,7 +1,7 @@
 // Explore's verdict: one word, its question, the deciding method, and beside it, small, the paper's conditions.
 
 import { DECIDED, memberWords, proved, verdictWords } from "../logic/question.js";
-import { figure, sentence } from "../logic/words.js";
+import { figure, sentence, spoken } from "../logic/words.js";
 import { call } from "./api.js";
 import { explained } from "./glossary.js";
 import { download, el } from "./page.js";
@@ -21,7 +21,7 @@ export function verdict({ values, start, found, paper }, old) {
     el("details", { class: `aside${old ? " old" : ""}` },
       el("summary", {}, el("h3", {}, "The paper's conditions, not sound: ", el("span", { class: "closed-word" }, paper.verdict.replace("_", " ")))),
       el("p", {}, `${sentence(paper.reason)} They know neither the mean motion nor time nor ranges; a GO of theirs may be impossible to fly.`),
-      el("ul", { class: "margins" }, ...Object.entries(paper.face_margins_m).map(([face, value]) => margin(face, value)),
+      el("ul", { class: "margins" }, ...Object.entries(paper.face_margins_m).map(([face, value]) => margin(spoken(face), value)),
         paper.range_margin_m === null ? null : margin("range", paper.range_margin_m))),
   ];
 }
