@@ -60,6 +60,8 @@ def ready() -> int:
     All of it: loading takes seconds on a busy machine. Where it fell into the time of an answer, its deadline ended the
     process, and the next one began anew.
     """
+    # First, as the priority is lower then: the application that starts beside it answers in the meantime.
+    _prepare()
     for spec in map(process, PROCESS_IDS):
         if spec.light:
             spec.runner()
@@ -73,7 +75,6 @@ def ready() -> int:
     # Numba's objects stay: scanning them takes a tenth of a second every time.
     gc.collect()
     gc.freeze()
-    _prepare()
     return os.getpid()
 
 
