@@ -91,8 +91,8 @@ def least(asked: SpaceQuestion, state: Floats, answer: Answer) -> float:
             Demands(plume=replace(RULE, half_angle=math.radians(70.0), frame="lvlh", point=(1.0, 2.0, 0.0))),
             {},
         ),
-        (Demands(plume=RULE), {"thrust": ThrustLimit("box", (0.1, 0.1, 0.05), frame="body")}),
-        (Demands(plume=RULE), {"thrust": ThrustLimit("thrusters", (0.1,) * 6, SIX, "body")}),
+        (Demands(view=VIEW), {"thrust": ThrustLimit("box", (0.1, 0.1, 0.05), frame="body")}),
+        (Demands((PANEL,)), {"thrust": ThrustLimit("thrusters", (0.1,) * 6, SIX, "body")}),
         (Demands((PANEL,), replace(VIEW, half_angle=math.radians(50.0)), RULE), {}),
         (
             Demands((KeepOut("panel", (3.0, 8.0, 0.0), (2.0,)),), plume=RULE),
@@ -132,9 +132,20 @@ def test_the_demands_bind() -> None:
         assert least(asked, START, answer) > 0.0
 
 
-@pytest.mark.parametrize("thrust", [ball(0.1), ThrustLimit("box", (0.1, 0.1, 0.1), frame="body")])
-def test_the_plume_rule_binds(thrust: ThrustLimit) -> None:
+@pytest.mark.parametrize(
+    "thrust",
+    [ThrustLimit("box", (0.1, 0.1, 0.1)), ThrustLimit("thrusters", (0.1,) * 6, SIX, "body")],
+    ids=lambda one: one.kind,
+)
+def test_a_sum_of_thrusts_has_no_single_exhaust(thrust: ThrustLimit) -> None:
+    """A thruster may blow at the target while the sum of all thrusts leads towards it."""
+    with pytest.raises(InvalidInput, match="plume: required thrust of kind ball"):
+        question(Demands(plume=RULE), thrust=thrust)
+
+
+def test_the_plume_rule_binds() -> None:
     """The target far on the side to which the corridor turns: the best thrust leads away from it."""
+    thrust = ball(0.1)
     plain = question(Demands(), thrust=thrust)
     free = decide_in_space(plain, START)
     lvlh, _, push = flown(plain, START, free)

@@ -89,7 +89,7 @@ def test_the_service_gives_them_too(flown: Execution, files: dict[str, bytes]) -
     assert BY_NAME["mat"].encode(record, None) == BY_NAME["mat"].encode(record, None)
     other = {**record, "process": {"id": "coverage"}}
     for name in ("zip", "czml"):
-        with pytest.raises(NotAcceptable, match="no flight"):
+        with pytest.raises(NotAcceptable, match="not a flight"):
             BY_NAME[name].encode(other, None)
 
 

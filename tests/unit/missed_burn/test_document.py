@@ -7,7 +7,7 @@ from typer.testing import CliRunner
 
 from safestart.cli import build
 from safestart.errors import Conflict
-from safestart.missed_burn.document import asked, document_of
+from safestart.missed_burn.document import document_of, question_document
 from safestart.missed_burn.plan import Errors, Question
 from safestart.missed_burn.prove import Proof, Verdict, prove
 from safestart.proofs.abort import check as checker
@@ -111,8 +111,8 @@ def _one_hop(least: float):
                 "burns": [{"time_s": 0.0, "impulse_m_s": impulse}],
                 "keep_out_m": least,
                 "horizon_s": ORBIT,
-                "errors": asked(Question(plan_of(0.0), 1.0, 1.0))["errors"],
-                "failures": asked(Question(plan_of(0.0), 1.0, 1.0))["failures"],
+                "errors": question_document(Question(plan_of(0.0), 1.0, 1.0))["errors"],
+                "failures": question_document(Question(plan_of(0.0), 1.0, 1.0))["failures"],
             },
             "cases": [{"kind": "start", "burn": -1, **still}, {"kind": "made", "burn": 0, **still}],
         }

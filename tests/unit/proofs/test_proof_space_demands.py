@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from safestart.constraints.thrust_limit import ThrustLimit
 from safestart.exact.answer import Answer, Verdict
 from safestart.exact.question import Goal
 from safestart.exact.space.decide import decide_in_space
@@ -20,7 +21,7 @@ from safestart.exact.space.prove import proof_in_space
 from safestart.exact.space.question import SpaceQuestion
 from safestart.proofs.checker import check
 from safestart.proofs.strict import ProofRejected
-from tests.unit.exact.test_space_demands import BOX, PANEL, RULE, START, VIEW, flown, question
+from tests.unit.exact.test_space_demands import BOX, PANEL, RULE, SIX, START, VIEW, flown, question
 from tests.unit.proofs.forgery import assert_all_is_read, assert_every_digit_counts, changed, sealed
 
 Document = dict[str, Any]
@@ -156,6 +157,16 @@ def test_a_flight_that_breaks_a_demand_is_refused() -> None:
         answer = Answer(Verdict.GO, 1e-3, 1e-3, 1.0, free.thrust, (), 1)
         with pytest.raises(ProofRejected, match=said):
             check(json.loads(json.dumps(proof_in_space(asked, START, answer))))
+
+
+def test_a_hull_of_thrusters_has_no_plume_rule() -> None:
+    """The rule on the sum of the thrusts holds, yet one of them may blow at the target."""
+    asked = question(Demands((PANEL,)), steps=12, thrust=ThrustLimit("thrusters", (0.1,) * 6, SIX, "body"))
+    proved: Document = proof_in_space(asked, START, decide_in_space(asked, START))
+    assert check(proved).verdict == "GO"
+    for rule in ("plume", "all"):
+        with pytest.raises(ProofRejected, match="plume: required thrust of kind ball"):
+            check(changed(proved, "question.plume", document(rule)["question"]["plume"]))
 
 
 def test_no_box_of_starts_has_demands() -> None:

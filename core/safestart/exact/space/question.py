@@ -78,6 +78,10 @@ class SpaceQuestion(Spanned):
         if any(face.name in norms for face in self.faces):
             raise invalid("faces", f"names other than {', '.join(norms)}", [face.name for face in self.faces])
         self.demands.check([*(face.name for face in self.faces), *AT_END, SPEED])
+        if self.demands.plume is not None and self.thrust.kind != "ball":
+            # A sum of thrusts away from the target may come from a thruster that blows at it.
+            required = "thrust of kind ball: one exhaust, opposite to the thrust"
+            raise invalid("plume", required, self.thrust.kind)
         inner = self.attitude.inertial if isinstance(self.attitude, InLvlh) else self.attitude
         if isinstance(self.attitude, InLvlh) and self.attitude.orbit != self.orbit:
             raise invalid("attitude", "one seen from LVLH on the question's orbit", "another orbit")

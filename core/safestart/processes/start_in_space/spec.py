@@ -88,7 +88,9 @@ class SpaceInputs(SpaceScenario, _Starts):
     field_of_view: FieldOfViewInput | None = Field(
         None, description="A cone about a camera's axis in which the target stays; absent: none."
     )
-    plume: PlumeInput | None = Field(None, description="No exhaust towards the target near it; absent: none.")
+    plume: PlumeInput | None = Field(
+        None, description="No exhaust towards the target near it, for thrust of kind ball; absent: none."
+    )
     flights: bool = Field(False, description="Return the flight of every GO as curves; at most 100 starts.")
     proofs: bool = Field(
         False, description="Return proof documents for `safestart verify`; at most 100 starts."

@@ -80,6 +80,8 @@ def read(document: Any) -> SpaceStated:
     if any(name in faces for name in limits.norms):
         raise ProofRejected(f"faces: required names other than {', '.join(limits.norms)}")
     demands = demands_of(question, {*faces, *limits.norms})
+    if demands.plume is not None and thrust.kind != "ball":
+        raise ProofRejected(f"plume: required thrust of kind ball, received {shown(thrust.kind)}")
     start = document["start"]
     known = not (isinstance(start, dict) and _BOX[0] in start)
     fields(start, "start", ("frame", "position_m", "velocity_m_s", *(() if known else _BOX)))
