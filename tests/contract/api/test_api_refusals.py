@@ -211,7 +211,7 @@ def test_methods_and_paths(client):
     problem = assert_problem(answer, 405)
     assert answer.headers["allow"] == "GET, HEAD, OPTIONS, POST"
     assert problem["received"] == "PUT"
-    assert client.post("/jobs/x").headers["allow"] == "DELETE, GET, HEAD, OPTIONS"
+    assert client.post("/jobs/x").headers["allow"] == "DELETE, GET, HEAD, OPTIONS, PATCH"
     assert_problem(client.get("/nothing/here"), 404)
     assert_problem(client.get("/jobs/"), 404)
 

@@ -37,7 +37,9 @@ def process(client: TestClient, folder: Path) -> dict[str, Any]:
         "description": client.get("/processes/drift").json(),
         "listed": [one["id"] for one in client.get("/processes").json()["processes"]],
         "schemas": [
-            name for name in client.get("/openapi.json").json()["components"]["schemas"] if "Drift" in name
+            name
+            for name in client.get("/openapi.json").json()["components"]["schemas"]
+            if name.startswith(("Drift", "ExecuteDrift"))
         ],
     }
 

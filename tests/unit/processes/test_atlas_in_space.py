@@ -12,7 +12,8 @@ from safestart.errors import InvalidInput
 from safestart.exact.space.decide import decide_in_space
 from safestart.processes.execute import execute
 from safestart.processes.registry import process
-from safestart.processes.start_in_space.plane_input import PlaneInput, coordinate_planes, plane_of
+from safestart.processes.start_in_space.plane import plane_of
+from safestart.processes.start_in_space.plane_input import PlaneInput, coordinate_planes
 from safestart.processes.start_in_space.question import question_of, states_of, stay_in
 from safestart.proofs.checker import check
 from safestart.runtime.progress import Context

@@ -12,7 +12,8 @@ from safestart.exact.space.prove import proof_in_space
 from safestart.processes.atlas_in_space.plots import polygons
 from safestart.processes.atlas_in_space.spec import AtlasInSpaceInputs
 from safestart.processes.base import Artifact, ProcessOutput
-from safestart.processes.start_in_space.plane_input import PlaneInput, coordinate_planes, plane_of
+from safestart.processes.start_in_space.plane import plane_of
+from safestart.processes.start_in_space.plane_input import PlaneInput, coordinate_planes
 from safestart.processes.start_in_space.question import stay_in
 from safestart.runtime.progress import Context
 

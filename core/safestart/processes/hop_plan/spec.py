@@ -65,7 +65,7 @@ class HopPlanBurnOutput(WireModel):
     impulse_m_s: Triple
 
 
-class DriftOutput(WireModel):
+class HopPlanDriftOutput(WireModel):
     """A free drift after a hop's impulse, sampled evenly over the abort."""
 
     hop: int
@@ -88,7 +88,7 @@ class HopPlanOutputs(WireModel):
     proofs: list[HopProofOutput]
     burns: list[HopPlanBurnOutput]
     path: list[Pair] = Field(description="Of all hops, LVLH: radial and along-track, m.")
-    drifts: list[DriftOutput]
+    drifts: list[HopPlanDriftOutput]
     notes: list[str]
 
 
@@ -131,10 +131,7 @@ SPEC = ProcessSpec(
             "Path of the hops, the target at 0",
             "along-track [m]",
             "radial [m]",
-            (
-                Layer("hops", "line", "path", "path.1", "path.0", colour="exact"),
-                Layer("burns", "points", "burns", "position_m.1", "position_m.0"),
-            ),
+            (Layer("hops", "line", "path", "path.1", "path.0", colour="exact"),),
             equal=True,
         ),
         Rows(

@@ -15,7 +15,7 @@ from safestart.processes.base import ProcessOutput
 from safestart.processes.plane_benchmark.plots import overlay
 from safestart.processes.plane_benchmark.spec import PlaneBenchmarkInputs
 from safestart.processes.plotting import npz
-from safestart.processes.start_in_space.plane_input import plane_of
+from safestart.processes.start_in_space.plane import plane_of
 from safestart.processes.start_in_space.question import stay_in
 from safestart.runtime.progress import Context
 

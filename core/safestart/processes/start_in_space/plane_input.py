@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from typing import Literal
 
-import numpy as np
 from pydantic import Field
 
-from safestart.errors import InvalidInput, invalid
-from safestart.exact.space.plane import Plane
-from safestart.exact.space.question import SpaceQuestion, starts_in_lvlh
-from safestart.model.scenario import Floats, Rest
+from safestart.model.scenario import Rest
 from safestart.processes.base import WireModel
 from safestart.processes.start_in_space.parts import Frame, Number, Vector
 
@@ -66,41 +61,6 @@ def coordinate_planes(centre: list[float], size: float, rest: Rest = Rest.LVLH) 
         )
         for a, b in (("x", "y"), ("z", "y"), ("x", "z"))
     ]
-
-
-def plane_of(said: PlaneInput, question: SpaceQuestion, field: str) -> Plane:
-    """In LVLH and SI units; raises ``InvalidInput`` under the wire names below ``field``."""
-    columns = []
-    for name, axis in (("first", said.first), ("second", said.second)):
-        length = math.hypot(*axis.direction)
-        if not 1e-9 < length < math.inf:
-            raise invalid(f"{field}.{name}.direction", "three numbers, not all 0", axis.direction)
-        unit = [e / length for e in axis.direction]
-        still = [0.0, 0.0, 0.0]
-        columns.append(unit + still if axis.kind == "position" else still + unit)
-    rows = np.array([said.origin_m + said.velocity_m_s, *columns])
-    moved = _in_lvlh(said, question, rows)
-    try:
-        return Plane(
-            moved[0],
-            moved[1:].T,
-            np.array([said.first.low, said.second.low]),
-            np.array([said.first.high, said.second.high]),
-        )
-    except InvalidInput as error:
-        inside = {"low": "first.low", "direction": "second.direction"}.get(str(error.field), "first")
-        raise invalid(f"{field}.{inside}", str(error.required), error.received) from None
-
-
-def _in_lvlh(said: PlaneInput, question: SpaceQuestion, rows: Floats) -> Floats:
-    """States (K, 6) of ``frame`` and ``rest`` as LVLH states: a linear map."""
-    at, attitude = np.zeros(1), question.attitude
-    turn, omega = attitude.rotation(at)[0], attitude.angular_velocity(at)[0]
-    body = rows.reshape(-1, 2, 3) if said.frame == "body" else rows.reshape(-1, 2, 3) @ turn.T
-    position, velocity = body[:, 0], body[:, 1]
-    if said.rest is Rest.LVLH:
-        velocity = velocity - np.cross(omega, position)
-    return starts_in_lvlh(attitude, position, velocity)
 
 
 def _short(direction: list[float]) -> str:
