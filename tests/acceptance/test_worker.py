@@ -310,7 +310,7 @@ def test_a_sweep_that_lost_a_process_and_its_worker_has_the_aggregate_of_an_undi
     ended = farm.ended(job)
     assert ended.status is JobStatus.SUCCESSFUL, ended
     notes = [event.data["message"] for event in farm.jobs.events(job) if event.kind == "log"]
-    assert f"{kept} of {total} shards are done already" in notes
+    assert f"{kept} of {total} parts are done already" in notes
     assert farm.jobs.shard_contents(job) == {}
     there = farm.results.result(job).document
     here = execute("sweep", SWEEP).document

@@ -47,6 +47,9 @@ JOB: dict[str, Any] = {
     "message": "done",
     "problem": None,
     "versions": {"python": "3"},
+    "name": "before the burn",
+    "tags": ["envisat"],
+    "note": "as flown",
     **dict.fromkeys(("created_at", "started_at", "finished_at", "updated_at"), TIME),
 }
 EVENTS = [{"at": TIME, "kind": "status", "data": {"status": "successful"}}]

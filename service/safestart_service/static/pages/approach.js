@@ -84,7 +84,7 @@ function burns(found) {
     table(found.burns, [
       ["burn", (row) => row.burn], ["time [s]", (row) => row.time_s], ["from [m]", (row) => row.distance_m], ["radial [m/s]", (row) => clean(row.impulse_m_s[0])], ["along-track [m/s]", (row) => clean(row.impulse_m_s[1])],
       ["if it is the last", (row) => proof(row.burn - 1)?.verdict ?? "stops"], ["keeps, proved [m]", (row) => proof(row.burn - 1)?.least_distance_m ?? null],
-    ], "Burns"),
+    ], "Table of burns"),
     el("div", { class: "tools" }, el("button", { type: "button", class: "plain", onclick: () => save("burns.csv", csv(burnRows(found))) }, "Burns as CSV")),
   ];
 }
