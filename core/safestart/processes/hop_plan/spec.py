@@ -7,7 +7,7 @@ from typing import Literal
 from pydantic import Field, model_validator
 
 from safestart.processes.base import ProcessSpec, Table, WireModel
-from safestart.processes.hopping.spec import MOST_HOPS, PlanOutput, SigmaInput
+from safestart.processes.hopping.spec import MOST_HOPS, PlanOutput, SigmaInput, require_leads_in
 from safestart.processes.passive_abort.wire import KeepOut, Orbits, SemiMajorAxis
 from safestart.processes.views import Column, Facts, Findings, Layer, Picture, Rows
 from safestart.processes.wire import Pair, Triple
@@ -37,10 +37,7 @@ class HopPlanInputs(WireModel):
 
     @model_validator(mode="after")
     def _leads_to_the_hold_point(self) -> HopPlanInputs:
-        if not self.hold_m < self.start_m:
-            raise ValueError("start_m: more than hold_m, hops lead towards the target")
-        if self.hold_m < self.keep_out_m:
-            raise ValueError("hold_m: at least keep_out_m, a hold point lies outside the keep-out sphere")
+        require_leads_in(self.start_m, self.hold_m, self.keep_out_m)
         return self
 
 

@@ -26,6 +26,14 @@ class SigmaInput(WireModel):
     thrust_deg: float = Field(0.5, ge=0, le=30, description="Direction of an impulse, deg.")
 
 
+def require_leads_in(start_m: float, hold_m: float, keep_out_m: float) -> None:
+    """Hops lead towards the target and end outside the keep-out sphere; raises ``ValueError`` under the wire names."""
+    if not hold_m < start_m:
+        raise ValueError("start_m: more than hold_m, hops lead towards the target")
+    if hold_m < keep_out_m:
+        raise ValueError("hold_m: at least keep_out_m, a hold point lies outside the keep-out sphere")
+
+
 class HoppingInputs(WireModel):
     """The target's orbit, the line and its hops, the keep-out sphere, the barrier, the noise, the runs."""
 
@@ -62,10 +70,7 @@ class HoppingInputs(WireModel):
 
     @model_validator(mode="after")
     def _flies(self) -> HoppingInputs:
-        if not self.hold_m < self.start_m:
-            raise ValueError("start_m: more than hold_m, hops lead towards the target")
-        if self.hold_m < self.keep_out_m:
-            raise ValueError("hold_m: at least keep_out_m, a hold point lies outside the keep-out sphere")
+        require_leads_in(self.start_m, self.hold_m, self.keep_out_m)
         if self.semi_major_axis_m * (1.0 - self.eccentricity) <= EARTH_RADIUS:
             raise ValueError(f"eccentricity: a perigee above the Earth's surface, {EARTH_RADIUS:g} m")
         return self
