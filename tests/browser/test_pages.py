@@ -167,8 +167,8 @@ def test_a_benchmark_from_form_to_result(visit: Visit) -> None:
     visit.shot("benchmark")
     page.emulate_media(media="print")
     pictures = "[...document.querySelectorAll('.masks, .masks .main-svg')]"
-    heights = page.evaluate(f"{pictures}.map((e) => Math.round(e.getBoundingClientRect().height))")
-    assert len(set(heights)) == 1, "a picture has the size of its place on paper"
+    heights = f"new Set({pictures}.map((e) => Math.round(e.getBoundingClientRect().height))).size"
+    until(lambda: page.evaluate(heights) == 1, "pictures of the size of their places on paper")
     report = until(lambda: one_page(page), "a report of one page")
     (SHOTS / "report.pdf").write_bytes(report)
     page.emulate_media(media="screen")
@@ -259,7 +259,7 @@ def test_a_service_with_keys_asks_for_one(browser: Browser, tmp_path: Path) -> N
         expect(page.locator("label[for=key]").first).to_contain_text("not accepted")
         page.locator("#key").first.fill(key)
         page.locator("text=Use this key").first.click()
-        expect(page.locator(".empty")).to_contain_text("No job is like that")
+        expect(page.locator(".empty")).to_contain_text("No jobs here yet")
         explore(visit, "x_m=5&y_m=40")
         expect(page.locator(".answer .word").first).to_have_text("GO")
         context.close()
