@@ -131,7 +131,7 @@ $("preset").addEventListener("change", ({ target }) => {
   change(textsOf(examples[chosen[0]]));
   store.hasten();
 });
-scene.after(saveButtons(scene, "start-in-space", el));
+scene.after(saveButtons(scene, "space", el));
 $("verdict").after(copies(() => { const values = given(store.inputs); return values && { id: STARTS, inputs: { ...startQuestion(values), proofs: true } }; }));
 $("flight-tools").append(el("button", { type: "button", class: "plain", onclick: () => save("flight.csv", csv(rowsOf(flight.data))) }, "Flight as CSV"));
 if (unknown.length) $("address").textContent = `The address has settings that this page does not know: ${unknown.join(", ")}.`;
