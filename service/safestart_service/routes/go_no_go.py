@@ -128,6 +128,7 @@ async def go_no_go_proof(_query: Annotated[GoNoGoQuery, Query()]) -> Response:
     openapi_extra=json_body(
         {SPEC.id: GoNoGoInputs, SPACE.id: SpaceInputs},
         {SPEC.id: SPEC.example, SPACE.id: SPACE.example, **MISSIONS},
+        "GoNoGoRequest",
     ),
     responses={
         200: content(
