@@ -2,7 +2,7 @@
 
 Jobs are submitted at ``--rate`` a second. Every ``--kill-every`` seconds a random process (service, worker, one of its
 task processes) gets SIGKILL, and whoever supervises it starts it again. At the end each accepted job must be there once
-and successful. ``--log FILE`` keeps a line a minute: jobs, kills, and memory of all processes (what no other process shares).
+and successful. ``--log FILE`` keeps a line a minute: jobs, kills, and memory of all processes, without what is shared.
 The database must be new: an SQLite file that is not there, or an empty PostgreSQL database.
 """
 
