@@ -7,7 +7,7 @@ import pytest
 
 from safestart.campaign.case import Case
 from safestart.control.hopping import Hopping
-from safestart.dynamics.cwh import transition_matrix
+from safestart.dynamics.cwh import input_matrix, transition_matrix
 from safestart.dynamics.two_body import Orbit, TwoBody
 from safestart.dynamics.two_body_kernel import STAGES, WEIGHTS, drifted, placed, pushed, seen, target_at
 from safestart.errors import InvalidInput
@@ -108,3 +108,24 @@ def test_refusals() -> None:
         Hopping(N, 0.0, np.array([100.0, 200.0]))
     with pytest.raises(InvalidInput, match="k: required"):
         Hopping(N, 0.0, np.array([200.0, 100.0])).command(2, np.zeros(6))
+
+
+def test_a_difference_of_drag_drifts_as_a_constant_push_in_cwh() -> None:
+    """Against CWH with the push held against the velocity of the orbit: the same to the neglected terms."""
+    n, drag = mean_motion_of(8.1e6), 1e-6
+    target, state = target_at(8.1e6, 0.0, 0.0), np.array([0.0, 200.0, 0.0, 0.0, 0.0, 0.0])
+    time = 0.7 * math.tau / n
+    with_drag = seen(drifted(placed(target, state), time, STAGES, WEIGHTS, drag)[0])
+    without = seen(drifted(placed(target, state), time, STAGES, WEIGHTS)[0])
+    pushed_by = input_matrix(n, time) @ np.array([0.0, -drag, 0.0])
+    assert np.abs(pushed_by[:2]).min() > 0.5
+    assert (with_drag - without)[:3] == pytest.approx(pushed_by[:3], rel=5e-3, abs=2e-3)
+    # More drag than the target: the chaser falls below and runs ahead.
+    assert pushed_by[0] < 0.0 < pushed_by[1]
+
+
+def test_drag_changes_the_risk_of_the_v_bar() -> None:
+    """3e-7 m/s^2 move an abort of two orbits by tens of metres along the track."""
+    still = fly(World(), np.random.default_rng(1))
+    dragged = fly(World(drag=3e-7), np.random.default_rng(1))
+    assert np.abs(still.closest - dragged.closest).max() > 5.0
