@@ -89,8 +89,12 @@ def _pushed(n: arb, time: arb) -> arb_mat:
 
 def _rates(n: arb, span: arb) -> _Rates:
     a, value = generator(n), _pushed(n, span)
-    first = a * value
-    return _Rates(*(_sizes(m) for m in (value, first, a * first)))
+    slope = a * value
+    first = _sizes(slope)
+    # A position begins at 0 and grows no faster than its greatest rate.
+    longest = arb(span.upper())
+    reached = [longest * rate for rate in first[:3]] + _sizes(value)[3:]
+    return _Rates(reached, first, _sizes(a * slope))
 
 
 def _sizes(matrix: arb_mat) -> list[arb]:
