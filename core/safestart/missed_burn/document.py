@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from safestart.errors import Conflict
+from safestart.missed_burn.plan import Question
 from safestart.missed_burn.prove import Finding, Proof, Verdict
 from safestart.missed_burn.question_document import sealed, wider
 
@@ -14,10 +15,12 @@ def document_of(proof: Proof) -> dict[str, Any]:
     if proof.verdict is not Verdict.PROVED:
         raise Conflict(f"a proof document needs the verdict PROVED, this one is {proof.verdict.value}")
     wide = wider(proof.question)
-    return sealed(proof.question, proof.least, [_case(finding, wide) for finding in proof.findings])
+    return sealed(
+        proof.question, proof.least, [_case(proof.question, finding, wide) for finding in proof.findings]
+    )
 
 
-def _case(finding: Finding, wide: bool) -> dict[str, Any]:
+def _case(question: Question, finding: Finding, wide: bool) -> dict[str, Any]:
     case = finding.case
     out: dict[str, Any] = {
         "kind": case.kind,
@@ -27,7 +30,11 @@ def _case(finding: Finding, wide: bool) -> dict[str, Any]:
         "cells": finding.cells.tolist(),
     }
     if wide:
-        out |= {"on_first_s": case.thrust.first, "on_last_s": case.thrust.last, "zone": finding.zone}
+        on = case.thrust.first, case.thrust.last
+        if case.kind == "stuck":
+            # first_s and last_s say how long it goes on afterwards.
+            on = (question.plan.burns[case.burn].duration,) * 2
+        out |= {"on_first_s": on[0], "on_last_s": on[1], "zone": finding.zone}
     if len(finding.trials):
         out["radii_m"] = finding.trials.tolist()
     return out

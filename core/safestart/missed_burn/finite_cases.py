@@ -12,7 +12,7 @@ path, each in its own window of time, and for the burn that ends early by failur
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -70,8 +70,12 @@ def finite_cases(question: Question, k: int, before: StateSet) -> tuple[StateSet
         add("late", late, full, plain, long=True)
         for on in shorter:
             add("late", late, on, plain, long=False)
-    for first, last in pieces(failures.stuck, burn.thrust):
-        add("stuck", _STILL, (whole + first, whole + last), plain, long=True)
+    for over in pieces(failures.stuck, burn.thrust):
+        on = (whole + over[0], whole + over[1])
+        state = _burning(before, burn, k, n, _STILL, on, plain)
+        out.append(
+            replace(_case(question, state, k, "stuck", _STILL, on, long=True), first=over[0], last=over[1])
+        )
     return made, out
 
 
@@ -100,7 +104,9 @@ def _burning(
     if half > 0.0:
         state.block([gives @ (half * size * along)], "along", k)
     if across > 0.0:
-        state.block([gives @ (across * size * one), gives @ (across * size * two)], "across", k)
+        # Across the burn: u/u_2 of what it gives in its longest time u_2, but for the chord's error, below.
+        given = input_matrix(n, -late_at) - input_matrix(n, -late_at - on[1])
+        state.block([given @ (across * size * one), given @ (across * size * two)], "across", k)
     end, begin = transition_matrix(n, -late_at - on_at)[:, 3:], transition_matrix(n, -late_at)[:, 3:]
     if late_by > 0.0:
         state.block([late_by * ((end - begin) @ (most * along))], "piece", k)
@@ -108,8 +114,9 @@ def _burning(
         state.block([on_by * (end @ (most * along))], "on", k)
     slow, slower = _rates(n, longest)
     bend = most * (0.5 * late_by**2 * on[1] * slower + (late_by * on_by + 0.5 * on_by**2) * slow)
-    # What lies across the burn moves along the pieces, too; errors that vary while it burns.
-    loose = size * across * (late_by * on[1] * slow + on_by * _kick(n, longest))
+    # What lies across the burn moves with the delay, too; errors that vary while it burns.
+    chord = 0.125 * on[1] ** 2 if on_by > 0.0 else 0.0
+    loose = size * across * (late_by * on[1] + chord) * slow
     state.box(bend + loose + 0.5 * on[1] ** 2 * shape.unsteady * slow, "bend")
     return state
 
@@ -119,9 +126,3 @@ def _rates(n: float, longest: float) -> tuple[Floats, Floats]:
     p = n * longest
     slow = np.repeat([1.0 + 2.0 * p, n * (2.0 + 4.0 * p)], 3)
     return slow, n * np.repeat([2.0 + 4.0 * p, n * (8.0 + 16.0 * p)], 3)
-
-
-def _kick(n: float, longest: float) -> Floats:
-    """Bound (6,) on Phi(-s) (0, e), |e| = 1."""
-    p = n * longest
-    return np.repeat([longest * (1.0 + 2.0 * p), 1.0 + 2.0 * p], 3)

@@ -19,14 +19,16 @@ from safestart.proofs.statement import digest_of
 from safestart.proofs.strict import ProofRejected
 from tests.unit.missed_burn.flights import ORBIT, STUDY, N, plan_of, turned
 
-THRUST = 0.02
+THRUST = 0.2
 KINDS = ("made", "cut", "partial", "late", "stuck", "misdirected")
-FAILURES = Failures(60.0, True, 5.0, 0.0, math.radians(5.0))
+FAILURES = Failures(60.0, True, 0.1, 0.0, math.radians(5.0))
 
 
 def lasting(plan: Plan, thrust: float = THRUST) -> Plan:
-    """The same impulses, each at a thrust."""
-    return Plan(N, plan.start, tuple(Burn(b.time, b.impulse, b.size / thrust) for b in plan.burns))
+    """The same impulses, each at a thrust, around the time of the impulse."""
+    first = 0.5 * plan.burns[0].size / thrust
+    burns = [Burn(b.time + first - 0.5 * b.size / thrust, b.impulse, b.size / thrust) for b in plan.burns]
+    return Plan(N, plan.start, tuple(burns))
 
 
 @pytest.fixture(scope="module")
@@ -92,14 +94,15 @@ def test_no_flight_comes_nearer_whatever_fails_and_also_while_it_burns(proof: Pr
 
 
 def test_a_lasting_burn_that_is_short_is_an_impulse() -> None:
+    """One that ends early is one that is burnt in part."""
     plan = plan_of(40.0, 3)
-    at_once = prove(Question(plan, 50.0, ORBIT, STUDY))
+    at_once = prove(Question(plan, 50.0, ORBIT, STUDY, Failures(partial=True)))
     short = prove(Question(lasting(plan, 1e4), 50.0, ORBIT, STUDY))
-    assert short.least == pytest.approx(at_once.least, abs=0.1)
+    assert short.least == pytest.approx(at_once.least, abs=0.2)
 
 
 def test_failures_that_come_near_are_replayed_within_their_limits() -> None:
-    plan = Plan(N, (0.0, 150.0, 0.0, 0.0, 0.0, 0.0), (Burn(0.0, (0.0, -0.08, 0.0), 40.0),))
+    plan = Plan(N, (0.0, 150.0, 0.0, 0.0, 0.0, 0.0), (Burn(0.0, (-0.054, 0.0, 0.0), 40.0),))
     for radius in (None, 8.1e6):
         found = prove(Question(plan, 50.0, ORBIT, STUDY, FAILURES, radius), sharp=False)
         assert found.verdict is Verdict.VIOLATED
@@ -179,7 +182,7 @@ def test_the_bend_of_the_pieces_counts(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.undo()
     with pytest.raises(ProofRejected, match="short by"):
         check(document)
-    monkeypatch.setattr(finite, "_rates", lambda *_: finite._Rates(*([finite.arb(0)] * 6 for _ in range(3))))
+    monkeypatch.setattr(finite, "_rates", lambda *_: finite._Rates(*([finite.arb(0)] * 6 for _ in range(2))))
     assert check(document).verdict == "PROVED"
 
 

@@ -63,6 +63,13 @@ class Complete(ABC):
             if longest is not None:
                 _follow([(event.first, event.last) for event in events], fmpq(0), longest, name)
             return
+        if kind == "stuck":
+            if any(event.on != (whole, whole) for event in events):
+                raise ProofRejected(
+                    f"cases: {name}: required one that lasts for all its time before it goes on"
+                )
+            _follow([(event.first, event.last) for event in events], fmpq(0), asked.stuck, name)
+            return
         by_delay: dict[tuple[fmpq, fmpq], list[tuple[fmpq, fmpq]]] = {}
         for event in events:
             by_delay.setdefault((event.first, event.last), []).append(event.on)
@@ -71,9 +78,6 @@ class Complete(ABC):
         elif set(by_delay) != {(fmpq(0), fmpq(0))}:
             raise ProofRejected(f"cases: {name}: required no delay")
         for lasting in by_delay.values():
-            if kind == "stuck":
-                _follow(lasting, whole, whole + asked.stuck, name)
-                continue
             if kind != "cut":
                 if (whole, whole) not in lasting:
                     raise ProofRejected(f"cases: {name}: required one in which it lasts for all its time")

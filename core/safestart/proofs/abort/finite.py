@@ -18,10 +18,23 @@ LONG = ("made", "cut", "stuck")
 """Kinds after which the chaser drifts for the whole horizon, however long the burn lasts."""
 
 
+Piece = tuple[fmpq, fmpq]
+
+
+def times(asked: Asked, event: Event) -> tuple[Piece, Piece]:
+    """How late the burn of an event begins, and how long it lasts; one that is stuck on goes on for the event's piece
+    after its whole time."""
+    if event.kind != "stuck":
+        return (event.first, event.last), event.on
+    whole = asked.durations[event.burn]
+    return (fmpq(0), fmpq(0)), (whole + event.first, whole + event.last)
+
+
 def window(asked: Asked, event: Event) -> tuple[fmpq, fmpq]:
     """From when to when the chaser may drift from the set of an event of a burn with a duration, s after its planned
     time. A burn that is late, weak or misdirected and still burns is covered only for as long as it may."""
-    begin, end = event.first + event.on[0], event.last + event.on[1]
+    late, on = times(asked, event)
+    begin, end = late[0] + on[0], late[1] + on[1]
     whole = asked.durations[event.burn]
     if event.kind not in LONG and event.on != (whole, whole):
         return begin, end
@@ -33,9 +46,8 @@ def window(asked: Asked, event: Event) -> tuple[fmpq, fmpq]:
 
 @dataclass(frozen=True, slots=True)
 class _Rates:
-    """Greatest sizes of Phi(-s) (0, e) and of its first two derivatives, in each of the six, |e| = 1, s in a ball."""
+    """Greatest sizes of the first two derivatives of Phi(-s) (0, e), in each of the six, |e| = 1, s in a ball."""
 
-    value: list[arb]
     first: list[arb]
     second: list[arb]
 
@@ -49,12 +61,14 @@ def burning(asked: Asked, before: Reached, event: Event) -> Reached:
     middle, half, across = shell(least, 1 + share, wide)
     along, one, two, impulse = axes([arb(e) for e in asked.impulses[burn]])
     size = impulse / arb(asked.durations[burn])
-    late, late_by = _piece(event.first, event.last)
-    on, on_by = _piece(*event.on)
-    gives = held(n, -late) - held(n, -late - on)
+    delay, lasts = times(asked, event)
+    late, late_by = _piece(*delay)
+    on, on_by = _piece(*lasts)
+    gives, given = (held(n, -late) - held(n, -late - time) for time in (on, arb(lasts[1])))
+    # Across the burn: u/u_2 of what it gives in its longest time u_2, but for the chord's error u_2^2/8 |H''|.
     blocks = [
         [gives * column([half * size * e for e in along])],
-        [gives * column([across * size * e for e in unit]) for unit in (one, two)],
+        [given * column([across * size * e for e in unit]) for unit in (one, two)],
     ]
     end, begin = _pushed(n, late + on), _pushed(n, late)
     most = column([(1 + share) * size * e for e in along])
@@ -62,16 +76,17 @@ def burning(asked: Asked, before: Reached, event: Event) -> Reached:
     state = Reached(
         before.centre + gives * column([middle * size * e for e in along]), [*before.blocks, *blocks]
     )
-    longest = arb(event.last + event.on[1])
+    longest = arb(delay[1] + lasts[1])
     rates = _rates(n, longest / 2 + arb(0, 1) * (longest / 2))
     _, own, aside = shell(1 - share, 1 + share, angle)
     unsteady = size * (own * own + aside * aside).sqrt()
-    reach, top = arb(event.on[1]), (1 + share) * size
+    reach, top = arb(lasts[1]), (1 + share) * size
+    chord = reach**2 / 8 if lasts[0] < lasts[1] else arb(0)
     return state.grown(
         [
             top
             * (late_by**2 / 2 * reach * rates.second[k] + (late_by * on_by + on_by**2 / 2) * rates.first[k])
-            + size * across * (late_by * reach * rates.first[k] + on_by * rates.value[k])
+            + size * across * (late_by * reach + chord) * rates.first[k]
             + unsteady * reach**2 / 2 * rates.first[k]
             for k in range(6)
         ]
@@ -88,13 +103,9 @@ def _pushed(n: arb, time: arb) -> arb_mat:
 
 
 def _rates(n: arb, span: arb) -> _Rates:
-    a, value = generator(n), _pushed(n, span)
-    slope = a * value
-    first = _sizes(slope)
-    # A position begins at 0 and grows no faster than its greatest rate.
-    longest = arb(span.upper())
-    reached = [longest * rate for rate in first[:3]] + _sizes(value)[3:]
-    return _Rates(reached, first, _sizes(a * slope))
+    a = generator(n)
+    slope = a * _pushed(n, span)
+    return _Rates(_sizes(slope), _sizes(a * slope))
 
 
 def _sizes(matrix: arb_mat) -> list[arb]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from flint import arb, arb_mat, fmpq
 
-from safestart.proofs.abort.finite import burning
+from safestart.proofs.abort.finite import burning, times
 from safestart.proofs.abort.reached import Reached, axes, column, generator, held, shell, speeds, transition
 from safestart.proofs.abort.statement import Asked, Event
 
@@ -72,8 +72,8 @@ class Sets:
         last, most = arb(event.last), 1 + self.share
         if event.on[1] > 0:
             size = sum((arb(e) ** 2 for e in self.asked.impulses[event.burn]), arb(0)).sqrt()
-            spent = size / arb(self.asked.durations[event.burn]) * arb(event.on[1])
-            return 2 * (last + arb(event.on[1])) * most * spent
+            (_, late), (_, on) = times(self.asked, event)
+            return 2 * arb(late + on) * most * size / arb(self.asked.durations[event.burn]) * arb(on)
         if event.kind not in ("late", "stuck"):
             return arb(0)
         if event.kind == "stuck":
