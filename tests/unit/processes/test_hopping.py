@@ -61,9 +61,9 @@ def test_the_proof_may_speak_about_the_true_earth() -> None:
         run = execute("hopping", asked | {"proof_model": model})
         said[model] = run.document["outputs"]["proof"]
         assert said[model]["model"] == model
-    # From rest at 2 km the drift leaves too far for the bound on the nonlinear terms, not for the true motion.
-    assert said["nonlinear"]["verdict"] == "UNKNOWN"
-    assert said["earth"]["verdict"] == said["linear"]["verdict"] == "PROVED"
+    assert {one["verdict"] for one in said.values()} == {"PROVED"}
+    # The bound on the nonlinear terms costs some of the level.
+    assert said["nonlinear"]["lambda"] < said["linear"]["lambda"]
     assert said["earth"]["lambda"] == pytest.approx(said["linear"]["lambda"], rel=0.05)
     assert said["earth"]["lambda"] != said["linear"]["lambda"]
     document = json.loads(next(file for file in run.artifacts if file.name == "proof.json").data)
