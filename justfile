@@ -50,9 +50,14 @@ generate:
     python3 -m uv run --all-packages python tools/settings_page.py write
     python3 -m uv run --all-packages python tools/picture.py
 
-# the pages in Chromium, their screenshots into docs/screenshots
+# every page in Chromium, their screenshots into docs/screenshots
 screenshots:
-    SAFESTART_SCREENSHOTS=docs/screenshots python3 -m uv run --all-packages pytest tests/browser
+    SAFESTART_SCREENSHOTS=docs/screenshots python3 -m uv run --all-packages pytest tests/browser/test_baselines.py -k looks
+    rm docs/screenshots/coarse-*.png
+
+# pictures that the pages are compared with, after they were changed on purpose; look at them before you commit them
+baselines:
+    BASELINES=write python3 -m uv run --all-packages pytest tests/browser/test_baselines.py -k looks
 
 # the documentation as a site in build/site, strictly; `python -m http.server -d build/site` shows it
 docs:

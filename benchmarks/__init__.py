@@ -12,4 +12,5 @@ BENCHMARKS = (
     "atlas",
     "http",
     "start_up",
+    "first_start",
 )

@@ -16,13 +16,16 @@ import psutil
 
 from tests.waiting import PATIENCE_S, free_port, until
 
+PATIENT = {"SAFESTART_ANSWER_TIMEOUT_S": str(PATIENCE_S)}
+"""On a busy machine an answer takes longer than a user would wait."""
+
 
 @contextmanager
 def serving(database_url: str) -> Iterator[str]:
     """``safestart serve`` alone; yields its address."""
     url = f"http://127.0.0.1:{free_port()}"
     command = [sys.executable, "-m", "safestart", "serve", "--port", url.rpartition(":")[2]]
-    process = subprocess.Popen(command, env=os.environ | {"SAFESTART_DATABASE_URL": database_url})
+    process = subprocess.Popen(command, env=PATIENT | os.environ | {"SAFESTART_DATABASE_URL": database_url})
     try:
         until(lambda: answers(url, process), "a service that answers")
         yield url
@@ -46,11 +49,15 @@ class Running:
     def __init__(self, folder: Path) -> None:
         port = free_port()
         self.database_url = f"sqlite:///{folder / 'up.sqlite3'}"
-        environment = os.environ | {
-            "SAFESTART_DATABASE_URL": self.database_url,
-            "SAFESTART_LEASE_S": "4",
-            "SAFESTART_PROCESSES": "2",
-        }
+        environment = (
+            PATIENT
+            | os.environ
+            | {
+                "SAFESTART_DATABASE_URL": self.database_url,
+                "SAFESTART_LEASE_S": "4",
+                "SAFESTART_PROCESSES": "2",
+            }
+        )
         self.log = folder / "up.log"
         with self.log.open("wb") as sink:
             command = [sys.executable, "-m", "safestart", "up", "--port", str(port)]

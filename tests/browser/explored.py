@@ -15,7 +15,7 @@ from typing import Any
 import httpx
 from playwright.sync_api import Page
 
-from tests.acceptance.running import answers
+from tests.acceptance.running import PATIENT, answers
 from tests.waiting import PATIENCE_S, free_port, until
 
 FAULTS = Path(__file__).with_name("faults.js")
@@ -70,7 +70,8 @@ class Served:
 
     def __init__(self, folder: Path) -> None:
         self.url = f"http://127.0.0.1:{free_port()}"
-        self._environment = os.environ | {"SAFESTART_DATABASE_URL": f"sqlite:///{folder / 'served.sqlite3'}"}
+        address = f"sqlite:///{folder / 'served.sqlite3'}"
+        self._environment = PATIENT | os.environ | {"SAFESTART_DATABASE_URL": address}
         self.start()
 
     def start(self) -> None:

@@ -32,6 +32,8 @@ test("a layer has the rows of its table, and of the inputs beside them", () => {
   assert.deepEqual(shapeOf({ corridor: { c_x: 1 } }), { c_x: 1, x0_m: 2.5, r_h_m: 0.5 });
   assert.equal(shapeOf({ corridor: { faces: [] } }), null);
   assert.equal(shapeOf({}), null);
+  assert.deepEqual(shapeOf({}, { corridor: { minOccurs: 0 } }), { c_x: 1.5, x0_m: 2.5, r_h_m: 0.5 });
+  assert.equal(shapeOf({}, { corridor: { minOccurs: 1 } }), null);
 });
 
 test("key inputs are the required ones, the example's, and those that were changed", () => {

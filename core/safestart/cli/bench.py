@@ -27,13 +27,20 @@ def register(app: typer.Typer) -> None:
         for name in suite.BENCHMARKS:
             err.print(f"{name} ...")
             measured = importlib.import_module(f"benchmarks.{name}").measure()
-            ratios |= measured["ratios"]
-            times |= measured["times"]
+            add(ratios, measured["ratios"], name)
+            add(times, measured["times"], name)
         document: dict[str, Any] = {"ratios": ratios, "times": times, "machine": versions()["machine"]}
         if as_json:
             print_json(document)
         else:
             _show(document)
+
+
+def add(figures: dict[str, float], measured: dict[str, float], benchmark: str) -> None:
+    """Add what a benchmark measured. A name must be new: one figure would silently take the place of another."""
+    if taken := sorted(figures.keys() & measured.keys()):
+        raise ValueError(f"{benchmark}: required names that no other benchmark uses, received {taken}")
+    figures.update(measured)
 
 
 def _suite() -> Any:

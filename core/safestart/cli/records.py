@@ -91,12 +91,28 @@ def label(
 def export(
     job: Annotated[str, typer.Argument(help="Id of a job that has ended.")],
     output: Annotated[Path | None, typer.Option("--output", help="File; absent: JOB.zip here.")] = None,
+    crate: Annotated[
+        bool, typer.Option("--crate", help="As an RO-Crate, for repositories of research data.")
+    ] = False,
+    licence: Annotated[
+        str | None, typer.Option(help="Address or words of the licence that a crate states.")
+    ] = None,
     database_url: DatabaseUrl = "",
 ) -> None:
     """Write a job as one file that opens without a server (unzip it, open index.html)."""
     from safestart.records.bundle import pack
+    from safestart.records.crate import pack_crate
 
-    path = output or Path(f"{job}.zip")
+    if licence is not None and not crate:
+        raise InvalidInput("--licence: required with --crate, received without", field="--licence")
+    path = output or Path(f"{job}.crate.zip" if crate else f"{job}.zip")
+    if crate:
+        with target("--output", path) as file:
+            data = pack_crate(_bundle_of(job, database_url), licence)
+            if file is not None:
+                file.write(data)
+        out.print(f"wrote {path} ({len(data)} bytes)", soft_wrap=True)
+        return
     with target("--output", path) as file:
         data, seal = pack(_bundle_of(job, database_url))
         if file is not None:

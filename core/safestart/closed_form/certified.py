@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from safestart.closed_form.blocks import row_blocks
 from safestart.closed_form.members import BRAKE, Faces, Ints, Offer, offers
 from safestart.closed_form.rates import Rates, rates_of
 from safestart.errors import invalid
@@ -100,10 +101,22 @@ def certify_by(rates: Rates, corridor: CorridorShape, points: Floats) -> Certifi
 def certify_grid(scenario: Scenario, grid: Grid, rest: Rest = Rest.LVLH) -> CertifiedMap:
     """Certify every point of a grid: arrays (ny, nx), row-major ``[iy][ix]``. The arithmetic is :func:`certify`'s."""
     x, y = grid.axes(scenario.corridor)
-    cells = np.empty((2, len(y), len(x)))
-    cells[0], cells[1] = x, y[:, None]
-    place = cells.reshape(2, -1)
     rates, faces = rates_of(scenario, rest), Faces.of(scenario.corridor, 2)
+    size = (len(y), len(x))
+    margin, inside = np.empty(size), np.empty(size, bool)
+    for rows in row_blocks(*size):
+        cells = np.empty((2, *margin[rows].shape))
+        cells[0], cells[1] = x, y[rows, None]
+        found, within = _margins(rates, faces, cells.reshape(2, -1))
+        margin[rows], inside[rows] = found.reshape(cells.shape[1:]), within.reshape(cells.shape[1:])
+    mask = margin > 0.0
+    count = int(np.count_nonzero(inside))
+    fraction = float(np.count_nonzero(mask)) / count if count else 0.0
+    return CertifiedMap(margin, mask, inside, fraction)
+
+
+def _margins(rates: Rates, faces: Faces, place: Floats) -> tuple[Floats, Bools]:
+    """Margin and whether it lies in the corridor, for starts ``place`` (2, n) of a map."""
     start = faces.room(place)
     margin = start.min(axis=0)
     inside = margin >= -ROUNDING  # the grid's corners lie on faces
@@ -116,11 +129,7 @@ def certify_grid(scenario: Scenario, grid: Grid, rest: Rest = Rest.LVLH) -> Cert
         best[lost] = _shortfall(rates, place[:, lost])
     margin[within] = best
     margin -= ROUNDING
-    mask = margin > 0.0
-    count = int(np.count_nonzero(inside))
-    fraction = float(np.count_nonzero(mask)) / count if count else 0.0
-    size = (len(y), len(x))
-    return CertifiedMap(margin.reshape(size), mask.reshape(size), inside.reshape(size), fraction)
+    return margin, inside
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from safestart.closed_form.blocks import row_blocks
 from safestart.constraints.corridor import Corridor, corridor_of
 from safestart.errors import invalid
 from safestart.model.scenario import Bools, Floats, Grid, Rest, Scenario
@@ -112,11 +113,24 @@ def certify_grid(scenario: Scenario, grid: Grid, rest: Rest = Rest.LVLH) -> MapC
     The arithmetic is :func:`certify`'s, face by face over the grid's axes without the per-face report.
     """
     x, y = grid.axes(scenario.corridor)
-    y = y[:, None]
     corridor = corridor_of(scenario.corridor)
     rate = rate_matrix(corridor, scenario, rest)
     limit = range_limit(scenario, rest)
     twice = 2.0 * scenario.chaser.max_acceleration
+    size = (len(y), len(x))
+    margin, inside = np.empty(size), np.empty(size, bool)
+    for rows in row_blocks(*size):
+        margin[rows], inside[rows] = _margins(corridor, rate, limit, twice, x, y[rows, None])
+    mask = margin > 0.0
+    count = int(np.count_nonzero(inside))
+    fraction = float(np.count_nonzero(mask)) / count if count else 0.0
+    return MapCertificate(margin, mask, inside, fraction, limit)
+
+
+def _margins(
+    corridor: Corridor, rate: Floats, limit: float, twice: float, x: Floats, y: Floats
+) -> tuple[Floats, Bools]:
+    """Margin and whether it lies in the corridor, (ny, nx), for x (nx,) and y (ny, 1)."""
     margin = limit - np.sqrt(x * x + y * y)
     least = np.full(margin.shape, np.inf)
     for i in range(len(corridor.offsets)):
@@ -126,8 +140,4 @@ def certify_grid(scenario: Scenario, grid: Grid, rest: Rest = Rest.LVLH) -> MapC
         slack -= drop * drop / twice
         slack /= corridor.lengths[i]
         np.minimum(margin, slack, out=margin)
-    inside = least >= 0.0
-    mask = margin > 0.0
-    count = int(np.count_nonzero(inside))
-    fraction = float(np.count_nonzero(mask)) / count if count else 0.0
-    return MapCertificate(margin, mask, inside, fraction, limit)
+    return margin, least >= 0.0

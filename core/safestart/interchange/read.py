@@ -7,7 +7,7 @@ from pathlib import Path
 from safestart.errors import invalid
 from safestart.interchange import tables
 from safestart.interchange.attitude_course import AttitudeCourse
-from safestart.interchange.ccsds import aem, cdm, ocm, oem, parameters
+from safestart.interchange.ccsds import acm, aem, cdm, ocm, oem, parameters
 from safestart.interchange.ccsds.cdm import Encounter
 from safestart.interchange.ccsds.message import message_of
 from safestart.interchange.covariance import Sense
@@ -35,7 +35,7 @@ def ephemeris_from(data: bytes, name: str = "", sense: Sense | None = None) -> E
 
 
 def attitude_of(path: Path | str) -> AttitudeCourse:
-    """The attitudes of an AEM, APM or table; raises ``InvalidInput`` for another file, ``Unavailable``."""
+    """The attitudes of an AEM, ACM, APM or table; raises ``InvalidInput`` for another file, ``Unavailable``."""
     return attitude_from(bytes_of(path), str(path))
 
 
@@ -46,9 +46,11 @@ def attitude_from(data: bytes, name: str = "") -> AttitudeCourse:
     message = message_of(data)
     if message.kind == "AEM":
         return aem.attitude_of(message)
+    if message.kind == "ACM":
+        return acm.attitude_of(message)
     if message.kind == "APM":
         return parameters.attitude_of(message)
-    raise invalid("file", "attitudes: AEM, APM, CSV, Parquet or MATLAB", message.kind)
+    raise invalid("file", "attitudes: AEM, ACM, APM, CSV, Parquet or MATLAB", message.kind)
 
 
 def course_from(data: bytes, name: str = "", sense: Sense | None = None) -> Ephemeris | AttitudeCourse:
@@ -59,7 +61,7 @@ def course_from(data: bytes, name: str = "", sense: Sense | None = None) -> Ephe
             if tables.holds_turns(data, name)
             else tables.ephemeris_of(data, name)
         )
-    if message_of(data).kind in ("AEM", "APM"):
+    if message_of(data).kind in ("AEM", "ACM", "APM"):
         return attitude_from(data, name)
     return ephemeris_from(data, name, sense)
 

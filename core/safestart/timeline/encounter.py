@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -22,6 +22,7 @@ from safestart.interchange.relative import Relative, relative_states
 from safestart.interchange.sampling import quaternions_at
 from safestart.model.orbit import MU, KeplerOrbit
 from safestart.model.scenario import Floats
+from safestart.timeline.spread import StartBoxes, start_boxes
 
 RATE_GRID = 1e-7
 """Circular orbits turn at multiples of this, rad/s, so that few tables serve a day: 6e-6 rad in a minute."""
@@ -34,6 +35,8 @@ SMALLEST_RANGE_M = 10.0
 class Encounter:
     """Two courses, and an attitude: a course of its own, or a steady ``spin`` against LVLH from ``begin`` on.
 
+    With a ``confidence`` the chaser's state is uncertain, by the covariances of the two courses.
+
     Raises ``InvalidInput`` for an attitude that turns by more than 90 degrees between two entries, and for one against
     inertial axes beside courses in ITRF.
     """
@@ -43,6 +46,8 @@ class Encounter:
     attitude: AttitudeCourse | Spin
     begin: int
     horizon: float
+    confidence: float | None = None
+    boxes: StartBoxes | None = field(init=False, default=None)
 
     def __post_init__(self) -> None:
         attitude = self.attitude
@@ -58,10 +63,14 @@ class Encounter:
             raise invalid(
                 "REF_FRAME", "both courses in ITRF, or neither", f"{self.chaser.frame}, {self.target.frame}"
             )
+        covariances = self.chaser.covariances, self.target.covariances
         for name in ("chaser", "target"):
             course: Ephemeris = getattr(self, name)
             states = to_gcrf(course.frame, course.epochs, course.states)
             object.__setattr__(self, name, replace(course, frame="GCRF", states=states, covariances=()))
+        if self.confidence is not None:
+            boxes = start_boxes(self.chaser, self.target, covariances, self.confidence)
+            object.__setattr__(self, "boxes", boxes)
 
     @cached_property
     def _course(self) -> AttitudeCourse | None:

@@ -15,6 +15,7 @@ from safestart.exact.answer import GUARD, Answer, Verdict
 from safestart.exact.space.decide import decide_in_space
 from safestart.exact.space.prove import proof_in_space
 from safestart.exact.space.question import Face, SpaceQuestion
+from safestart.exact.space.start_box import decide_from_box
 from safestart.interchange.epochs import SECOND, Nanoseconds
 from safestart.interchange.relative import Relative
 from safestart.model.scenario import Floats
@@ -52,7 +53,10 @@ class Corridor:
 
 @dataclass(frozen=True)
 class Judge:
-    """Asks, at any instants, whether a chaser that leaves its course then can stay for the horizon."""
+    """Asks, at any instants, whether a chaser that leaves its course then can stay for the horizon.
+
+    Where the encounter has boxes of starts, one thrust history must do for the whole box of the instant.
+    """
 
     encounter: Encounter
     corridor: Corridor
@@ -68,21 +72,28 @@ class Judge:
         seen = self.encounter.seen(epochs)
         covered = self.encounter.covered(epochs)
         far = ~(np.abs(seen.states).max(axis=1) <= FURTHEST_M)
-        plain = seen.known & covered & ~far
+        half = self._half(epochs)
+        spread = np.ones(len(epochs), dtype=bool) if half is None else np.isfinite(half).all(axis=1)
+        plain = seen.known & covered & ~far & spread
         room = np.full(len(epochs), np.nan)
-        if plain.any():
+        if plain.any() and half is None:
             room[plain] = self._room(seen.where(plain))
         out = []
         for k, epoch in enumerate(epochs.tolist()):
             if not plain[k]:
-                why = _unknown(bool(seen.known[k]), bool(covered[k]))
+                why = _unknown(bool(seen.known[k]), bool(covered[k]), bool(far[k]))
                 out.append(Instant(epoch, Verdict.UNDECIDED.value, math.nan, why))
             elif room[k] < -GUARD:
                 # Outside now: no thrust changes that. The proof is one weight on the face.
                 out.append(Instant(epoch, Verdict.NO_GO.value, float(room[k])))
             else:
-                out.append(self._asked(seen, k))
+                out.append(self._asked(seen, k, None if half is None else half[k]))
         return out
+
+    def _half(self, epochs: Nanoseconds) -> Floats | None:
+        """Half-widths (K, 6) of the boxes of starts; None where the state is taken as known."""
+        boxes = self.encounter.boxes
+        return None if boxes is None else boxes.half_widths(epochs)
 
     def _room(self, seen: Relative) -> Floats:
         """Least distance (K,) to the faces now, m."""
@@ -95,10 +106,10 @@ class Judge:
         out: Floats = ((offsets - along) / self.corridor.lengths()).min(axis=1)
         return out
 
-    def _asked(self, seen: Relative, k: int) -> Instant:
+    def _asked(self, seen: Relative, k: int, half: Floats | None) -> Instant:
         epoch = int(seen.epochs[k])
         try:
-            answer = decide_in_space(self._question(seen, k), seen.states[k], verdict_only=True)
+            answer = _answer(self._question(seen, k), seen.states[k], half)
         except InvalidInput as error:
             return Instant(epoch, Verdict.UNDECIDED.value, math.nan, error.detail)
         return Instant(epoch, answer.verdict.value, _bound(answer), answer.reason)
@@ -111,18 +122,22 @@ class Judge:
     def proof(self, epoch: int) -> dict[str, Any] | None:
         """The proof document of the verdict at an epoch; None where there is nothing to prove."""
         seen = self.encounter.seen(np.array([epoch]))
+        boxes = self._half(seen.epochs)
+        half = None if boxes is None else boxes[0]
+        if half is not None and not np.isfinite(half).all():
+            return None
         if not (seen.known[0] and self.encounter.covered(seen.epochs)[0]):
             return None
         if not float(np.abs(seen.states).max()) <= FURTHEST_M:
             return None
         try:
             question = self._question(seen, 0)
-            answer = decide_in_space(question, seen.states[0], verdict_only=True)
+            answer = _answer(question, seen.states[0], half)
         except InvalidInput:
             return None
-        return (
-            None if answer.verdict is Verdict.UNDECIDED else proof_in_space(question, seen.states[0], answer)
-        )
+        if answer.verdict is Verdict.UNDECIDED:
+            return None
+        return proof_in_space(question, seen.states[0], answer, half)
 
     def closed_in(self, left: Instant, right: Instant, bracket: float) -> list[Instant]:
         """Instants between two of different verdicts, until neighbours that differ are ``bracket`` s apart."""
@@ -132,14 +147,18 @@ class Judge:
         return [*self.closed_in(left, middle, bracket), middle, *self.closed_in(middle, right, bracket)]
 
 
-def _unknown(known: bool, covered: bool) -> str:
+def _answer(question: SpaceQuestion, state: Floats, half: Floats | None) -> Answer:
+    if half is None:
+        return decide_in_space(question, state, verdict_only=True)
+    return decide_from_box(question, state, half)
+
+
+def _unknown(known: bool, covered: bool, far: bool) -> str:
     if not known:
         return "the files hold no states here"
-    return (
-        "the attitude does not go on to the end of the horizon"
-        if not covered
-        else "the chaser is too far away"
-    )
+    if not covered:
+        return "the attitude does not go on to the end of the horizon"
+    return "the chaser is too far away" if far else "the files hold no covariance near here"
 
 
 def _bound(answer: Answer) -> float:

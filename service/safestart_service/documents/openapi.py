@@ -107,10 +107,17 @@ def refusals(*statuses: int) -> dict[int | str, dict[str, Any]]:
     return found
 
 
-def json_body(models: dict[str, type[BaseModel]], examples: dict[str, Any]) -> dict[str, Any]:
-    """``openapi_extra`` of a route that parses its body itself: any of the models, with named examples."""
+def json_body(
+    models: dict[str, type[BaseModel]], examples: dict[str, Any], title: str | None = None
+) -> dict[str, Any]:
+    """``openapi_extra`` of a route that parses its body itself: any of the models, with named examples.
+
+    A body of several models needs a title: generators of clients make a class of it.
+    """
     references = [{"$ref": REF + model.__name__} for model in models.values()]
-    schema = references[0] if len(references) == 1 else {"anyOf": references}
+    if (title is None) != (len(references) == 1):
+        raise AssertionError(f"required a title for a body of several models alone, received {title}")
+    schema = references[0] if title is None else {"title": title, "type": "object", "anyOf": references}
     named = {name: {"summary": name, "value": value} for name, value in examples.items()}
     return {
         "requestBody": {
@@ -172,6 +179,7 @@ def build(app: FastAPI) -> dict[str, Any]:
     if names:
         raise AssertionError(f"two models share a name: {', '.join(names)}")
     _drop_foreign(document)
+    _name_bodies(document)
     _close_tuples(document)
     _add_access(document)
     deprecation.mark(document)
@@ -188,6 +196,22 @@ def _drop_foreign(document: dict[str, Any]) -> None:
                 del operation["responses"]["422"]
     for name in ("HTTPValidationError", "ValidationError"):
         document["components"]["schemas"].pop(name, None)
+
+
+def _name_bodies(document: dict[str, Any]) -> None:
+    """Make a schema with a name of each body of several models.
+
+    Without one a generator names its class after the first call that takes it, and a new call changes that name.
+    """
+    schemas = document["components"]["schemas"]
+    for operations in document["paths"].values():
+        for operation in operations.values():
+            for media in operation.get("requestBody", {}).get("content", {}).values():
+                schema = media["schema"]
+                if "anyOf" in schema:
+                    if schemas.setdefault(schema["title"], schema) != schema:
+                        raise AssertionError(f"two different schemas are called {schema['title']}")
+                    media["schema"] = {"$ref": REF + schema["title"]}
 
 
 def _close_tuples(node: Any) -> None:

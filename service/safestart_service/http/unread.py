@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from asyncio import TimerHandle, Transport
 
-from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
+from safestart_service.http.offers import Offers
 
 UNREAD_S = 60.0
 """A client that reads none of an answer for this long, s, has given up."""
 
 
-class Read(HttpToolsProtocol):
+class Read(Offers):
     """A connection that is cut when its peer reads none of the waiting data."""
 
     _unread: TimerHandle | None = None

@@ -111,9 +111,10 @@ class Protocol(Read):
         super().on_body(body)
 
     def on_message_complete(self) -> None:
-        """The request is complete."""
-        self._message = Message.BETWEEN
-        self._received = 0
+        """The request is complete, unless an offer of another protocol only makes it look so."""
+        if not self.parser.should_upgrade():
+            self._message = Message.BETWEEN
+            self._received = 0
         super().on_message_complete()
 
     def on_response_complete(self) -> None:

@@ -79,6 +79,7 @@ async def describe(request: Request, processID: ProcessId) -> Response:
     openapi_extra=json_body(
         {name: execute_model(name) for name in PROCESS_IDS},
         {name: {"inputs": process(name).example} for name in PROCESS_IDS},
+        "ExecuteRequest",
     ),
     responses={
         200: content("application/json", {}, "Outputs of a process that ran at once, by name."),
@@ -120,6 +121,7 @@ async def execute(
     openapi_extra=json_body(
         {name: execute_model(name) for name in PROCESS_IDS},
         {name: {"inputs": process(name).example} for name in PROCESS_IDS},
+        "ExecuteRequest",
     ),
     responses={
         200: answer(Estimate, "The estimate, and what it is known from."),

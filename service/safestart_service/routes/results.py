@@ -157,13 +157,23 @@ def arrays(
         **refusals(404, 409, 422, 429, 503),
     },
 )
-async def bundle(request: Request, jobID: JobId) -> Response:
+async def bundle(
+    request: Request,
+    jobID: JobId,
+    form: Annotated[
+        Literal["bundle", "ro-crate"],
+        Query(
+            alias="format", description="ro-crate: with JSON-LD for repositories of research data, unsealed."
+        ),
+    ] = "bundle",
+) -> Response:
     """As `safestart export` writes it, of a job that has ended; with files of more than 64 MiB only that writes it."""
     found = services(request)
 
     def work(left: Left) -> Response:
         del left
         from safestart.records.bundle import pack
+        from safestart.records.crate import pack_crate
         from safestart.store.transfer import Transfer
 
         known_job(found, jobID)
@@ -176,9 +186,16 @@ async def bundle(request: Request, jobID: JobId) -> Response:
                 required=f"files of at most {MOST_BUNDLED} bytes",
                 received=size,
             )
-        data, seal = pack(Transfer(found.database).read(jobID))
+        kept = Transfer(found.database).read(jobID)
+        if form == "ro-crate":
+            told = {
+                "Content-Disposition": f'attachment; filename="{jobID}.crate.zip"',
+                "Cache-Control": _CACHE,
+            }
+            return Response(pack_crate(kept), headers=told, media_type="application/zip")
+        data, seal = pack(kept)
         name = f'attachment; filename="{jobID}.zip"'
-        headers = {"Content-Disposition": name, "Safestart-Seal": seal, "Cache-Control": "private, no-cache"}
+        headers = {"Content-Disposition": name, "Safestart-Seal": seal, "Cache-Control": _CACHE}
         return Response(data, headers=headers, media_type="application/zip")
 
     return await found.packing(request, work)

@@ -40,6 +40,20 @@ def test_names_are_ours():
     assert {tag for operation in operations(DOCUMENT) for tag in operation["tags"]} == tags
 
 
+def test_bodies_of_several_models_have_names():
+    """Generators name a class of an unnamed one after the first call that takes it: a new call changed that name."""
+    bodies = {
+        operation["operationId"]: operation["requestBody"]["content"]["application/json"]["schema"]
+        for operation in operations(DOCUMENT)
+        if "requestBody" in operation
+    }
+    assert all(list(schema) == ["$ref"] for schema in bodies.values())
+    names = {name: schema["$ref"].rsplit("/", 1)[1] for name, schema in bodies.items()}
+    assert names["execute"] == names["estimate"] == "ExecuteRequest"
+    assert names["goNoGoMany"] == "GoNoGoRequest"
+    assert len(DOCUMENT["components"]["schemas"]["ExecuteRequest"]["anyOf"]) > 20
+
+
 def test_one_success_for_each_call():
     for operation in operations(DOCUMENT):
         successes = [status for status in operation["responses"] if status.startswith("2")]

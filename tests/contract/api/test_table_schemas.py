@@ -13,6 +13,7 @@ from enum import Enum
 from pathlib import Path
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
+import duckdb
 import numpy as np
 import pandas as pd
 import polars as pl
@@ -107,7 +108,12 @@ def test_any_two_results_of_a_process_are_read_together(name: str, tmp_path: Pat
         assert not any(str(kind) == "null" for kind in schemas[0].types)
         together = bare[table].rows + typed.rows
         for order in (files, files[::-1]):
-            assert ds.dataset([str(file) for file in order]).to_table().num_rows == together
+            names = [str(file) for file in order]
+            assert ds.dataset(names).to_table().num_rows == together
+            joined = duckdb.read_parquet(names)  # by position and without casts, unless told otherwise
+            assert len(joined.fetchall()) == together
+            assert joined.columns == list(typed.kinds)
+            assert joined.types == duckdb.read_parquet(names[:1]).types
         assert pl.concat([pl.read_parquet(file) for file in files], how="vertical").height == together
         frames = [pd.read_parquet(file) for file in files]
         assert len(pd.concat(frames)) == together

@@ -107,6 +107,26 @@ def test_it_compiles_without_a_warning_and_its_vectors_pass(folder, compiler, tm
     assert "600 vectors, 0 wrong" in done.stdout
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("compiler", COMPILERS)
+def test_valgrind_finds_nothing(folder, compiler, tmp_path):
+    """Neither an invalid access nor a value that nobody has set, and no allocation at all."""
+    if shutil.which("valgrind") is None:
+        pytest.skip("no valgrind on this machine")
+    program = tmp_path / "selftest"
+    sources = map(str, sorted(folder.glob("*.c")))
+    build = [compiler_or_skip(compiler), *STRICT, "-O1", "-g", *sources, "-lm", "-o", str(program)]
+    subprocess.run(build, check=True, capture_output=True)
+    watch = ["valgrind", "--tool=memcheck", "--error-exitcode=9", "--leak-check=full", "--track-origins=yes"]
+    done = subprocess.run([*watch, str(program)], check=False, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert "ERROR SUMMARY: 0 errors" in done.stderr
+    assert "600 vectors, 0 wrong" in done.stdout
+    # The C library allocates one buffer for the standard output.
+    assert "in use at exit: 0 bytes in 0 blocks" in done.stderr
+    assert "total heap usage: 1 allocs, 1 frees" in done.stderr
+
+
 @pytest.mark.parametrize("compiler", COMPILERS)
 @pytest.mark.parametrize("options", [SANITIZED, ("-O3", "-march=native", "-ffp-contract=fast")])
 def test_verdicts_are_pythons(folder, points, compiler, options):

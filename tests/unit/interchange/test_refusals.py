@@ -85,7 +85,7 @@ def test_states_that_are_refused(text: str, message: str) -> None:
         ("\n".join(AEM.splitlines()[:30]) + "\nDATA_STOP\n", "truncated"),
         (AEM.replace(" 1.0\n", " 3.0\n", 1), "length 1 within 0.001"),
         (_swapped(AEM), "epochs that rise"),
-        (OEM, "attitudes: AEM, APM"),
+        (OEM, "attitudes: AEM, ACM, APM"),
     ],
 )
 def test_attitudes_that_are_refused(text: str, message: str) -> None:

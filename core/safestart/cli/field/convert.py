@@ -21,7 +21,7 @@ def register(app: typer.Typer) -> None:
 
     @app.command("convert")
     def convert(
-        source: Annotated[Path, typer.Argument(help="OEM, OPM, OCM, AEM, APM, CSV, Parquet or MATLAB.")],
+        source: Annotated[Path, typer.Argument(help="OEM, OPM, OCM, AEM, ACM, APM, CSV, Parquet or MATLAB.")],
         to: Annotated[
             Path, typer.Argument(help="Where to write; its ending says what: " + ", ".join(_FORMS) + ".")
         ],

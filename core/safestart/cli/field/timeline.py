@@ -54,6 +54,12 @@ def register(app: typer.Typer) -> None:
         sense: Annotated[
             str | None, typer.Option(help="rotating or inertial: how covariances in RTN are meant.")
         ] = None,
+        confidence: Annotated[
+            float | None,
+            typer.Option(
+                help="Ask for every start in the box that holds the state with this probability (covariances)."
+            ),
+        ] = None,
         output: Annotated[
             Path | None, typer.Option(help="Where to write the document; picture and table go beside it.")
         ] = None,
@@ -73,6 +79,7 @@ def register(app: typer.Typer) -> None:
             "start": start,
             "stop": stop,
             "sense": sense,
+            "confidence": confidence,
             "proofs": proofs is not None or output is not None,
         }
         if attitude is not None:

@@ -45,7 +45,7 @@ def ephemeris_of(message: Message, sense: Sense | None = None) -> Ephemeris:
             _refuse_units(one, "TRAJ_UNITS", "km,km,km,km/s,km/s,km/s")
             if not one.rows:
                 raise refused(one.fields.line, "states in TRAJ", "none (truncated)")
-            epochs += _times(meta, one.rows)
+            epochs += times_of(meta, one.rows)
             states += [
                 [number(text, row.line, "state", 3) for text in _columns(row, width)[:6]] for row in one.rows
             ]
@@ -53,7 +53,7 @@ def ephemeris_of(message: Message, sense: Sense | None = None) -> Ephemeris:
             _one_of(one, "COV_TYPE", {"CARTPV": 6})
             _one_of(one, "COV_ORDERING", {"LTM": 21})
             turned = covariance_frame(one.fields.get("COV_REF_FRAME"), sense)
-            for at, row in zip(_times(meta, one.rows), one.rows, strict=True):
+            for at, row in zip(times_of(meta, one.rows), one.rows, strict=True):
                 columns = iter(_columns(row, 21))
                 rows = [[next(columns) for _ in range(size)] for size in range(1, 7)]
                 covariances.append(Covariance(at, turned, triangle(rows, row.line)))
@@ -88,8 +88,8 @@ def _columns(row: Token, width: int) -> list[str]:
     return values
 
 
-def _times(meta: Block, rows: Sequence[Token]) -> list[int]:
-    """TAI, ns: absolute epochs, or seconds after EPOCH_TZERO."""
+def times_of(meta: Block, rows: Sequence[Token]) -> list[int]:
+    """TAI epochs of a block's rows, ns: absolute ones, or seconds after EPOCH_TZERO."""
     system = meta.fields.get("TIME_SYSTEM")
     zero = int(epochs_of([meta.fields.get("EPOCH_TZERO")], system)[0])
     texts = [row.value.split()[0] for row in rows]

@@ -25,6 +25,15 @@ _BLOCKS = {
     "oem": {"metadata": "META", "covarianceMatrix": "COVARIANCE"},
     "aem": {"metadata": "META", "data": "DATA"},
     "ocm": {"metadata": "META", "traj": "TRAJ", "cov": "COV", "man": "MAN", "phys": "PHYS", "od": "OD"},
+    "acm": {
+        "metadata": "META",
+        "att": "ATT",
+        "phys": "PHYS",
+        "cov": "COV",
+        "man": "MAN",
+        "ad": "AD",
+        "user": "USER",
+    },
     "opm": {},
     "apm": {},
     "cdm": {},
@@ -35,7 +44,7 @@ _UNITS = {
     **dict.fromkeys(("X_DDOT", "Y_DDOT", "Z_DDOT"), "km/s**2"),
     **{name: ("km**2", "km**2/s", "km**2/s**2")[name.count("DOT")] for name in TRIANGLE},
 }
-_LINES = {"trajLine", "covLine", "manLine"}
+_LINES = {"trajLine", "attLine", "covLine", "manLine"}
 _LARGEST_DEPTH = 12
 
 

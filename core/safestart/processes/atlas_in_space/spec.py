@@ -91,6 +91,7 @@ SPEC = ProcessSpec(
     ),
     inputs=AtlasInSpaceInputs,
     outputs=AtlasInSpaceOutputs,
+    kernels=("exact answers",),
     run="safestart.processes.atlas_in_space.run:run",
     keywords=("exact", "proof", "safe-start region", "torque-free"),
     views=(

@@ -128,7 +128,7 @@ def encounter_of(inputs: CommitTimelineInputs) -> tuple[Encounter, Nanoseconds]:
         assert inputs.spin is not None
         x, y, z = inputs.spin.axis
         attitude = Spin(math.radians(inputs.spin.rate_deg_s), (x, y, z), math.radians(inputs.spin.phase_deg))
-    encounter = Encounter(chaser, target, attitude, int(begin), inputs.horizon_s)
+    encounter = Encounter(chaser, target, attitude, int(begin), inputs.horizon_s, inputs.confidence)
     return encounter, begin + step * np.arange(count, dtype=np.int64)
 
 
@@ -184,6 +184,7 @@ def merge(inputs: CommitTimelineInputs, parts: Sequence[Part], context: Context)
         "go_s": math.fsum(one["end_s"] - one["begin_s"] for one in gos),
         "first_go": min((one["begin"] for one in gos), default=None),
         "largest_eccentricity": float(known.max()) if len(known) else None,
+        "largest_half_width_m": _widest(encounter, steps),
         "intervals": intervals,
     }
     asked = {key for one in intervals for key in (one["begin_proof"], one["end_proof"]) if key}
@@ -193,6 +194,14 @@ def merge(inputs: CommitTimelineInputs, parts: Sequence[Part], context: Context)
         data = json.dumps(proofs, allow_nan=False, sort_keys=True).encode()
         artifacts.append(Artifact("proofs.json", "application/json", data))
     return ProcessOutput(document, tuple(artifacts))
+
+
+def _widest(encounter: Encounter, steps: Nanoseconds) -> float | None:
+    if encounter.boxes is None:
+        return None
+    half = encounter.boxes.half_widths(steps)[:, :3]
+    known = half[np.isfinite(half)]
+    return float(known.max()) if len(known) else None
 
 
 def _interval(inputs: CommitTimelineInputs, run: dict[str, Any], begin: int) -> dict[str, Any]:
@@ -205,20 +214,19 @@ def _interval(inputs: CommitTimelineInputs, run: dict[str, Any], begin: int) -> 
         "end_s": (run["end"] - begin) / SECOND,
         "instants": run["instants"],
         "margin_m": run["margin_m"],
-        "reason": _reason(run, inputs.horizon_s),
+        "reason": _reason(run, inputs.horizon_s, inputs.confidence),
         "begin_proof": run["begin_proof"],
         "end_proof": run["end_proof"],
     }
 
 
-def _reason(run: dict[str, Any], horizon: float) -> str:
+def _reason(run: dict[str, Any], horizon: float, confidence: float | None) -> str:
     if run["verdict"] == "UNDECIDED":
         return f"undecided: {run['why']}"
     margin = run["margin_m"]
     if run["verdict"] == "GO":
-        return (
-            f"from every instant asked a thrust history stays for {horizon:g} s, with {margin:.3g} m to spare"
-        )
+        whom = "" if confidence is None else f" from the whole box that holds {confidence:.9g} of the starts"
+        return f"from every instant asked a thrust history stays for {horizon:g} s{whom}, with {margin:.3g} m to spare"
     return (
         f"from no instant asked a thrust history stays for {horizon:g} s: each is at some time at least "
         f"{-margin:.3g} m outside a face"

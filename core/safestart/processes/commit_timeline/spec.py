@@ -83,6 +83,13 @@ class CommitTimelineInputs(WireModel):
     sense: Literal["rotating", "inertial"] | None = Field(
         None, description="How covariances in RTN or RSW are meant, where the file does not say it."
     )
+    confidence: float | None = Field(
+        None,
+        ge=0.5,
+        le=1.0 - 1e-9,
+        description="Ask for every start in the box around the chaser's state that holds it with at least this "
+        "probability, by the files' covariances; absent: the states are taken as known.",
+    )
     proofs: bool = Field(True, description="Make the proofs of both ends of every interval.")
 
 
@@ -115,6 +122,9 @@ class CommitTimelineOutputs(WireModel):
     go_s: float = Field(description="Seconds of GO, of all corridors together.")
     first_go: str | None = Field(description="First instant of GO, UTC.")
     largest_eccentricity: float | None = Field(description="Of the target's osculating orbit over the span.")
+    largest_half_width_m: float | None = Field(
+        description="Of the boxes of starts over the span, m; None where the states are taken as known."
+    )
     intervals: list[Interval]
 
 
@@ -128,6 +138,7 @@ SPEC = ProcessSpec(
     ),
     inputs=CommitTimelineInputs,
     outputs=CommitTimelineOutputs,
+    kernels=("exact answers",),
     sharding=Sharding.of("safestart.processes.commit_timeline", light="split"),
     views=(
         Findings(

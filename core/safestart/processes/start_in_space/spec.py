@@ -183,6 +183,7 @@ SPEC = ProcessSpec(
     ),
     inputs=SpaceInputs,
     outputs=SpaceOutputs,
+    kernels=("exact answers",),
     run="safestart.processes.start_in_space.run:run",
     light=True,
     cost=_cost,

@@ -184,6 +184,7 @@ SPEC = ProcessSpec(
     ),
     inputs=TrackingMpcInputs,
     outputs=TrackingMpcOutputs,
+    kernels=("tracking",),
     sharding=Sharding.of("safestart.processes.tracking_mpc"),
     tables=(Table("flight", ("time_s", "range_m", "cost_to_go", "slack_m")),),
     views=(

@@ -18,9 +18,12 @@ export function layersOf(view, tables, inputs) {
 /** The title of a layer: `{faces.0}` in it is the first of the outputs' faces. */
 export const layerTitle = (title, outputs) => title.replace(/\{([\w.]+)\}/g, (_, path) => spoken(String(path.split(".").reduce((part, key) => part?.[key], outputs) ?? path)));
 
-/** The corridor of the inputs, if it is the usual one of three numbers; absent numbers have their usual values. */
-export function shapeOf({ corridor }) {
-  if (corridor === undefined || corridor === null) return null;
+/**
+ * The corridor of the inputs, if it is the usual one of three numbers; absent numbers have their usual values, and so has
+ * an absent corridor where the process's described inputs allow that.
+ */
+export function shapeOf({ corridor }, described = {}) {
+  if (corridor === undefined || corridor === null) return described.corridor?.minOccurs === 0 ? { ...DEFAULT } : null;
   const shape = { ...DEFAULT, ...corridor };
   return "faces" in corridor || !Object.keys(DEFAULT).every((name) => typeof shape[name] === "number") ? null : shape;
 }

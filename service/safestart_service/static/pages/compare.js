@@ -2,6 +2,7 @@
 
 import { differing, outcome } from "../logic/outcome.js";
 import { tablesOf } from "../logic/tables.js";
+import { inputTitle, inputWords } from "../logic/titles.js";
 import { csv } from "../logic/words.js";
 import { get, root } from "../parts/api.js";
 import { draw, saveButtons } from "../parts/chart.js";
@@ -10,6 +11,8 @@ import { description, names, viewsOf } from "../parts/process.js";
 import { listed } from "../parts/views.js";
 
 const ids = (new URLSearchParams(location.search).get("jobs") ?? "").split(",").filter(Boolean).slice(0, 12);
+
+const LONG = 60;
 
 const empty = (...text) => $("state").replaceChildren(el("p", { class: "empty" }, ...text, el("a", { href: `${root}/dashboard/jobs?status=successful` }, "among the jobs"), "."));
 
@@ -43,14 +46,16 @@ async function show() {
 /** What every process can be compared by: inputs that differ, the verdict, the figures among its outputs. */
 function figures(spec, runs, differ, heading) {
   const rows = [
-    ...differ.map((path) => [path, (run) => told(run.inputs, path)]),
+    ...differ.map((path) => [inputTitle(path), (run) => told(run.inputs, path)]),
     ["verdict", (run) => { const found = outcome(spec["safestart:views"], run.tables); return found && `${found.word.replace("_", " ")}${found.of > 1 ? ` (${found.count} of ${found.of})` : ""}`; }],
     ...viewsOf(spec, "facts").flatMap(({ columns }) => columns.map(({ title, path }) => [title, (run) => run.tables[""][0][path]])),
   ];
   const known = new Set(viewsOf(spec, "facts").flatMap(({ columns }) => columns.map(({ path }) => path)));
   const others = [...new Set(runs.flatMap((run) => Object.keys(run.tables[""][0])))].filter((path) => !known.has(path));
   rows.push(...others.map((path) => [path, (run) => run.tables[""][0][path]]), ["run [s]", (run) => (Date.parse(run.job.finished) - Date.parse(run.job.started)) / 1000]);
-  const there = rows.filter(([, of]) => runs.some((run) => ![null, undefined, ""].includes(of(run))));
+  // A sentence that all runs have tells nothing about their differences.
+  const same = (of) => typeof of(runs[0]) === "string" && of(runs[0]).length > LONG && runs.every((run) => of(run) === of(runs[0]));
+  const there = rows.filter(([, of]) => runs.some((run) => ![null, undefined, ""].includes(of(run))) && !same(of));
   const columns = [["figure", ([name]) => name], ...runs.map((run) => [heading(run), ([, of]) => of(run)])];
   return [el("h2", {}, "Inputs that differ, outcome and figures"), ...listed(there, columns, "Figures of each run", "comparison")];
 }
@@ -64,10 +69,11 @@ async function compare(spec, view, { title, colour }, runs) {
   const differ = differing(runs.map((run) => run.inputs));
   const rowsOf = (run) => run.tables[view?.table] ?? [];
   const value = (run, name, path) => rowsOf(run).find((row) => row[view.by] === name)?.[path] ?? null;
-  const heading = (run) => [...differ.slice(0, 3).map((path) => `${path} ${told(run.inputs, path)}`), run.id.slice(0, 8)].join(", ");
+  const heading = (run) => [run.job.name, ...differ.slice(0, run.job.name ? 1 : 3).map((path) => inputWords(path, told(run.inputs, path))), run.id.slice(0, 8)].filter(Boolean).join(", ");
   const all = view ? [...new Set(runs.flatMap((run) => rowsOf(run).map((row) => row[view.by])))] : [];
   const parts = figures(spec, runs, differ, heading), charts = [];
-  for (const { title: name, path } of view?.measures ?? []) {
+  const measures = (view?.measures ?? []).filter(({ path }) => runs.some((run) => all.some((one) => value(run, one, path) !== null)));
+  for (const { title: name, path } of measures) {
     const place = el("div", { class: "chart low", role: "group", "aria-label": `${name}; the table has the figures` });
     charts.push([place, path, name]);
     const columns = [[view.by, title], ...runs.map((run) => [heading(run), (one) => value(run, one, path)])];
@@ -76,7 +82,7 @@ async function compare(spec, view, { title, colour }, runs) {
     }, "CSV")));
   }
   $("compare").replaceChildren(...parts);
-  $("state").replaceChildren(el("p", { class: "lead" }, `${runs.length} runs; inputs that differ: ${differ.join(", ") || "none"}.`));
+  $("state").replaceChildren(el("p", { class: "lead" }, `${runs.length} runs; inputs that differ: ${differ.map(inputTitle).join(", ") || "none"}.`));
   for (const [place, path, name] of charts) {
     await draw(place, all.map((one) => ({
       type: "bar", name: title(one), x: runs.map(heading), y: runs.map((run) => value(run, one, path)), marker: { color: colour(one) }, hovertemplate: "%{y:.4g}",

@@ -54,6 +54,7 @@ function frame() {
     active ? null : el("button", { type: "button", onclick: repeat }, job.status === "successful" ? "Run again" : "Try again"),
     el("a", { href: `${root}/dashboard/submit?process=${job.processID}&from=${id}` }, "Change inputs"),
     active ? null : download(call, `/jobs/${id}/bundle`, `${id}.zip`, "Bundle"),
+    active ? null : download(call, `/jobs/${id}/bundle?format=ro-crate`, `${id}.crate.zip`, "RO-Crate"),
     copies(() => ({ id: job.processID, inputs: job.inputs })),
   ].filter(Boolean));
   const facts = [["Submitted", time(job.created)], ["Started", time(job.started)], ["Finished", time(job.finished)], ["Attempts", String(job.attempts)]];

@@ -74,7 +74,7 @@ export class Flight {
     }, { name: "thrust limit", x: ends, y: [this.limit, this.limit], mode: "lines", line: { color: limit, width: 1.5, dash: "dash" }, yaxis: "y2", hoverinfo: "skip" },
     { name: "face", x: ends, y: [0, 0], mode: "lines", line: { color: ink, width: 1.5 }, showlegend: false, hoverinfo: "skip" });
     draw($("curves"), traces, {
-      hovermode: "x", shapes: [this.mark()], margin: { l: 46, r: 50, t: 8, b: 84 }, legend: { orientation: "h", yref: "container", y: 0, yanchor: "bottom", x: 0, entrywidth: 72, font: { size: 11 } },
+      hovermode: "x", shapes: [this.mark()], margin: { l: 46, r: 50, t: 8, b: 84 }, legend: { orientation: "h", xref: "container", yref: "container", y: 0, yanchor: "bottom", x: 0, xanchor: "left", font: { size: 11 } },
       xaxis: { title: { text: "time [s]" } }, yaxis: { title: { text: "to face [m]" }, rangemode: "tozero" },
       yaxis2: { title: { text: "thrust [m/s²]" }, overlaying: "y", side: "right", rangemode: "tozero", showgrid: false, tickmode: "auto", nticks: 5 },
     });

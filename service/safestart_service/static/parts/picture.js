@@ -38,7 +38,7 @@ function logarithmic(layers) {
 
 /** Draw the layers of a view, in the inputs' corridor if it has one. */
 export async function drawPicture({ view, result, chart, layers }) {
-  const shades = theme(), traces = [], shape = view.equal ? shapeOf(result.inputs) : null;
+  const shades = theme(), traces = [], shape = view.equal ? shapeOf(result.inputs, result.spec.inputs) : null;
   const LINES = [shades.exact, shades.lost, shades.certified, shades.limit, "#CC79A7"];
   if (shape) {
     const top = Math.max(LEAST_M, ...layers.flatMap(({ rows }) => rows.map(({ y }) => y))) * 1.05;
