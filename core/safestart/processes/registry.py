@@ -18,6 +18,7 @@ _SPECS = {
     "flight": "safestart.processes.flight.spec",
     "atlas": "safestart.processes.atlas.spec",
     "atlas-in-space": "safestart.processes.atlas_in_space.spec",
+    "region-in-space": "safestart.processes.region_in_space.spec",
     "coverage": "safestart.processes.coverage.spec",
     "benchmark": "safestart.processes.benchmark.spec",
     "plane-benchmark": "safestart.processes.plane_benchmark.spec",
