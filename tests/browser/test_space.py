@@ -16,8 +16,8 @@ from tests.browser.conftest import Visit
 from tests.browser.explored import FAULTS
 
 WORD = "#verdict .answer:not(.old) .word"
-_THERE = "#scene[data-digest]:not([data-digest='']):not([data-proved=''])"
-_TRACES = "document.getElementById('scene').data.map((one) => one.name)"
+_THERE = "#space[data-digest]:not([data-digest='']):not([data-proved=''])"
+_TRACES = "document.getElementById('space').data.map((one) => one.name)"
 _SOFTWARE = ["WebGL", "willReadFrequently"]
 """What Chromium says of drawing in space without a graphics card."""
 
@@ -49,7 +49,7 @@ def test_the_menu_leads_to_a_verdict_its_proof_and_the_scene(visit: Visit, tmp_p
     expect(page.locator("#region")).to_contain_text("xy")
     expect(page.locator("#instant")).to_contain_text("At 60 s")
     with page.expect_download() as download:
-        page.click("#proof")
+        page.click("#proof a")
     file = tmp_path / "proof.json"
     download.value.save_as(file)
     assert check(json.loads(file.read_text())).verdict == "GO"
@@ -88,7 +88,7 @@ def test_what_is_wrong_is_named(visit: Visit) -> None:
     page.fill("#position_m", "1 2")
     expect(page.locator("#verdict .problem")).to_contain_text("3 numbers are required")
     expect(page.locator("#position_m")).to_have_attribute("aria-invalid", "true")
-    expect(page.locator("#scene")).to_be_hidden()
+    expect(page.locator("#space")).to_be_hidden()
     page.fill("#position_m", "2 25 1")
     page.fill("#inertia_kg_m2", "1 0 0 0 1 0 0 0 9")
     expect(page.locator("#verdict .problem")).to_contain_text("inertia_kg_m2")
@@ -105,7 +105,7 @@ def test_changed_inputs_withdraw_the_answer_at_once(visit: Visit) -> None:
           const field = document.getElementById('body_rate_deg_s');
           field.value = '0.3 0.5 -3';
           field.dispatchEvent(new Event('input', { bubbles: true }));
-          const scene = document.getElementById('scene'), names = scene.data.map((one) => one.name);
+          const scene = document.getElementById('space'), names = scene.data.map((one) => one.name);
           return [document.querySelectorAll('#verdict .answer:not(.old), #proof').length, scene.dataset.digest, names];
         }"""
     )

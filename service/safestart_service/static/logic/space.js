@@ -121,6 +121,12 @@ export const startQuestion = (values) => ({
   ...(values.speed_limit_m_s ? { speed_limit_m_s: values.speed_limit_m_s[0] } : {}), ...values.further,
 });
 
+/** The address of the proof of a question: the service's own bytes, as a script would write numbers another way. */
+export function proofAddress({ starts: [one], ...asked }) {
+  const flat = Object.entries({ ...one, ...asked }).map(([name, value]) => [name, typeof value === "string" ? value : JSON.stringify(value)]);
+  return `/go-no-go/proof?${new URLSearchParams(flat)}`;
+}
+
 const UNITS = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 export const PLANES = { xy: [0, 1], zy: [2, 1], xz: [0, 2] };
 

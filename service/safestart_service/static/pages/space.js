@@ -1,22 +1,22 @@
 // Explore in space: any start, tumble, orbit, corridor and thrust; the verdict with its proof, slices of the region, the flight.
 
 import { addressOf, textsFrom } from "../logic/fields.js";
-import { FIELDS, REGIONS, STARTS, counting, readSpace, regionQuestion, sliceLacks, spaceWords, startQuestion, textsOf } from "../logic/space.js";
+import { FIELDS, REGIONS, STARTS, counting, proofAddress, readSpace, regionQuestion, sliceLacks, spaceWords, startQuestion, textsOf } from "../logic/space.js";
 import { offered } from "../logic/space-presets.js";
 import { Store } from "../logic/store.js";
 import { rowsOf } from "../logic/tables.js";
 import { csv, figure, sentence, spoken } from "../logic/words.js";
-import { execute, get, plain } from "../parts/api.js";
+import { call, execute, get, plain } from "../parts/api.js";
 import { saveButtons } from "../parts/chart.js";
 import { copies } from "../parts/copies.js";
 import { Flight } from "../parts/flight.js";
 import { explain, explained } from "../parts/glossary.js";
-import { $, definition, el, fail, save } from "../parts/page.js";
+import { $, definition, download, el, fail, save } from "../parts/page.js";
 import { drawSpace } from "../parts/space.js";
 import { waiting } from "../parts/waiting.js";
 
 const { texts, unknown } = textsFrom(FIELDS, location.search);
-const store = new Store(texts), scene = $("scene"), flight = new Flight(redraw, ["play", "clock"]);
+const store = new Store(texts), scene = $("space"), flight = new Flight(redraw, ["play", "clock"]);
 let examples = {};
 
 /** Values of the fields; null if one of them is invalid. */
@@ -27,7 +27,7 @@ function given(inputs) {
 
 const verdict = store.panel({
   quiet: 250,
-  poses: (inputs) => { const values = given(inputs); return values && { ...startQuestion(values), flights: true, proofs: true }; },
+  poses: (inputs) => { const values = given(inputs); return values && { ...startQuestion(values), flights: true }; },
   asks: async (question, signal) => plain(await execute(STARTS, question, { signal })),
   shows: showVerdict,
 });
@@ -77,7 +77,7 @@ function showVerdict(panel) {
 const SURE = { GO: "proved", NO_GO: "proved", UNDECIDED: "neither proved nor refuted" };
 
 function card(found, old, values) {
-  const wire = found.verdict[0], said = wire.replace("_", " "), proof = found.proof?.[0];
+  const wire = found.verdict[0], said = wire.replace("_", " "), proved = wire !== "UNDECIDED";
   const facts = [["Margin, proved", found.margin_m[0] === null ? "–" : `${figure(found.margin_m[0])} m`], ["The linear model may be off by", `${figure(found.model_error_m[0], 2)} m`]];
   if (found.end_s) facts.push(["At rest after", found.end_s[0] === null ? "–" : `${figure(found.end_s[0])} s`]);
   if (found.flight?.[0]) facts.push(["Delta-v", `${figure(found.flight[0].delta_v_m_s, 3)} m/s`]);
@@ -86,7 +86,7 @@ function card(found, old, values) {
     old || !values ? null : el("p", { class: "asked" }, spaceWords(values)), el("p", { class: "why" }, sentence(found.reason[0])),
     found.violated_faces[0].length ? el("p", {}, `The start lies outside ${found.violated_faces[0].map(spoken).join(", ")}.`) : null,
     el("dl", { class: "facts" }, ...facts.map(([name, value]) => definition(name, value))),
-    proof && !old ? el("p", {}, el("button", { type: "button", class: "plain", id: "proof", onclick: () => save("proof.json", new Blob([JSON.stringify(proof)], { type: "application/json" })) }, "Download the proof"), " (checked by ", el("code", {}, "safestart verify"), ")") : null);
+    proved && !old && values ? el("p", { id: "proof" }, download(call, proofAddress(startQuestion(values)), "proof.json", "Download the proof"), " (checked by ", el("code", {}, "safestart verify"), ")") : null);
 }
 
 const NONE = { NO_GO: "No flight: no thrust history does what is asked.", UNDECIDED: "No flight is known that does what is asked." };
