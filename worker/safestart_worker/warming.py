@@ -11,6 +11,9 @@ import logging
 import time
 from collections.abc import Awaitable, Callable, Iterable
 
+from distributed import KilledWorker
+from distributed.client import FutureCancelledError
+
 from safestart.errors import NotFound
 from safestart.processes.registry import process
 from safestart.runtime.warmup import PARTS
@@ -98,6 +101,10 @@ class Kernels:
         """Whether ``work`` has ended well; an error of it ends the worker."""
         try:
             await work
+        except (KilledWorker, FutureCancelledError):
+            # The process was killed for a job that it ran beside: jobs compile what they miss.
+            log.warning("%s: the task process that warmed up was ended", what)
+            return False
         except Exception:
             self.failed = True
             log.exception("%s: warming up failed: this worker takes no jobs and ends", what)

@@ -4,6 +4,8 @@ import asyncio
 from typing import Any, cast
 
 import pytest
+from distributed import KilledWorker
+from distributed.client import FutureCancelledError
 
 from safestart.processes.registry import PROCESS_IDS, process
 from safestart.runtime.warmup import PARTS
@@ -143,6 +145,23 @@ def test_a_part_that_cannot_be_compiled_ends_the_worker(caplog: pytest.LogCaptur
     assert asyncio.run(broken()).failed
     assert "takes no jobs and ends" in caplog.text
     assert "cannot cache function" in caplog.text
+
+
+async def killed(error: Exception) -> Kernels:
+    cluster = Processes()
+    kernels = over(cluster)
+    kernels.go_on(1)
+    await settled()
+    await cluster.end(PARTS_ORDER[0], error)
+    kernels.go_on(1)
+    await settled()
+    assert cluster.begun == PARTS_ORDER[:2]
+    return kernels
+
+
+@pytest.mark.parametrize("error", [KilledWorker("task", None, 3), FutureCancelledError("task", "lost")])
+def test_a_process_that_is_killed_beside_a_job_does_not_end_the_worker(error: Exception) -> None:
+    assert not asyncio.run(killed(error)).failed
 
 
 class NotLoading(Processes):
