@@ -1,7 +1,7 @@
 """A job waits for its own kernels only; a worker whose warm-up failed takes no jobs."""
 
 import asyncio
-from typing import Any, cast
+from typing import cast
 
 import pytest
 from distributed import KilledWorker
@@ -25,9 +25,6 @@ class Processes:
         self.begun: list[str] = []
         self.ends: dict[str, asyncio.Future[None]] = {}
         self.everywhere = 0
-
-    async def load(self) -> None:
-        pass
 
     async def compile(self, part: str) -> None:
         self.begun.append(part)
@@ -165,13 +162,20 @@ def test_a_process_that_is_killed_beside_a_job_does_not_end_the_worker(error: Ex
 
 
 class NotLoading(Processes):
-    async def load(self) -> None:
+    async def warm_all(self) -> None:
         raise ImportError("no module")
 
 
-@pytest.mark.parametrize(("made", "taken"), [(Processes, True), (NotLoading, False)])
-def test_what_cannot_be_loaded_takes_no_jobs(made: Any, taken: bool) -> None:
-    async def loaded() -> bool:
-        return await over(made()).load(asyncio.Event())
+async def last_part(cluster: Processes) -> Kernels:
+    kernels = Kernels(cast(Cluster, cluster), ("flights",))
+    kernels.go_on(1)
+    await settled()
+    await cluster.end("flights")
+    await settled()
+    return kernels
 
-    assert asyncio.run(loaded()) is taken
+
+def test_what_cannot_be_loaded_ends_the_worker(caplog: pytest.LogCaptureFixture) -> None:
+    cluster = NotLoading()
+    assert asyncio.run(last_part(cluster)).failed
+    assert "modules and kernels: warming up failed" in caplog.text
