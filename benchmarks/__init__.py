@@ -12,4 +12,6 @@ BENCHMARKS = (
     "atlas",
     "http",
     "start_up",
+    "first_start",
+    "two_workers",
 )

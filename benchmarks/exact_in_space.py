@@ -2,8 +2,9 @@
 
 ``python -m benchmarks.exact_in_space [CASES] [FIRST] [PROOFS]`` draws CASES questions from number FIRST on (torque-free
 bodies, spins, tables, circular and elliptic orbits, velocities, faces in LVLH, balls, boxes and hulls of thrusters),
-compares every verdict with the program, whose motion and attitude are SciPy's, checks the first PROOFS proofs, and
-prints one JSON document. Times are of questions never met before: their tables are made anew.
+compares every verdict with the program, whose motion and attitude are SciPy's, flies the witnesses of GOs by SciPy,
+checks the first PROOFS proofs, and prints one JSON document. Times are of questions never met before: their tables are
+made anew.
 """
 
 from __future__ import annotations
@@ -18,9 +19,11 @@ from typing import Any
 import numpy as np
 
 from benchmarks.peers.space_cases import dense_margin, drawn, torque_free_case
+from benchmarks.peers.space_flight import flown_margin
 from safestart.exact.answer import Verdict
 from safestart.exact.space.decide import decide_in_space
 from safestart.exact.space.prove import proof_in_space
+from safestart.exact.space.watch import space_watch_of
 from safestart.proofs.checker import check
 
 NEAR_M = 0.05
@@ -32,7 +35,8 @@ def study(cases: int, first: int, proofs: int) -> dict[str, Any]:
     verdicts: Counter[str] = Counter()
     wrong: list[Any] = []
     rejected: list[Any] = []
-    compared = checked = 0
+    compared = checked = flown = 0
+    lost_m = 0.0
     spent: list[float] = []
     verify: list[float] = []
     for seed in range(first, first + cases):
@@ -48,6 +52,10 @@ def study(cases: int, first: int, proofs: int) -> dict[str, Any]:
             compared += inside > NEAR_M or outside < -NEAR_M
             if (inside > NEAR_M and not go) or (outside < -NEAR_M and go) or answer.lower > outside + 1e-5:
                 wrong.append([seed, answer.verdict.value, answer.lower, answer.upper, *bounds])
+        if go and answer.thrust is not None:
+            flown += 1
+            thrust = space_watch_of(question).accelerations(answer.thrust)
+            lost_m = max(lost_m, answer.lower - flown_margin(question, state, thrust))
         if checked < proofs and answer.verdict is not Verdict.UNDECIDED:
             checked += 1
             document = json.loads(json.dumps(proof_in_space(question, state, answer)))
@@ -63,6 +71,8 @@ def study(cases: int, first: int, proofs: int) -> dict[str, Any]:
         "verdicts": dict(verdicts),
         "compared": compared,
         "other_than_the_program": wrong,
+        "witnesses_flown": flown,
+        "most_lost_of_a_margin_m": lost_m,
         "proofs_checked": checked,
         "proofs_rejected": rejected,
         "cpu_s": {"median": median(spent), "p99": float(np.percentile(spent, 99))},

@@ -2,7 +2,7 @@
 
 Jobs are submitted at ``--rate`` a second. Every ``--kill-every`` seconds a random process (service, worker, one of its
 task processes) gets SIGKILL, and whoever supervises it starts it again. At the end each accepted job must be there once
-and successful. ``--log FILE`` keeps a line a minute: jobs, kills, and memory of all processes (proportional set size).
+and successful. ``--log FILE`` keeps a line a minute: jobs, kills, and memory of all processes, without what is shared.
 The database must be new: an SQLite file that is not there, or an empty PostgreSQL database.
 """
 
@@ -106,7 +106,7 @@ def _watch(platform: Platform, ended: threading.Event, memory: list[float]) -> N
         with suppress(psutil.Error):
             processes = [one for kind in KINDS for one in platform.processes(kind)]
             if len(processes) == 2 * 2 + 1:
-                memory.append(sum(one.memory_full_info().pss for one in processes) / 1e6)
+                memory.append(sum(one.memory_full_info().uss for one in processes) / 1e6)
 
 
 def _drained(platform: Platform) -> dict[str, str]:

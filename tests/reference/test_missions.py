@@ -147,6 +147,8 @@ def test_a_grapple_on_a_spinning_axis() -> None:
 FIGURES = {
     "envisat": 20.078,
     "envisat-tumbling": 1.000,
+    "envisat-tracked": 0.697,
+    "rocket-body": 12.374,
     "r-bar": 3.000,
     "v-bar": 17.265,
     "transfer-perigee": 25.423,

@@ -20,6 +20,7 @@ from safestart.store.jobs.retention import Retention
 from safestart_worker.cluster.cluster import Cluster
 from safestart_worker.cluster.opening import open_cluster
 from safestart_worker.jobs.shepherd import Rules, Shepherd
+from safestart_worker.warming import Kernels
 
 log = logging.getLogger("safestart.worker")
 
@@ -27,9 +28,6 @@ HEARTBEAT_S = 3.0
 # Time between retries while the database is unavailable.
 AWAY_S = 2.0
 PURGE_S = 3600.0
-# Longest time that jobs wait for the warm-up, which may queue behind other jobs on a shared cluster.
-WARM_S = 120.0
-WARM_SHARED_S = 10.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +55,14 @@ class Options:
 class Worker:
     """Claims jobs and runs them to their ends."""
 
-    def __init__(self, options: Options, jobs: JobRepository, cluster: Cluster, owner: str) -> None:
+    def __init__(
+        self,
+        options: Options,
+        jobs: JobRepository,
+        cluster: Cluster,
+        owner: str,
+        kernels: Kernels | None = None,
+    ) -> None:
         self._options = options
         self._jobs = jobs
         self._cluster = cluster
@@ -67,6 +72,8 @@ class Worker:
         self._likely = False  # the last claim found a job, so the next one probably will
         self._herd: dict[asyncio.Task[None], Shepherd] = {}
         self._freed = asyncio.Event()
+        self._kernels = kernels or Kernels(cluster, parts=())
+        self._kernels.on_change = self._freed.set
         cluster.listen(self._on_report)
 
     async def run(self, stopping: asyncio.Event) -> None:
@@ -77,6 +84,7 @@ class Worker:
             try:
                 await self._beat()
                 await self._claim(stopping)
+                self._kernels.go_on(self._capacity - self._busy)
             except Unavailable as error:
                 log.warning("%s", error.detail)
                 pause = AWAY_S
@@ -84,6 +92,8 @@ class Worker:
                 log.warning("%s", error)
             if self._cluster.lost:
                 log.error("%s", self._cluster.lost)
+                break
+            if self._kernels.failed:
                 break
             freed = asyncio.ensure_future(self._freed.wait())
             await asyncio.wait({stop, freed}, timeout=pause, return_when=asyncio.FIRST_COMPLETED)
@@ -105,6 +115,8 @@ class Worker:
         options = self._options
         # At most one unwritten end per place, in case the database accepts claims but no results.
         while self._busy < self._capacity and len(self._herd) < 2 * self._capacity and not stopping.is_set():
+            if not await self._compiled():
+                return
             claim = await asyncio.to_thread(
                 self._jobs.claim, self._owner, options.lease_s, options.max_attempts, likely=self._likely
             )
@@ -115,6 +127,13 @@ class Worker:
             task = asyncio.create_task(shepherd.run(stopping))
             task.add_done_callback(lambda _: self._freed.set())
             self._herd[task] = shepherd
+
+    async def _compiled(self) -> bool:
+        """Whether the next job's kernels are there; if not, they are compiled next."""
+        if self._kernels.over:
+            return True
+        process_id = await asyncio.to_thread(self._jobs.next_process)
+        return process_id is None or self._kernels.there(process_id)
 
     async def _beat(self) -> None:
         """Say that this worker is alive, and see how many jobs the cluster can run."""
@@ -158,16 +177,15 @@ async def work(options: Options) -> int:
     async with open_cluster(options.scheduler, options.processes, options.max_attempts, owner) as cluster:
         where = options.scheduler or f"{options.processes} task processes"
         log.info("%s on %s, cluster ready in %.1f s", owner, where, time.monotonic() - start)
-        warm = await _warm(cluster, stopping)
+        kernels = Kernels(cluster)
         announcing.cancel()
-        if not warm:
-            lost = True
-        elif not stopping.is_set():
+        if not stopping.is_set():
             log.info("takes jobs from %s", database.shown)
             purging = asyncio.create_task(_purge(Retention(database), options.keep_s))
-            await Worker(options, jobs, cluster, owner).run(stopping)
+            await Worker(options, jobs, cluster, owner, kernels).run(stopping)
             purging.cancel()
-            lost = bool(cluster.lost)
+            kernels.stop()
+        lost = bool(cluster.lost) or kernels.failed
         await _say_goodbye(jobs, owner)
         log.info("stopping")
     database.close()
@@ -209,29 +227,6 @@ async def _announce(jobs: JobRepository, owner: str) -> None:
         except Unavailable as error:
             log.warning("%s", error.detail)
         await asyncio.sleep(HEARTBEAT_S)
-
-
-async def _warm(cluster: Cluster, stopping: asyncio.Event) -> bool:
-    """Warm the task processes up; False when it failed: jobs would fail, too, and a new worker may do better."""
-    print("warming up kernels ... ", end="", flush=True)
-    start = time.monotonic()
-    warming = asyncio.create_task(cluster.warm_up(lambda part: print(part, end=", ", flush=True)))
-    stop = asyncio.create_task(stopping.wait())
-    patience = WARM_S if cluster.embedded else WARM_SHARED_S
-    await asyncio.wait({warming, stop}, timeout=patience, return_when=asyncio.FIRST_COMPLETED)
-    stop.cancel()
-    if not warming.done():
-        warming.cancel()
-        print("interrupted" if stopping.is_set() else f"not done in {patience:g} s, goes on", flush=True)
-        return True
-    try:
-        warming.result()
-    except Exception:
-        print("failed", flush=True)
-        log.exception("warming up failed: this worker takes no jobs and ends")
-        return False
-    print(f"done in {time.monotonic() - start:.1f} s", flush=True)
-    return True
 
 
 async def _say_goodbye(jobs: JobRepository, owner: str) -> None:

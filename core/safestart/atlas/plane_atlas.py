@@ -21,6 +21,7 @@ import numpy as np
 from scipy.optimize import linprog
 from scipy.spatial import ConvexHull, QhullError
 
+from safestart.atlas.plane_polygons import area, clipped, furthest
 from safestart.errors import invalid
 from safestart.exact.answer import GUARD, Answer, Multiplier, Verdict
 from safestart.exact.search import Search, rounding_of
@@ -112,14 +113,6 @@ class PlaneAtlas:
         return self.plane.states(beyond), answer
 
 
-def area(polygon: Floats) -> float:
-    """Of a polygon (K, 2)."""
-    if len(polygon) < 3:
-        return 0.0
-    x, y = polygon[:, 0], polygon[:, 1]
-    return 0.5 * float(abs(x @ np.roll(y, -1) - y @ np.roll(x, -1)))
-
-
 class _Survey:
     """What is known of one plane: coordinates u in the unit square, its corners and bounds."""
 
@@ -172,7 +165,7 @@ class _Survey:
         bound = Bound(value - float(slope @ point), slope, multipliers)
         self.bounds.append(bound)
         level, normal = self.unit(bound)
-        self.outer = _clipped(self.outer, level, normal)
+        self.outer = clipped(self.outer, level, normal)
 
     def unit(self, bound: Bound) -> tuple[float, Floats]:
         """Level and slope over u."""
@@ -195,6 +188,8 @@ class _Survey:
     def shoot(self, centre: Floats, target: Floats, fine: float) -> None:
         """Ask along the ray from ``centre`` through ``target`` (u) until corner and bound are ``fine`` apart."""
         ray = target - centre
+        if not ray.any():
+            return
         inside = 0.0
         with np.errstate(divide="ignore", invalid="ignore"):
             walls = np.where(ray > 0.0, (1.0 - centre) / ray, np.where(ray < 0.0, -centre / ray, np.inf))
@@ -215,18 +210,6 @@ class _Survey:
             share = max(inside, limit - back)
             if self.ask(centre + share * ray) is not None:
                 inside = share
-
-
-def _clipped(polygon: Floats, level: float, slope: Floats) -> Floats:
-    """The part of a convex polygon (K, 2) where level + slope . u >= 0."""
-    values = level + polygon @ slope
-    out = []
-    for a, b, va, vb in zip(polygon, np.roll(polygon, -1, axis=0), values, np.roll(values, -1), strict=True):
-        if va >= 0.0:
-            out.append(a)
-        if va * vb < 0.0:
-            out.append(a + (va / (va - vb)) * (b - a))
-    return np.array(out).reshape(-1, 2)
 
 
 def _hull(corners: list[Corner]) -> list[Corner]:
@@ -279,7 +262,7 @@ def build_on_plane(
             fine *= 0.5
             if fine < 1e-7:
                 break
-        survey.shoot(centre, _furthest(survey.outer, inner), fine)
+        survey.shoot(centre, furthest(survey.outer, inner), fine)
     kept = _hull(survey.corners)
     if survey.asked >= most:
         message = f"stopped after {most} questions"
@@ -287,15 +270,3 @@ def build_on_plane(
     return PlaneAtlas(
         question, plane, tuple(kept), tuple(survey.bounds), outer, deepest, survey.asked, message
     )
-
-
-def _furthest(outer: Floats, inner: Floats) -> Floats:
-    """The corner of the outer polygon that is furthest beyond an edge of the inner one."""
-    if len(inner) < 3:
-        away = np.linalg.norm(outer - inner[0], axis=1)
-        return np.asarray(outer[int(np.argmax(away))])
-    edge = np.roll(inner, -1, axis=0) - inner
-    normal = np.column_stack([edge[:, 1], -edge[:, 0]]) / np.linalg.norm(edge, axis=1)[:, None]
-    beyond = ((outer[:, None] - inner) * normal).sum(axis=2)
-    # Weighted with the edge's length: about the area between.
-    return np.asarray(outer[int(np.argmax((beyond * np.linalg.norm(edge, axis=1)).max(axis=1)))])

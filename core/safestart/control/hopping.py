@@ -8,7 +8,8 @@ from safestart.control.controller import Command
 from safestart.errors import invalid
 from safestart.hopping.approach import departure, line
 from safestart.hopping.barrier import Barrier
-from safestart.hopping.hop_program import HopProgram, Solved, Weights
+from safestart.hopping.compiled_program import CompiledProgram
+from safestart.hopping.hop_program import Solved, Weights
 from safestart.hopping.hop_time import hop_phases
 from safestart.model.scenario import Floats
 
@@ -61,7 +62,7 @@ class Hopping:
         remaining = self.distances[k + 1 :]
         times = self._times(state, remaining)
         self._wait = float(times[0]) if len(times) else 0.0
-        program = HopProgram(self.n, self.axes, remaining, times, state, self.weights)
+        program = CompiledProgram(self.n, self.axes, remaining, times, state, self.weights)
         found = program.solve()
         if not found.solved:
             return Command(np.zeros(3), False, "unsolved", self._plain(k, state))
@@ -90,7 +91,7 @@ class Hopping:
         return given
 
     def _guarded(
-        self, k: int, program: HopProgram, state: Floats, impulse: Floats, barrier: Barrier
+        self, k: int, program: CompiledProgram, state: Floats, impulse: Floats, barrier: Barrier
     ) -> Command:
         """The impulse itself where its drift keeps out; else the best of two searches.
 
@@ -108,7 +109,7 @@ class Hopping:
         return Command(np.zeros(3), value >= -_HOLDS, "barrier", best)
 
     def _searched(
-        self, program: HopProgram, state: Floats, impulse: Floats, barrier: Barrier
+        self, program: CompiledProgram, state: Floats, impulse: Floats, barrier: Barrier
     ) -> tuple[Floats, float]:
         """Rounds of linearised rows until the true ones hold and the impulse rests: the impulse, its least row."""
         values, slopes = barrier.rows(state, impulse)

@@ -72,7 +72,8 @@ def filter_step(plan, k, x, nominal, previous, command, bounds, work, index):  #
         for i in range(d):
             command[i] = scale * (nominal[i] + plan.move_weight * previous[i])
         centre = work[9]
-        centre[:d] = command[:d]
+        for i in range(d):
+            centre[i] = command[i]
         least = _least(normals, bounds, weights, command, work, index)
         # Rows of the fallback, relaxed by the least violation; the rest of the box stays unchanged.
         for r in range(m - 2 * d):
@@ -82,7 +83,8 @@ def filter_step(plan, k, x, nominal, previous, command, bounds, work, index):  #
                 bounds[r] = math.inf
         # If rounding makes the shrunken set empty, keep the minimax solver's own vertex.
         if _project(normals, bounds, centre, work, index) == FEASIBLE:
-            command[:d] = centre[:d]
+            for i in range(d):
+                command[i] = centre[i]
     length = 0.0
     for i in range(d):
         length += command[i] * command[i]

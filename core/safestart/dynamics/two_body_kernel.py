@@ -64,12 +64,16 @@ def _pull(x: float, y: float, z: float, out: Floats) -> None:
 
 
 @compiled()
-def _rates(y: Floats, here: Floats, there: Floats, out: Floats) -> None:
+def _rates(y: Floats, drag: float, here: Floats, there: Floats, out: Floats) -> None:
     _pull(y[0], y[1], y[2], here)
     _pull(y[0] + y[6], y[1] + y[7], y[2] + y[8], there)
     for i in range(3):
         out[i], out[3 + i] = y[3 + i], here[i]
         out[6 + i], out[9 + i] = y[9 + i], there[i] - here[i]
+    if drag != 0.0:
+        speed = math.sqrt((y[3] + y[9]) ** 2 + (y[4] + y[10]) ** 2 + (y[5] + y[11]) ** 2)
+        for i in range(3):
+            out[9 + i] -= drag * (y[3 + i] + y[9 + i]) / speed
 
 
 @compiled()
@@ -133,8 +137,13 @@ def pushed(y: Floats, impulse: Floats) -> None:
 
 
 @compiled()
-def drifted(y: Floats, seconds: float, stages: Floats, weights: Floats) -> tuple[Floats, float]:
-    """The flight ``seconds`` later, and its least distance to the target meanwhile (cubics between steps)."""
+def drifted(
+    y: Floats, seconds: float, stages: Floats, weights: Floats, drag: float = 0.0
+) -> tuple[Floats, float]:
+    """The flight ``seconds`` later, and its least distance to the target meanwhile (cubics between steps).
+
+    ``drag``: deceleration of the chaser by drag less that of the target, m/s^2, against the chaser's inertial velocity.
+    """
     count = max(int(math.ceil(seconds / LONGEST_STEP)), 1)  # noqa: RUF046
     h = seconds / count
     state, rates, stage = y.copy(), np.empty((12, 12)), np.empty(12)
@@ -149,7 +158,7 @@ def drifted(y: Floats, seconds: float, stages: Floats, weights: Floats) -> tuple
                 if a != 0.0:
                     for i in range(12):
                         stage[i] += h * a * rates[j, i]
-            _rates(stage, here, there, rates[s])
+            _rates(stage, drag, here, there, rates[s])
         for j in range(12):
             for i in range(12):
                 state[i] += h * weights[j] * rates[j, i]

@@ -22,7 +22,8 @@ LEAST_POSITION, LEAST_VELOCITY = 1.0, 0.1
 
 @dataclass(frozen=True, slots=True)
 class World:
-    """The approach, its orbit, its errors and its barrier; SI, angles in rad but for the line's, deg."""
+    """The approach, its orbit, its errors and its barrier; SI, angles in rad but for the line's, deg. ``drag``: the
+    chaser's deceleration by drag less the target's, which neither guidance nor barrier knows."""
 
     semi_major_axis: float = 8.1e6
     eccentricity: float = 0.0
@@ -42,6 +43,7 @@ class World:
     dispersed: bool = True
     weights: Weights = field(default_factory=Weights)
     phase: float | None = None
+    drag: float = 0.0
 
     @property
     def mean_motion(self) -> float:
@@ -110,9 +112,9 @@ def fly(
         pushed(flight, _made(given, noise, draws[k, 6:]))
         states[k] = seen(flight)
         if aborts:
-            _, closest[k] = drifted(flight, horizon, STAGES, WEIGHTS)
+            _, closest[k] = drifted(flight, horizon, STAGES, WEIGHTS, world.drag)
         if k + 1 < count:
-            flight, _ = drifted(flight, steer.wait(), STAGES, WEIGHTS)
+            flight, _ = drifted(flight, steer.wait(), STAGES, WEIGHTS, world.drag)
             now += steer.wait()
     return Flown(impulses, closest, states, times, float(np.linalg.norm(seen(flight)[:3])), feasible)
 

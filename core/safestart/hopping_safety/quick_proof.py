@@ -23,6 +23,8 @@ from safestart.model.scenario import Floats
 
 SLACK = 1e-6
 """Metres taken off every bound, for rounding."""
+_UP = 1.0 + 1e-9
+"""Times of burns are rounded sums of those of hops."""
 _PER_ORBIT = 96
 _WORST = 10
 _PARTS = 8
@@ -33,12 +35,14 @@ _STEPS = 30
 @dataclass(frozen=True, slots=True)
 class Bounds:
     """The least distance of a drift lies between ``least`` (proved) and ``nearest``, m, of a member of the set's
-    enclosure, which is ``when`` s after the burn in the direction ``towards`` (3,) from the target."""
+    enclosure, which is ``when`` s after the burn in the direction ``towards`` (3,) from the target. ``cells`` (N, 5):
+    the intervals of the proof, begin, end and direction."""
 
     least: float
     nearest: float
     when: float
     towards: Floats
+    cells: Floats
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,9 +57,14 @@ class _Set:
 def hop_bounds(plan: Approach, keep_out: float, horizon: float, errors: Errors) -> list[Bounds]:
     """Bounds on the drift after each hop's impulse, over ``horizon`` s and at least until the next one; CWH motion."""
     return [
-        _bounds(plan.mean_motion, drifting, max(horizon, hop.time), keep_out, math.inf)
+        _bounds(plan.mean_motion, drifting, max(horizon, hop.time * _UP), keep_out, math.inf)
         for hop, drifting in zip(plan.hops, _after(plan, errors), strict=True)
     ]
+
+
+def start_bounds(plan: Approach, keep_out: float, horizon: float, errors: Errors) -> Bounds:
+    """The same of the drift without any impulse."""
+    return _bounds(plan.mean_motion, _at_start(plan, errors), horizon, keep_out, math.inf)
 
 
 def error_level(
@@ -132,7 +141,8 @@ def _bounds(n: float, drifting: _Set, horizon: float, keep_out: float, enough: f
     count = max(math.ceil(_PER_ORBIT * horizon * n / math.tau), 8)
     edges = np.linspace(0.0, horizon, count + 1)
     begin, end = edges[:-1], edges[1:]
-    low, sharp = _proved(n, drifting, begin, end, None), np.zeros(count, dtype=bool)
+    sides = _to_centre(n, drifting, begin, end)
+    low, sharp = _proved(n, drifting, begin, end, sides), np.zeros(count, dtype=bool)
     near, when, side = math.inf, 0.0, np.array([1.0, 0.0, 0.0])
     for _ in range(_ROUNDS):
         if float(low.min()) - SLACK >= enough or sharp[int(np.argmin(low))]:
@@ -149,10 +159,12 @@ def _bounds(n: float, drifting: _Set, horizon: float, keep_out: float, enough: f
         keep[worst] = False
         begin, end = np.concatenate([begin[keep], a]), np.concatenate([end[keep], b])
         low = np.concatenate([low[keep], _proved(n, drifting, a, b, towards)])
+        sides = np.concatenate([sides[keep], towards])
         sharp = np.concatenate([sharp[keep], np.ones(len(a), dtype=bool)])
         if math.isfinite(enough) and near < keep_out:
             break
-    return Bounds(max(float(low.min()) - SLACK, 0.0), near, when, side)
+    cells = np.column_stack([begin, end, sides])
+    return Bounds(max(float(low.min()) - SLACK, 0.0), near, when, side, cells)
 
 
 def _cut(begin: Floats, end: Floats) -> tuple[Floats, Floats]:
@@ -182,13 +194,17 @@ def _block_norm(values: Floats, first: list[int]) -> Floats:
     return total
 
 
-def _proved(n: float, drifting: _Set, begin: Floats, end: Floats, towards: Floats | None) -> Floats:
-    """Lower bounds (K,) on the distance over the intervals; ``towards`` (K, 3) or the directions to the centre."""
+def _to_centre(n: float, drifting: _Set, begin: Floats, end: Floats) -> Floats:
+    """Directions (K, 3) from the target to the centre in the middle of the intervals."""
+    middle = position_rows(n, 0.5 * (begin + end)) @ drifting.centre
+    size = np.linalg.norm(middle, axis=1, keepdims=True)
+    towards: Floats = np.where(size > 0.0, middle / np.maximum(size, 1e-300), [1.0, 0.0, 0.0])
+    return towards
+
+
+def _proved(n: float, drifting: _Set, begin: Floats, end: Floats, towards: Floats) -> Floats:
+    """Lower bounds (K,) on the distance over the intervals, in the directions ``towards`` (K, 3)."""
     at_begin, at_end = position_rows(n, begin), position_rows(n, end)
-    if towards is None:
-        middle = position_rows(n, 0.5 * (begin + end)) @ drifting.centre
-        size = np.linalg.norm(middle, axis=1, keepdims=True)
-        towards = np.where(size > 0.0, middle / np.maximum(size, 1e-300), [1.0, 0.0, 0.0])
     ends = []
     for rows in (at_begin, at_end):
         q = np.einsum("kij,ki->kj", rows, towards)

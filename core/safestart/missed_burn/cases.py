@@ -13,6 +13,7 @@ import numpy as np
 from safestart.dynamics.cwh import input_matrix, transition_matrix
 from safestart.missed_burn.earth import lift_of, target_before
 from safestart.missed_burn.earth_cases import late_and_stuck
+from safestart.missed_burn.finite_cases import finite_cases
 from safestart.missed_burn.plan import Burn, Question, duration_of
 from safestart.missed_burn.sets import Case, StateSet, add_burn, frame, pieces, shell
 from safestart.model.scenario import Floats
@@ -22,10 +23,10 @@ def cases_of(question: Question) -> list[Case]:
     """Every case of a plan, in the order of its burns; in inertial axes where the question is about the true Earth."""
     plan, errors, failures = question.plan, question.errors, question.failures
     n, times = plan.mean_motion, [burn.time for burn in plan.burns]
-    planned, box = question.before(), np.array([*errors.position, *errors.velocity])
+    planned = question.before()
     out: list[Case] = []
     state = StateSet(planned[0])
-    state.box(box, "navigation")
+    state.navigation(errors)
     still, share, angle = (0.0, 0.0), errors.thrust_share, errors.thrust_angle
     begun = state.copy()
     if question.earth is not None:
@@ -36,7 +37,11 @@ def cases_of(question: Question) -> list[Case]:
             state.moved(transition_matrix(n, times[k] - times[k - 1]))
         if errors.at_each_burn:
             state = StateSet(planned[k])
-            state.box(box, "navigation")
+            state.navigation(errors)
+        if burn.duration > 0.0:
+            state, found = finite_cases(question, k, state)
+            out += found
+            continue
         before = state.copy()
         add_burn(state, burn, k, 1.0 - share, 1.0 + share, angle)
         made = [("made", state.copy())]

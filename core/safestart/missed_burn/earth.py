@@ -31,8 +31,8 @@ from safestart.dynamics.two_body_kernel import (
     target_with,
 )
 from safestart.errors import invalid
+from safestart.missed_burn.kernels.variation import carried
 from safestart.missed_burn.plan import Plan, Question, longest_drift
-from safestart.missed_burn.variation_kernel import carried
 from safestart.model.orbit import EARTH_RADIUS as RADIUS
 from safestart.model.orbit import MAX_ECCENTRICITY, MU
 from safestart.model.scenario import Floats, number

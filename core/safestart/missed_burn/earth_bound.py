@@ -13,9 +13,9 @@ import math
 import numpy as np
 
 from safestart.missed_burn.earth import PARTS, PER_PART, Drift, drift_after, remainder
+from safestart.missed_burn.kernels.table import images_of, least_between
 from safestart.missed_burn.plan import Question
 from safestart.missed_burn.sets import Case
-from safestart.missed_burn.table_kernel import images_of, least_between
 from safestart.model.scenario import Floats
 
 UNBOUNDED = 1e30

@@ -9,8 +9,8 @@ from enum import StrEnum
 import numpy as np
 
 from safestart.missed_burn.cases import cases_of
-from safestart.missed_burn.drift_kernel import least_distance
 from safestart.missed_burn.earth_bound import earth_bound
+from safestart.missed_burn.kernels.drift import FIRST, least_distance
 from safestart.missed_burn.plan import Question
 from safestart.missed_burn.replay import Flown, flown_of
 from safestart.missed_burn.sets import Case
@@ -37,7 +37,8 @@ class Verdict(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One case: its least distance lies between ``least`` (proved) and ``nearest`` (of a member, m), at ``when`` s.
+    """One case and ``zone`` (its number): the least distance lies between ``least`` (proved) and ``nearest`` (of a
+    member, m), at ``when`` s.
 
     ``cells`` (N, 5): the intervals of the proof, begin, end (s after the case's time) and direction. ``trials``: radii
     of the nonlinear motion, m, over equal parts of the drift; empty where the motion is linear.
@@ -50,6 +51,7 @@ class Finding:
     cells: Floats
     member: Floats
     trials: Floats
+    zone: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,12 +79,13 @@ def prove(question: Question, *, tick: Callable[[int, int], None] | None = None,
     ``sharp``: bound every case to 2 cm or 0.1 %, otherwise only as tightly as the keep-out radius requires. ``tick``
     receives the progress.
     """
-    cases = cases_of(question)
+    pairs = [(case, zone) for case in cases_of(question) for zone in range(len(question.zones))]
     findings = []
-    for number, case in enumerate(cases):
-        findings.append(bound(case, question, np.inf if sharp else question.keep_out + slack_of(question)))
+    enough = np.inf if sharp else question.keep_out + slack_of(question)
+    for number, (case, zone) in enumerate(pairs):
+        findings.append(bound(case, question, enough, zone))
         if tick is not None:
-            tick(number + 1, len(cases))
+            tick(number + 1, len(pairs))
     least = min(finding.least for finding in findings)
     if least >= question.keep_out:
         return Proof(question, Verdict.PROVED, least, tuple(findings), None)
@@ -90,7 +93,7 @@ def prove(question: Question, *, tick: Callable[[int, int], None] | None = None,
         if finding.nearest >= question.keep_out:
             break
         flown = flown_of(question, finding.case, finding.member, finding.when)
-        if flown.distance(question.radius) < question.keep_out:
+        if flown.distance(question.radius, question.zones[finding.zone]) < question.keep_out:
             return Proof(question, Verdict.VIOLATED, least, tuple(findings), flown)
     return Proof(question, Verdict.UNKNOWN, least, tuple(findings), None)
 
@@ -100,9 +103,9 @@ def slack_of(question: Question) -> float:
     return SLACK if question.earth is None else EARTH_SLACK
 
 
-def bound(case: Case, question: Question, enough: float) -> Finding:
-    """Bounds on one case; stops at ``enough`` m."""
-    n = question.plan.mean_motion
+def bound(case: Case, question: Question, enough: float, zone: int = 0) -> Finding:
+    """Bounds on one case and zone; stops at ``enough`` m."""
+    n, body = question.plan.mean_motion, question.zones[zone]
     start = float(np.linalg.norm(case.centre[:3]))
     tolerance = max(_TOLERANCE, 1e-3 * min(start, 100.0))
     if question.earth is not None:
@@ -113,20 +116,28 @@ def bound(case: Case, question: Question, enough: float) -> Finding:
     strays, trials = _NO_STRAYS, np.zeros(0)
     if question.radius is not None:
         strays, trials = strays_of(case, question, question.radius)
+    still, still_ends = body.blocks
     least, nearest, when, member, cells, _ = least_distance(
         n,
+        case.thrust.begin,
         case.duration,
         case.centre,
         case.columns,
         case.ends,
+        -np.array(body.centre),
+        still,
+        still_ends,
         strays,
+        FIRST if case.duration - case.thrust.begin > 0.1 * question.horizon else 1,
         enough,
         _TOUCHES,
         tolerance,
         _MOST_CELLS,
     )
     # With unbounded strays the only bound is 0, as no distance is negative.
-    return Finding(case, max(least - SLACK, 0.0), nearest, when, cells, member, trials)
+    return Finding(
+        case, max(least - SLACK, 0.0), nearest, when, cells, member[: len(case.columns)], trials, zone
+    )
 
 
 def greatest_scale(question: Question, *, most: float = 100.0, accuracy: float = 1e-3) -> float:
@@ -138,7 +149,11 @@ def greatest_scale(question: Question, *, most: float = 100.0, accuracy: float =
     def holds(scale: float) -> bool:
         scaled = replace(question, errors=question.errors.scaled(scale))
         enough = question.keep_out + slack_of(question)
-        return all(bound(case, scaled, enough).least >= question.keep_out for case in cases_of(scaled))
+        return all(
+            bound(case, scaled, enough, zone).least >= question.keep_out
+            for case in cases_of(scaled)
+            for zone in range(len(scaled.zones))
+        )
 
     errors = question.errors
     if errors.thrust_share > 0.0:

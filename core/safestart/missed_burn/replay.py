@@ -13,6 +13,7 @@ from safestart.dynamics.two_body_kernel import STAGES, WEIGHTS, drifted, placed,
 from safestart.missed_burn.earth import target_before
 from safestart.missed_burn.plan import Question
 from safestart.missed_burn.sets import Case, frame, shell
+from safestart.missed_burn.zone import POINT, Zone
 from safestart.model.scenario import Floats
 
 _PULSES = 256
@@ -20,9 +21,10 @@ _PULSES = 256
 
 @dataclass(frozen=True, slots=True)
 class Flown:
-    """From ``start`` (6,) at ``begin`` s: the ``impulses`` (K, 3) at ``times`` (K,), then the ``push`` (3,), m/s^2,
-    held for ``push_for`` s after the last of them, then drift; looked at ``look`` s. LVLH, times of the plan.
-    ``target`` (6,): its inertial state at ``begin``, for a flight about the true Earth.
+    """From ``start`` (6,) at ``begin`` s: the ``impulses`` (K, 3) at ``times`` (K,), each spread evenly over its
+    ``durations`` (K,), s, then the ``push`` (3,), m/s^2, held for ``push_for`` s after the last of them, then drift;
+    looked at ``look`` s. LVLH, times of the plan. ``target`` (6,): its inertial state at ``begin``, for a flight about
+    the true Earth.
     """
 
     mean_motion: float
@@ -32,6 +34,7 @@ class Flown:
     begin: float
     times: Floats
     impulses: Floats
+    durations: Floats
     push: Floats
     push_for: float
     look: float
@@ -40,10 +43,14 @@ class Flown:
     def state(self) -> Floats:
         """State (6,) at ``look``, in CWH motion."""
         n, state, now = self.mean_motion, np.array(self.start), self.begin
-        for time, impulse in zip(self.times, self.impulses, strict=True):
-            state = transition_matrix(n, time - now) @ state
-            state[3:] += impulse
-            now = time
+        for time, impulse, duration in zip(self.times, self.impulses, self.durations, strict=True):
+            state, now = transition_matrix(n, time - now) @ state, time
+            on = min(duration, self.look - now)
+            if duration == 0.0:
+                state[3:] += impulse
+            elif on > 0.0:
+                state = transition_matrix(n, on) @ state + input_matrix(n, on) @ (impulse / duration)
+                now += on
         if self.push_for > 0.0:
             on = min(self.push_for, self.look - now)
             state = transition_matrix(n, on) @ state + input_matrix(n, on) @ self.push
@@ -51,13 +58,14 @@ class Flown:
         reached: Floats = transition_matrix(n, self.look - now) @ state
         return reached
 
-    def distance(self, radius: float | None = None) -> float:
-        """Distance to the target at ``look``, m; with the ``radius`` (m) of the orbit in the nonlinear motion."""
+    def distance(self, radius: float | None = None, zone: Zone = POINT) -> float:
+        """Distance to the target, or to the ``zone``, at ``look``, m; with the ``radius`` (m) of the orbit in the
+        nonlinear motion."""
         if self.target is not None:
             state = self.earth_state()
         else:
             state = self.state() if radius is None else self.nonlinear_state(radius)
-        return float(np.linalg.norm(state[:3]))
+        return zone.distance(state[:3])
 
     def earth_state(self) -> Floats:
         """State (6,) at ``look``, both bodies about the Earth with J2."""
@@ -82,10 +90,14 @@ class Flown:
     def nonlinear_state(self, radius: float) -> Floats:
         """State (6,) at ``look`` about a point mass, the target on a circular orbit of ``radius`` m."""
         state, now = np.array(self.start), self.begin
-        for time, impulse in zip(self.times.tolist(), self.impulses, strict=True):
-            state = self._flown(radius, state, time - now, np.zeros(3))
-            state[3:] += impulse
-            now = time
+        made = zip(self.times.tolist(), self.impulses, self.durations.tolist(), strict=True)
+        for time, impulse, duration in made:
+            state, now = self._flown(radius, state, time - now, np.zeros(3)), time
+            on = min(duration, self.look - now)
+            if duration == 0.0:
+                state[3:] += impulse
+            elif on > 0.0:
+                state, now = self._flown(radius, state, on, impulse / duration), now + on
         if self.push_for > 0.0:
             on = min(self.push_for, self.look - now)
             state = self._flown(radius, state, on, self.push)
@@ -124,27 +136,36 @@ def flown_of(question: Question, case: Case, member: Floats, when: float) -> Flo
     plan, errors, failures = question.plan, question.errors, question.failures
     base = case.burn if errors.at_each_burn else 0
     base = max(base, 0)
-    start, part = question.before()[base].copy(), 0.0
+    start, part, on_part = question.before()[base].copy(), 0.0, 0.0
     chosen: dict[int, list[tuple[str, float]]] = {}
     for (label, number), value in zip(case.labels, member.tolist(), strict=True):
         if label == "navigation":
             start[number] += value * (errors.position + errors.velocity)[number]
+        elif label == "ellipsoid":
+            start += value * np.array(errors.ellipsoid[number])
+        elif label == "on":
+            on_part = value
         elif label == "piece":
             part = value
         elif label in ("along", "across"):
             chosen.setdefault(number, []).append((label, value))
-    event = 0.5 * (case.first + case.last) + 0.5 * (case.last - case.first) * part
-    times, impulses = [], []
+    event = _within(case.first, case.last, part)
+    times, impulses, durations = [], [], []
     for k in range(base, case.burn + 1):
         last = k == case.burn
         angle = errors.thrust_angle + (failures.misdirected if last and case.kind == "misdirected" else 0.0)
         least = 0.0 if last and case.kind == "partial" else 1.0 - errors.thrust_share
-        impulses.append(
-            _made(np.array(plan.burns[k].impulse), chosen.get(k, []), least, 1.0 + errors.thrust_share, angle)
-        )
-        times.append(plan.burns[k].time + (event if last and case.kind == "late" else 0.0))
+        burn = plan.burns[k]
+        made = _made(np.array(burn.impulse), chosen.get(k, []), least, 1.0 + errors.thrust_share, angle)
+        on = burn.duration
+        if last and on > 0.0:
+            on = _within(case.thrust.first, case.thrust.last, on_part)
+            made = made * (on / burn.duration)
+        impulses.append(made)
+        durations.append(on)
+        times.append(burn.time + (event if last and case.kind == "late" else 0.0))
     push, push_for = np.zeros(3), 0.0
-    if case.kind == "stuck":
+    if case.kind == "stuck" and plan.burns[case.burn].duration == 0.0:
         push_for = event
         push = failures.acceleration / plan.burns[case.burn].size * impulses[-1]
     return Flown(
@@ -155,11 +176,17 @@ def flown_of(question: Question, case: Case, member: Floats, when: float) -> Flo
         begin=plan.burns[base].time,
         times=np.array(times),
         impulses=np.array(impulses).reshape(-1, 3),
+        durations=np.array(durations),
         push=push,
         push_for=push_for,
         look=max(case.time + when, times[-1] if times else 0.0),
         target=None if question.earth is None else target_before(question, base),
     )
+
+
+def _within(first: float, last: float, part: float) -> float:
+    """A time of a piece, by its place in [-1, 1]; the ends of the piece are reached exactly."""
+    return min(max(0.5 * (first + last) + 0.5 * (last - first) * part, first), last)
 
 
 def _made(

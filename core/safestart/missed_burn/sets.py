@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from safestart.missed_burn.plan import Burn
+from safestart.missed_burn.plan import Burn, Errors
 from safestart.model.scenario import Floats
 
 _BEND = 0.02
@@ -22,10 +22,23 @@ _MOST_PIECES = 64
 
 
 @dataclass(frozen=True, slots=True)
+class Thrust:
+    """How long a burn with a duration lasts, ``first`` to ``last`` s, and the time, s after the planned one, from which
+    on the chaser may drift from the set."""
+
+    first: float = 0.0
+    last: float = 0.0
+    begin: float = 0.0
+
+
+_IMPULSE = Thrust()
+
+
+@dataclass(frozen=True, slots=True)
 class Case:
     """One event: from ``time`` s on the chaser drifts from the set for ``duration`` s.
 
-    ``kind``: start (no burn is made), made, partial, late, stuck, misdirected. ``first``, ``last``: the piece, s.
+    ``kind``: start (no burn is made), made, cut, partial, late, stuck, misdirected. ``first``, ``last``: the piece, s.
     ``columns`` (C, 6) and ``ends`` (K,) of the blocks; ``labels`` (C) describe the columns: the name of an error and
     the number of its burn or axis.
     """
@@ -40,6 +53,7 @@ class Case:
     columns: Floats
     ends: NDArray[np.int64]
     labels: tuple[tuple[str, int], ...]
+    thrust: Thrust = _IMPULSE
 
 
 class StateSet:
@@ -62,6 +76,15 @@ class StateSet:
         for axis in np.flatnonzero(half > 0.0).tolist():
             self.block([half[axis] * np.eye(6)[axis]], label, axis)
 
+    def navigation(self, errors: Errors) -> None:
+        """Add the errors of the state: a box and an ellipsoid."""
+        self.box(np.array([*errors.position, *errors.velocity]), "navigation")
+        columns = [np.array(column) for column in errors.ellipsoid]
+        if any(column.any() for column in columns):
+            self.columns += columns
+            self.ends.append(len(self.columns))
+            self.labels += [("ellipsoid", j) for j in range(6)]
+
     def moved(self, matrix: Floats) -> None:
         """Replace the set by its image."""
         self.centre = matrix @ self.centre
@@ -73,12 +96,20 @@ class StateSet:
         other.columns, other.ends, other.labels = list(self.columns), list(self.ends), list(self.labels)
         return other
 
-    def case(self, kind: str, burn: int, time: float, duration: float, piece: tuple[float, float]) -> Case:
+    def case(
+        self,
+        kind: str,
+        burn: int,
+        time: float,
+        duration: float,
+        piece: tuple[float, float],
+        thrust: Thrust = _IMPULSE,
+    ) -> Case:
         """The set as a case."""
         columns = np.array(self.columns).reshape(-1, 6)
         ends = np.array(self.ends, dtype=np.int64)
         return Case(
-            kind, burn, piece[0], piece[1], time, duration, self.centre, columns, ends, tuple(self.labels)
+            kind, burn, *piece, time, duration, self.centre, columns, ends, tuple(self.labels), thrust
         )
 
 

@@ -15,7 +15,7 @@ import math
 
 import numpy as np
 
-from safestart.missed_burn.drift_kernel import position_rows
+from safestart.missed_burn.kernels.drift import position_rows
 from safestart.missed_burn.plan import Question
 from safestart.missed_burn.sets import Case
 from safestart.model.scenario import Floats
@@ -62,7 +62,10 @@ def strays_of(case: Case, question: Question, r: float) -> tuple[Floats, Floats]
 
 
 def detour(case: Case, question: Question) -> float:
-    """Largest distance, m, of the actual position during a late or lasting burn from its equivalent state's."""
+    """Largest distance, m, of the actual position during a late, lasting or finite burn from its equivalent state's."""
+    if case.thrust.last > 0.0:
+        size = question.plan.burns[case.burn].thrust * case.thrust.last
+        return 2.0 * (case.last + case.thrust.last) * (1.0 + question.errors.thrust_share) * size
     if case.kind not in ("late", "stuck"):
         return 0.0
     most, failures = 1.0 + question.errors.thrust_share, question.failures

@@ -44,9 +44,10 @@ class ProcessSpec:
     the deviation of a replay on another machine or with other versions, relative to max(1, |value|); on the same
     machine and versions a replay is equal bit for bit. ``instant`` names a function (inputs) -> document for the
     service's answer at submission. ``states`` names the input list, if any, that a service may limit further
-    (``max_states``). ``tables`` declares tables over plain lists among the outputs; lists of objects are tables without
-    a declaration. ``views`` say how a page shows the outputs, the most important first. ``extensions`` are further
-    members of its description, named ``safestart:...``.
+    (``max_states``). ``kernels`` names the parts of :mod:`safestart.runtime.warmup` that its jobs need: a worker that
+    has just started compiles those of waiting jobs first. ``tables`` declares tables over plain lists among the
+    outputs; lists of objects are tables without a declaration. ``views`` say how a page shows the outputs, the most
+    important first. ``extensions`` are further members of its description, named ``safestart:...``.
     """
 
     id: str
@@ -63,6 +64,7 @@ class ProcessSpec:
     replay_tolerance: float = 1e-9
     keywords: tuple[str, ...] = ()
     states: str = ""
+    kernels: tuple[str, ...] = ()
     tables: tuple[Table, ...] = ()
     views: tuple[View, ...] = ()
     extensions: dict[str, Any] = field(default_factory=dict)

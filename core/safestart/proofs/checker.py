@@ -11,6 +11,7 @@ from safestart.proofs import family as for_all
 from safestart.proofs import single as proof
 from safestart.proofs.abort import check as abort
 from safestart.proofs.abort.statement import SCHEMA as ABORT
+from safestart.proofs.abort.statement import WIDER as WIDER_ABORT
 from safestart.proofs.abort.wording import lines
 from safestart.proofs.single import Verified
 from safestart.proofs.space import check as space
@@ -26,7 +27,7 @@ def check(document: Any) -> Verified:
         return disturbed.check(document)
     if schema == space_statement.SCHEMA:
         return space.check(document)
-    if schema == ABORT:
+    if schema in (ABORT, WIDER_ABORT):
         asked, cells = abort.check(document)
         return Verified("PROVED", float(document["least_distance_m"]), cells, lines(asked))
     return proof.check(document)

@@ -6,6 +6,9 @@ would still run as the old machine code. The cache key of a :func:`compiled` fun
 text of every function that it calls, at any depth, the value of every constant, and the fields of its record
 arguments.
 
+Inside a kernel arrays are copied by loops: ``a[:] = b`` of two arrays compiles the text of an error about their shapes,
+two seconds of it.
+
 An unreadable cache file is compiled again, an unwritable one is skipped, and one log line says so.
 """
 
@@ -40,7 +43,9 @@ def compiled(**options: Any) -> Callable[[Any], Any]:
     """
 
     def decorate(function: Any) -> Any:
-        kernel = njit(nogil=True, **options)(function)
+        # Nothing takes a kernel's address for C, so no wrapper is compiled for that.
+        named: dict[str, Any] = {"nogil": True, "no_cfunc_wrapper": True, **options}
+        kernel = by_types(njit(**named)(function))
         try:
             kernel._cache = KernelCache(function)
         except (RuntimeError, OSError) as error:  # Numba found no folder that it may write to
@@ -48,6 +53,23 @@ def compiled(**options: Any) -> Callable[[Any], Any]:
         return kernel
 
     return decorate
+
+
+def by_types(kernel: Any) -> Any:
+    """The same kernel, compiled once for the types of its arguments where another kernel calls it.
+
+    Numba compiles a callee for a literal argument first, and again for its type: a loop's counter, which starts as the
+    literal 0, cost a second compilation of everything that it is passed to.
+    """
+    template = kernel.get_call_template
+
+    def for_types(args: Any, kws: Any) -> Any:
+        return template(
+            tuple(map(types.unliteral, args)), {name: types.unliteral(one) for name, one in kws.items()}
+        )
+
+    kernel.get_call_template = for_types
+    return kernel
 
 
 class KernelCache(FunctionCache):

@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Container
+from itertools import islice
 from typing import Any
 
 
@@ -43,11 +44,12 @@ def require_unique_names(
     unknown: list[str] = []
 
     def check(pairs: list[tuple[str, Any]]) -> None:
-        _check(pairs)
-        if known is not None:
-            unknown.extend(name for name, _ in pairs if name not in known)
+        if known is not None:  # first, as the comparison below takes memory for every name
+            left = most_unknown + 1 - len(unknown)
+            unknown.extend(islice((name for name, _ in pairs if name not in known), left))
             if len(unknown) > most_unknown:
                 raise TooManyNames(unknown[0])
+        _check(pairs)
 
     json.loads(text, object_pairs_hook=check, parse_float=len, parse_int=len)
 

@@ -40,7 +40,8 @@ def roll_out(plan, truth, draws, starts, counts, sums, log_state, log_command, l
     before, after = np.empty((2, count)), np.empty((2, count))
     x, seen = np.empty(6), np.empty(6)
     for flight in range(len(starts)):
-        x[:] = starts[flight]
+        for i in range(6):
+            x[i] = starts[flight, i]
         previous[:] = 0.0
         r0 = math.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2])
         v_max = plan.closing_factor * math.sqrt(law.max_acceleration * r0)
@@ -55,7 +56,8 @@ def roll_out(plan, truth, draws, starts, counts, sums, log_state, log_command, l
         while steps < horizon and margin >= 0.0 and finite:
             k = steps
             steps += 1
-            seen[:] = x
+            for i in range(6):
+                seen[i] = x[i]
             if drawing:
                 seen[0] += truth.position_sigma * draws[flight, k, 0]
                 seen[1] += truth.position_sigma * draws[flight, k, 1]

@@ -67,7 +67,8 @@ def advance(  # type: ignore[no-untyped-def]
         x[2] = phi[2, 2] * c + phi[2, 5] * w + gamma[2, 2] * uz
         x[5] = phi[5, 2] * c + phi[5, 5] * w + gamma[5, 2] * uz
         if len(log_state) > 0:
-            log_state[k * substeps + s, :] = x
+            for i in range(6):
+                log_state[k * substeps + s, i] = x[i]
         if check == _CONTINUOUS:
             slopes(faces[k, s], offsets, x, d, count, omega, step, after)
             first = math.inf

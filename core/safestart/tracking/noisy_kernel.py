@@ -80,7 +80,8 @@ def plan_inputs(attitudes, start, held, push, z, state, out):  # type: ignore[no
         deviation[i] = state[i]
         for k in range(3):
             deviation[i] -= start[i, k] * theta[k]
-    deviation[6:] = z[: n - 3]
+    for k in range(n - 3):
+        deviation[6 + k] = z[k]
     for j in range(len(push)):
         for i in range(3):
             value = 0.0

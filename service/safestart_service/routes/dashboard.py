@@ -36,6 +36,17 @@ async def explore(request: Request) -> Response:
 
 
 @router.get(
+    "/dashboard/space",
+    operation_id="getSpacePage",
+    summary="Explore in space",
+    responses={200: _PAGE, **refusals()},
+)
+async def space(request: Request) -> Response:
+    """Any start, tumble, orbit, corridor and thrust: verdict and proof, slices of the region, the flight in a scene."""
+    return _page(request, "space", "/dashboard/space")
+
+
+@router.get(
     "/dashboard/trade",
     operation_id="getTradePage",
     summary="Trade study",

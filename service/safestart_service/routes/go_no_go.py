@@ -57,10 +57,11 @@ def _linked(document: dict[str, Any], inputs: OneStart, scope: Scope) -> dict[st
 async def _proof(request: Request, inputs: OneStart) -> Response:
     document = await one_document(request, door.with_proof(inputs))
     if document["proof"] is None:
+        verdict, by = document["verdict"], document.get("decided_by")
         raise NotFound(
-            f"there is no proof: {document['reason']}",
-            required="a start that is decided",
-            received="UNDECIDED",
+            f"there is no proof document: {document['reason']}",
+            required="a start that is decided by more than a theorem" if by else "a start that is decided",
+            received=f"{verdict} by {by}" if by else verdict,
         )
     return Json(document["proof"], headers={"Content-Disposition": 'attachment; filename="proof.json"'})
 
@@ -113,8 +114,9 @@ async def go_no_go_one(_query: Annotated[GoNoGoQuery, Query()]) -> Response:
 async def go_no_go_proof(_query: Annotated[GoNoGoQuery, Query()]) -> Response:
     """The proof of the exact answer to the same question, as a file for ``safestart verify``.
 
-    It is computed anew from the question (milliseconds), so the link holds as long as the service does. 404 when the
-    start is UNDECIDED.
+    It is computed anew from the question (milliseconds), so the link holds as long as the service does. It never
+    contradicts a GO by `certified`: where no thrust held over 2 s stays, it holds the thrust over shorter steps. 404
+    when the start is UNDECIDED, or its GO is the theorem's and no thrust held over such steps shows it.
     """
     raise AssertionError("its route class answers")
 

@@ -316,3 +316,10 @@ def test_fewer_states_by_setting(tmp_path):
         assert_problem(client.post("/go-no-go", json={**POINT, "states": [STATE] * 3}), 422, "states")
         execution = {"inputs": {**POINT, "states": [STATE] * 3}}
         assert_problem(client.post("/processes/go-no-go/execution", json=execution), 422, "states")
+
+
+def test_so_many_mistakes_are_named_and_the_others_counted(client):
+    """The first in full, five by their fields, and how many there are: the answer does not grow with the body."""
+    asked = POINT | {f"wrong{k:02d}": 1 for k in range(50)}
+    problem = assert_problem(client.post("/certificates", json=asked), 422, "wrong00")
+    assert "(and 49 more: wrong01, wrong02, wrong03, wrong04, wrong05)" in problem["detail"]

@@ -166,8 +166,13 @@ def test_a_description_carries_views_tables_and_engines(tmp_path: Path) -> None:
 
 
 def test_javascript_names_no_process() -> None:
-    """But for the calls that a page is about: Explore's and the trade study's own questions."""
-    own = {"explore.js": {"safe-region"}, "question.js": {"go-no-go"}, "trade.js": {"thrust-map"}}
+    """But for the calls that a page is about: Explore's, in the plane and in space, and the trade study's questions."""
+    own = {
+        "explore.js": {"safe-region"},
+        "question.js": {"go-no-go"},
+        "space.js": {"start-in-space", "region-in-space"},
+        "trade.js": {"thrust-map"},
+    }
     names = set(PROCESS_IDS) - {"flight", "certificate"}  # words of the trade as well
     for script in STATIC.rglob("*.js"):
         text = script.read_text()

@@ -4,14 +4,15 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from safestart.campaign.case import Case
 from safestart.control.hopping import Hopping
-from safestart.dynamics.cwh import transition_matrix
+from safestart.dynamics.cwh import input_matrix, transition_matrix
 from safestart.dynamics.two_body import Orbit, TwoBody
 from safestart.dynamics.two_body_kernel import STAGES, WEIGHTS, drifted, placed, pushed, seen, target_at
 from safestart.errors import InvalidInput
-from safestart.hopping.approach import approach, distances, line, mean_motion_of
+from safestart.hopping.approach import approach, distances, line, mean_motion_of, with_phases
 from safestart.hopping.barrier import Barrier, Noise
 from safestart.hopping_flights.fly import World, fly
 from safestart.model.metrics import wilson
@@ -108,3 +109,44 @@ def test_refusals() -> None:
         Hopping(N, 0.0, np.array([100.0, 200.0]))
     with pytest.raises(InvalidInput, match="k: required"):
         Hopping(N, 0.0, np.array([200.0, 100.0])).command(2, np.zeros(6))
+
+
+def test_a_difference_of_drag_drifts_as_a_constant_push_in_cwh() -> None:
+    """Against CWH with the push held against the velocity of the orbit: the same to the neglected terms."""
+    n, drag = mean_motion_of(8.1e6), 1e-6
+    target, state = target_at(8.1e6, 0.0, 0.0), np.array([0.0, 200.0, 0.0, 0.0, 0.0, 0.0])
+    time = 0.7 * math.tau / n
+    with_drag = seen(drifted(placed(target, state), time, STAGES, WEIGHTS, drag)[0])
+    without = seen(drifted(placed(target, state), time, STAGES, WEIGHTS)[0])
+    pushed_by = input_matrix(n, time) @ np.array([0.0, -drag, 0.0])
+    assert np.abs(pushed_by[:2]).min() > 0.5
+    assert (with_drag - without)[:3] == pytest.approx(pushed_by[:3], rel=5e-3, abs=2e-3)
+    # More drag than the target: the chaser falls below and runs ahead.
+    assert pushed_by[0] < 0.0 < pushed_by[1]
+
+
+def test_drag_changes_the_risk_of_the_v_bar() -> None:
+    """3e-7 m/s^2 move an abort of two orbits by tens of metres along the track."""
+    still = fly(World(), np.random.default_rng(1))
+    dragged = fly(World(drag=3e-7), np.random.default_rng(1))
+    assert np.abs(still.closest - dragged.closest).max() > 5.0
+
+
+def test_planned_hops_of_0_6_orbits_come_near_before_they_are_repaired() -> None:
+    """Section 5.4 as planned, CWH: by the plan's own drifts and by an integrator. The study has 70, 21 and 4 m."""
+    plan = with_phases(N, 0.0, distances(2000.0, 100.0, 3), np.full(3, 0.6 * math.tau))
+    horizon = 2.0 * math.tau / N
+
+    def rates(_: float, s: np.ndarray) -> np.ndarray:
+        x, _, z, u, v, w = s
+        return np.array([u, v, w, 3 * N * N * x + 2 * N * v, -2 * N * u, -N * N * z])
+
+    for hop, said in zip(plan.hops, (73.6, 27.1, 10.0), strict=True):
+        path = solve_ivp(
+            rates, (0.0, horizon), hop.left_with, "DOP853", rtol=1e-10, atol=1e-9, dense_output=True
+        )
+        flown = np.linalg.norm(path.sol(np.linspace(0.0, horizon, 4000))[:3], axis=0).min()
+        times = np.linspace(0.0, horizon, 4000)
+        ours = min(np.linalg.norm(transition_matrix(N, float(t))[:3] @ hop.left_with) for t in times)
+        assert ours == pytest.approx(flown, abs=0.01)
+        assert ours == pytest.approx(said, abs=0.1)

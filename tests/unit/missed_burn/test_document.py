@@ -7,9 +7,10 @@ from typer.testing import CliRunner
 
 from safestart.cli import build
 from safestart.errors import Conflict
-from safestart.missed_burn.document import document_of, question_document
+from safestart.missed_burn.document import document_of
 from safestart.missed_burn.plan import Errors, Question
 from safestart.missed_burn.prove import Proof, Verdict, prove
+from safestart.missed_burn.question_document import question_document
 from safestart.proofs.abort import check as checker
 from safestart.proofs.abort import sets
 from safestart.proofs.checker import check

@@ -102,7 +102,7 @@ def test_bad_plans_are_named() -> None:
     with pytest.raises(InvalidInput, match="not zero"):
         Plan(N, good.start, (Burn(0.0, (0.0, 0.0, 0.0)),))
     with pytest.raises(InvalidInput, match="stuck"):
-        Failures(stuck=10.0)
+        Question(good, 50.0, ORBIT, STUDY, Failures(stuck=10.0))
     with pytest.raises(InvalidInput, match="late_s"):
         Question(good, 50.0, ORBIT, STUDY, Failures(late=5000.0))
     with pytest.raises(InvalidInput, match="keep_out_m"):

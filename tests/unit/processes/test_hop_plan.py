@@ -1,5 +1,6 @@
 """The process hop-plan: the plan of hopping, verdicts with their evidence, refusals."""
 
+import json
 import subprocess
 import sys
 
@@ -9,6 +10,9 @@ import pytest
 from safestart.errors import InvalidInput
 from safestart.processes.execute import execute
 from safestart.processes.registry import process
+from safestart.proofs.checker import check
+from safestart.proofs.statement import digest_of
+from safestart.proofs.strict import ProofRejected
 
 
 def planned(**inputs):
@@ -90,3 +94,27 @@ def test_the_cost_counts_hops_and_orbits() -> None:
     spec = process("hop-plan")
     costs = [spec.cost(spec.parse(given)) for given in ({}, {"hops": 20}, {"hops": 20, "abort_orbits": 20})]
     assert costs[0] < costs[1] < costs[2]
+
+
+@pytest.mark.parametrize("angle", [20.0, 130.0, 180.0])
+def test_what_is_proved_has_a_document_that_the_checker_accepts(angle: float) -> None:
+    run = execute("hop-plan", {"angle_deg": angle, "hold_m": 140, "document": True})
+    said = run.document["outputs"]
+    assert said["verdict"] == "PROVED"
+    document = said["document"]
+    assert json.loads(next(file for file in run.artifacts if file.name == "proof.json").data) == document
+    verified = check(document)
+    assert verified.margin_m <= min(proof["least_distance_m"] for proof in said["proofs"])
+    assert verified.margin_m >= 50.0
+    # A promise a centimetre better than the worst bound is refused.
+    document["least_distance_m"] += 0.01
+    document["digest"] = digest_of({k: v for k, v in document.items() if k != "digest"})
+    with pytest.raises(ProofRejected, match="short by"):
+        check(document)
+
+
+def test_there_is_no_document_unless_it_is_asked_for_and_proved() -> None:
+    assert planned(angle_deg=130)["document"] is None
+    violated = execute("hop-plan", {"angle_deg": 0, "document": True})
+    assert violated.document["outputs"]["document"] is None
+    assert not violated.artifacts

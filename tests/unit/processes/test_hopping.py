@@ -48,7 +48,27 @@ def test_plan_study_and_proof(studied) -> None:
         "plan.png",
         "flights.png",
         "approaches.parquet",
+        "proof.json",
     }
+    document = json.loads(next(file for file in studied.artifacts if file.name == "proof.json").data)
+    assert check(document).margin_m >= 60.0
+
+
+def test_the_proof_may_speak_about_the_true_earth() -> None:
+    asked = {"runs": 1, "hops": 2, "angle_deg": 90, "inclination_deg": 57, "abort_orbits": 1}
+    said = {}
+    for model in ("linear", "nonlinear", "earth"):
+        run = execute("hopping", asked | {"proof_model": model})
+        said[model] = run.document["outputs"]["proof"]
+        assert said[model]["model"] == model
+    assert {one["verdict"] for one in said.values()} == {"PROVED"}
+    # The bound on the nonlinear terms costs some of the level.
+    assert said["nonlinear"]["lambda"] < said["linear"]["lambda"]
+    assert said["earth"]["lambda"] == pytest.approx(said["linear"]["lambda"], rel=0.05)
+    assert said["earth"]["lambda"] != said["linear"]["lambda"]
+    document = json.loads(next(file for file in run.artifacts if file.name == "proof.json").data)
+    assert document["question"]["model"] == "earth"
+    assert check(document).verdict == "PROVED"
 
 
 def test_shards_add_up(studied) -> None:

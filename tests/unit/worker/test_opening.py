@@ -1,15 +1,10 @@
-"""The embedded cluster has Dask's defaults and ours; a worker whose warm-up failed takes no jobs."""
+"""The embedded cluster has Dask's defaults and ours."""
 
-import asyncio
 import os
-from collections.abc import Callable
-from typing import Any, cast
 
 import dask
 import pytest
 
-from safestart_worker import loop
-from safestart_worker.cluster.cluster import Cluster
 from safestart_worker.cluster.opening import _defaults, _forget_variables
 
 USERS = {
@@ -44,22 +39,3 @@ def test_task_processes_do_not_see_dasks_variables(monkeypatch: pytest.MonkeyPat
     monkeypatch.setenv("DASK_CONFIG", "/nonexistent")
     _forget_variables()
     assert not [name for name in os.environ if name.startswith("DASK_")]
-
-
-class Broken:
-    """A cluster whose task processes cannot compile."""
-
-    embedded = True
-
-    async def warm_up(self, say: Callable[[str], None]) -> None:
-        say("flights")
-        raise RuntimeError("cannot cache function 'march'")
-
-
-def test_a_failed_warm_up_is_not_ready(capsys: pytest.CaptureFixture[str], caplog: Any) -> None:
-    async def warmed() -> bool:
-        return await loop._warm(cast(Cluster, Broken()), asyncio.Event())
-
-    assert asyncio.run(warmed()) is False
-    assert capsys.readouterr().out == "warming up kernels ... flights, failed\n"
-    assert "takes no jobs and ends" in caplog.text

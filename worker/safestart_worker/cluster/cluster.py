@@ -12,7 +12,7 @@ from typing import Any, TypeVar, cast
 import psutil
 from distributed import Client, Future, LocalCluster, Nanny
 
-from safestart.runtime.warmup import PARTS, warm
+from safestart.runtime.warmup import warm
 from safestart_worker.cluster.task import load, request_stop
 
 Answer = TypeVar("Answer")
@@ -24,6 +24,8 @@ RESTART_TIMEOUT_S = 30.0
 LEAVE_TIMEOUT_S = 4.0
 # Grace time before a local process is killed.
 KILL_TIMEOUT_S = 0.5
+# Dask's priority of the warm-up; jobs have 0, shards -1.
+_LAST = -10
 # States of a task that still has to run; in every other state the scheduler is done with it.
 _TO_RUN = frozenset({"waiting", "no-worker", "queued", "processing"})
 
@@ -141,17 +143,15 @@ class Cluster:
             with suppress(TimeoutError, OSError):
                 await asyncio.wait_for(self.stop(job, futures, outcome), LEAVE_TIMEOUT_S)
 
-    async def warm_up(self, say: Callable[[str], None]) -> None:
-        """Load the modules in every process, compile each part in one of them, report it, then warm all processes."""
-        addresses = list(await self._client.nthreads())
-        await self._all([self._client.submit(load, workers=[a], pure=False) for a in addresses])
+    async def compile(self, part: str) -> None:
+        """Compile one part of :data:`safestart.runtime.warmup.PARTS` in one of the processes; jobs go first."""
+        await self._all([self._client.submit(warm, part, pure=False, priority=_LAST)])
 
-        async def compiled(part: str) -> None:
-            await self._all([self._client.submit(warm, part, pure=False)])
-            say(part)
-
-        await asyncio.gather(*map(compiled, PARTS))
-        await self._all([self._client.submit(warm, workers=[a], pure=False) for a in addresses])
+    async def warm_all(self) -> None:
+        """Bring all modules and kernels into every process, one after the other: the others stay free for jobs."""
+        for address in list(await self._client.nthreads()):
+            for work in (load, warm):
+                await self._all([self._client.submit(work, workers=[address], pure=False, priority=_LAST)])
 
     async def _all(self, tasks: Sequence[Future[Any]]) -> None:
         for task in tasks:  # the client's gather would log stack traces when interrupted

@@ -8,23 +8,12 @@ import typer
 
 from safestart.cli.console import Json, Justify, number, out, print_json, reporting, table_of
 from safestart.processes.execute import execute
+from safestart.processes.tracking_mpc.targets import TARGETS
 
 PAPER = "Envisat, Table I, T = 1 s, 0.075 m/s, N_c = 3, N = 30; LVLH taken as inertial"
 PUBLISHED = {"theta_max_m": 3.597, "y_max_m": 2.008, "n_c_with_theta_zero": 35}
 WEIGHTS = ((1.0, 1.0), (1.0, 100.0), (100.0, 100.0))
 LONGEST = 60
-TARGETS: dict[str, dict[str, Any]] = {
-    "Envisat": {},
-    "Envisat, 5 deg/s near z": {"body_rate_deg_s": [0.0, 0.06, 5.0]},
-    "rocket body, 6 deg/s": {
-        "inertia_kg_m2": [[70_000, 0, 0], [0, 4_500, 0], [0, 0, 71_500]],
-        "body_rate_deg_s": [6.0, 0.4, 0.3],
-    },
-    "nearly axisymmetric": {
-        "inertia_kg_m2": [[900, 0, 0], [0, 905, 0], [0, 0, 1_200]],
-        "body_rate_deg_s": [1.0, 0.5, 4.0],
-    },
-}
 NOTES = (
     "The paper prints theta_max, y_max and the horizon; times and impulses are ours for its case, by weights.",
     "With theta = 0 the paper needs N_c = 35 from Table I's start. The start itself needs fewer; 35 is what the region "

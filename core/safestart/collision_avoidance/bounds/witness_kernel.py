@@ -113,6 +113,20 @@ def _admissible(controls: Floats, parts: Whole, limits: Floats) -> bool:
 
 
 @compiled(error_model="numpy")
+def _hold(guess: Floats, controls: Floats) -> None:
+    for j in range(controls.shape[0]):
+        for i in range(controls.shape[1]):
+            controls[j, i] = guess[i]
+
+
+@compiled(error_model="numpy")
+def _keep(controls: Floats, best: Floats) -> None:
+    for j in range(controls.shape[0]):
+        for i in range(controls.shape[1]):
+            best[j, i] = controls[j, i]
+
+
+@compiled(error_model="numpy")
 def farthest(
     states: Floats,
     step: Floats,
@@ -145,19 +159,19 @@ def farthest(
     for p in range(len(states)):
         found = -np.inf
         for g in range(len(guesses)):
-            controls[:] = guesses[g]
+            _hold(guesses[g], controls)
             scores[g] = _fly(states[p], step, push, controls, sag, path, near)
             if scores[g] > found and _admissible(controls, parts, limits):
                 found = scores[g]
                 if len(best) > 0:
-                    best[p] = controls
+                    _keep(controls, best[p])
             if found >= goal[p]:
                 break
         if found < goal[p]:
             for _ in range(min(3, len(guesses))):
                 g = int(np.argmax(scores))
                 scores[g] = -np.inf
-                controls[:] = guesses[g]
+                _hold(guesses[g], controls)
                 _fly(states[p], step, push, controls, sag, path, near)
                 for k in range(effort):
                     _turn(
@@ -171,7 +185,7 @@ def farthest(
                     if value > found and _admissible(controls, parts, limits):
                         found = value
                         if len(best) > 0:
-                            best[p] = controls
+                            _keep(controls, best[p])
                     if found >= goal[p]:
                         break
                 if found >= goal[p]:

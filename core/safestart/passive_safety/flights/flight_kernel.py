@@ -91,7 +91,8 @@ def fly(
             if mode < 2 and t >= aborts[n]:
                 mode, since = 2, t
             while w < wanted and times[n, w] <= t:
-                states[n, w] = z
+                for i in range(4):
+                    states[n, w, i] = z[i]
                 w += 1
             if w == wanted:
                 break
@@ -115,5 +116,6 @@ def fly(
                 entries[n], mode, since = t, 1, t
             else:
                 t = stop if reach else t + h
-            z[:] = new
+            for i in range(4):
+                z[i] = new[i]
     return states, entries

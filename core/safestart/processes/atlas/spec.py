@@ -49,6 +49,7 @@ SPEC = ProcessSpec(
     ),
     inputs=AtlasInputs,
     outputs=AtlasOutputs,
+    kernels=("exact answers",),
     run="safestart.processes.atlas.run:run",
     tables=(Table("inner_polygon_m", ("inner_polygon_m",)), Table("half_planes", ("half_planes",))),
     views=(

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any, Self
+
 from pydantic import Field, model_validator
 
 from safestart.model.scenario import Rest
 from safestart.processes.base import ProcessSpec, WireModel
 from safestart.processes.start_in_space.parts import Vector
-from safestart.processes.start_in_space.plane_input import PlaneInput
+from safestart.processes.start_in_space.plane_input import PlaneInput, coordinate_planes
 from safestart.processes.start_in_space.space_scenario import SpaceScenario
 from safestart.processes.views import Column, Rows
 from safestart.processes.wire import Horizon, Pair, Triple
@@ -15,7 +17,7 @@ from safestart.processes.wire import Horizon, Pair, Triple
 MOST_PLANES = 6
 
 
-class AtlasInSpaceInputs(SpaceScenario):
+class PlanesAsked(SpaceScenario):
     """One scenario, the planes, and how narrow the strips between the polygons must be."""
 
     planes: list[PlaneInput] = Field(
@@ -36,14 +38,9 @@ class AtlasInSpaceInputs(SpaceScenario):
         0.01, ge=1e-4, le=1, description="Largest share of an outer polygon's area that stays undecided."
     )
     most_questions: int = Field(400, ge=10, le=5000, description="Exact questions that a plane may take.")
-    proofs: bool = Field(
-        False,
-        description="Artifact proofs.json: proof documents of every corner (GO) and of a start beyond every edge of "
-        "the outer polygon (NO_GO), by plane.",
-    )
 
     @model_validator(mode="after")
-    def _planes_apart(self) -> AtlasInSpaceInputs:
+    def _planes_apart(self) -> Self:
         names = [plane.name for plane in self.planes]
         if len(set(names)) != len(names):
             raise ValueError("planes: each name once")
@@ -51,6 +48,20 @@ class AtlasInSpaceInputs(SpaceScenario):
         if self.planes and given:
             raise ValueError(f"{sorted(given)[0]}: only where no planes are given")
         return self
+
+    def asked(self) -> list[PlaneInput]:
+        """The planes given, or the three coordinate planes."""
+        return self.planes or coordinate_planes(self.centre_m, self.size_m, self.rest)
+
+
+class AtlasInSpaceInputs(PlanesAsked):
+    """What the atlas is of, and whether its proofs are wanted."""
+
+    proofs: bool = Field(
+        False,
+        description="Artifact proofs.json: proof documents of every corner (GO) and of a start beyond every edge of "
+        "the outer polygon (NO_GO), by plane.",
+    )
 
 
 class PlanePolygons(WireModel):
@@ -81,6 +92,34 @@ class AtlasInSpaceOutputs(WireModel):
     planes: list[PlanePolygons]
 
 
+EXAMPLE: dict[str, Any] = {
+    "attitude": {
+        "kind": "torque_free",
+        "inertia_kg_m2": [[17023, 0, 0], [0, 124826, 0], [0, 0, 129112]],
+        "body_rate_deg_s": [0.3, 0.5, -2.0],
+    },
+    "a_max_m_s2": 0.1,
+    "size_m": 200,
+    "gap": 0.05,
+}
+PLANE_VIEWS = (
+    Rows(
+        "Planes",
+        "planes",
+        (
+            Column("plane", "name"),
+            Column("coordinates", "axes"),
+            Column("proved GO", "inner_area"),
+            Column("outside NO_GO", "outer_area"),
+            Column("share undecided", "relative_gap"),
+            Column("deepest start", "deepest_start"),
+            Column("its margin [m]", "deepest_margin_m"),
+            Column("questions", "questions"),
+            Column("", "message"),
+        ),
+    ),
+)
+
 SPEC = ProcessSpec(
     id="atlas-in-space",
     title="Proof atlas of the starts that can stay, in planes in space",
@@ -91,33 +130,9 @@ SPEC = ProcessSpec(
     ),
     inputs=AtlasInSpaceInputs,
     outputs=AtlasInSpaceOutputs,
+    kernels=("exact answers",),
     run="safestart.processes.atlas_in_space.run:run",
     keywords=("exact", "proof", "safe-start region", "torque-free"),
-    views=(
-        Rows(
-            "Planes",
-            "planes",
-            (
-                Column("plane", "name"),
-                Column("coordinates", "axes"),
-                Column("proved GO", "inner_area"),
-                Column("outside NO_GO", "outer_area"),
-                Column("share undecided", "relative_gap"),
-                Column("deepest start", "deepest_start"),
-                Column("its margin [m]", "deepest_margin_m"),
-                Column("questions", "questions"),
-                Column("", "message"),
-            ),
-        ),
-    ),
-    example={
-        "attitude": {
-            "kind": "torque_free",
-            "inertia_kg_m2": [[17023, 0, 0], [0, 124826, 0], [0, 0, 129112]],
-            "body_rate_deg_s": [0.3, 0.5, -2.0],
-        },
-        "a_max_m_s2": 0.1,
-        "size_m": 200,
-        "gap": 0.05,
-    },
+    views=PLANE_VIEWS,
+    example=EXAMPLE,
 )

@@ -140,6 +140,7 @@ SPEC = ProcessSpec(
     ),
     inputs=BenchmarkInputs,
     outputs=BenchmarkOutputs,
+    kernels=("flights", "level sets", "reachable sets"),
     run="safestart.processes.benchmark.run:run",
     instant="safestart.processes.certificate.run:answer",
     keywords=("reachability", "Hamilton-Jacobi", "Monte Carlo", "IoU"),

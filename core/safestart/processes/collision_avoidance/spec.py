@@ -213,6 +213,7 @@ SPEC = ProcessSpec(
     ),
     inputs=CollisionAvoidanceInputs,
     outputs=CollisionAvoidanceOutputs,
+    kernels=("level sets in double precision", "collision avoidance"),
     run="safestart.processes.collision_avoidance.run:run",
     views=(
         Findings(

@@ -62,6 +62,7 @@ SPEC = ProcessSpec(
     ),
     inputs=FlightInputs,
     outputs=FlightOutputs,
+    kernels=("exact answers",),
     run="safestart.processes.flight.run:run",
     light=True,
     cost=_cost,

@@ -61,7 +61,8 @@ def told(question: Question | SpaceQuestion, answer: Answer) -> str:
         return (
             f"a thrust history keeps {spare} to every face for {span:g} s"
             if answer.verdict is Verdict.GO
-            else f"no thrust history stays for {span:g} s: each is at some time at least {short} outside a face"
+            else f"no thrust {held(question)} stays for {span:g} s: each history is at some time at least {short} "
+            "outside a face"
         )
     scales = f" (1 m/s of the speed limit counts as {SPEED_SCALE:g} m)" if fast else ""
     if answer.verdict is Verdict.GO and answer.thrust is not None:
@@ -77,4 +78,10 @@ def told(question: Question | SpaceQuestion, answer: Answer) -> str:
             f"{answer.arrival.margin:.2f} m from every face"
         )
     asked = "is at rest in the hold ball within" if question.goal is not None else "stays for"
-    return f"no thrust history{fast} {asked} {span:g} s: each misses a limit by at least {short}{scales}"
+    told = f"no thrust {held(question)}{fast} {asked} {span:g} s"
+    return f"{told}: each history misses a limit by at least {short}{scales}"
+
+
+def held(question: Question | SpaceQuestion) -> str:
+    """What the exact question varies: a NO_GO says nothing about thrust that changes within a step."""
+    return f"held over steps of {question.dt:g} s"

@@ -104,6 +104,7 @@ SPEC = ProcessSpec(
     ),
     inputs=GoNoGoInputs,
     outputs=GoNoGoOutputs,
+    kernels=("exact answers",),
     run="safestart.processes.go_no_go.run:run",
     light=True,
     cost=lambda inputs: cost(inputs, len(inputs.states)),

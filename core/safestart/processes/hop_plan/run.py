@@ -9,17 +9,21 @@ import numpy as np
 
 from safestart.hopping.approach import Approach, approach, mean_motion_of
 from safestart.hopping_safety.fan import drifts_of, worst_drift
-from safestart.hopping_safety.quick_proof import error_level, hop_bounds, position_rows
+from safestart.hopping_safety.quick_document import document_of
+from safestart.hopping_safety.quick_proof import Bounds, error_level, hop_bounds, position_rows, start_bounds
 from safestart.missed_burn.plan import Errors
 from safestart.model.scenario import Floats
-from safestart.processes.base import ProcessOutput
+from safestart.processes.base import Artifact, ProcessOutput
 from safestart.processes.hop_plan.spec import HopPlanInputs
 from safestart.processes.hopping.study import plan_document
+from safestart.records.comparable import canonical
 from safestart.runtime.progress import Context
 
 NOTES = [
     "Plan, proofs and drifts are in CWH motion about a circular orbit; J2 and the nonlinear terms are not in them. The "
     "process hopping flies the approach about the true Earth, passive-abort proves it there.",
+    "Where the verdict is PROVED, proof.json holds the proof of all hops and of the drift from the start; safestart "
+    "verify checks it in ball arithmetic.",
     "The proofs' box has one standard deviation in every direction, at every burn; lambda is its greatest multiple.",
 ]
 _PER_HOP = 60
@@ -35,33 +39,44 @@ def run(inputs: HopPlanInputs, context: Context) -> ProcessOutput:
     at, fast = sigma.position_m, sigma.velocity_m_s
     errors = Errors((at, at, at), (fast, fast, fast), sigma.thrust_share, math.radians(sigma.thrust_deg))
     context.step(0, 3, "proof")
-    proofs, drifts = _hops(inputs, plan, horizon, errors)
+    begun = start_bounds(plan, inputs.keep_out_m, horizon, errors)
+    found = hop_bounds(plan, inputs.keep_out_m, horizon, errors)
+    proofs, drifts = _hops(inputs, plan, horizon, errors, found)
     context.step(1, 3, "error level")
     exact = not any((at, fast, sigma.thrust_share, sigma.thrust_deg))
     level = None if exact else error_level(plan, inputs.keep_out_m, horizon, errors)
-    words = {proof["verdict"] for proof in proofs}
+    words = {proof["verdict"] for proof in proofs} | (
+        {"UNKNOWN"} if begun.least < inputs.keep_out_m else set()
+    )
+    verdict = next(word for word in ("VIOLATED", "UNKNOWN", "PROVED") if word in words)
+    document, artifacts = None, []
+    if verdict == "PROVED":
+        document = document_of(plan, inputs.keep_out_m, horizon, errors, begun, found)
+        artifacts.append(Artifact("proof.json", "application/json", canonical(document).encode()))
     return ProcessOutput(
         {
-            "verdict": next(word for word in ("VIOLATED", "UNKNOWN", "PROVED") if word in words),
+            "verdict": verdict,
             "lambda": level,
             "plan": plan_document(plan),
             "proofs": proofs,
             "burns": _burns(plan),
             "path": _path(plan).round(3).tolist(),
             "drifts": drifts,
+            "document": document if inputs.document else None,
             "notes": NOTES,
-        }
+        },
+        tuple(artifacts),
     )
 
 
 def _hops(
-    inputs: HopPlanInputs, plan: Approach, horizon: float, errors: Errors
+    inputs: HopPlanInputs, plan: Approach, horizon: float, errors: Errors, found: list[Bounds]
 ) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
     """What is proved of each hop, and drifts after it."""
     samples = min(math.ceil(_PER_ORBIT * inputs.abort_orbits) + 1, _MOST_SAMPLES)
     rows = position_rows(plan.mean_motion, np.linspace(0.0, horizon, samples))[:, :2]
     proofs, drifts = [], []
-    for k, bounds in enumerate(hop_bounds(plan, inputs.keep_out_m, horizon, errors)):
+    for k, bounds in enumerate(found):
         until = max(horizon, plan.hops[k].time)
         worst, near = worst_drift(plan, k, errors, until, bounds.when, bounds.towards)
         kept = bounds.least >= inputs.keep_out_m

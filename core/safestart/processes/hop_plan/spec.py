@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, Literal
 
 from pydantic import Field, model_validator
 
@@ -34,6 +34,7 @@ class HopPlanInputs(WireModel):
     semi_major_axis_m: SemiMajorAxis = 8.1e6
     sigma: SigmaInput = Field(default_factory=lambda: SigmaInput.model_validate({}))
     abort_orbits: Orbits = 2.0
+    document: bool = Field(False, description="Give the proof document, which safestart verify checks.")
 
     @model_validator(mode="after")
     def _leads_to_the_hold_point(self) -> HopPlanInputs:
@@ -75,7 +76,9 @@ class HopPlanDriftOutput(WireModel):
 class HopPlanOutputs(WireModel):
     """Verdict and level, hops, burns, and paths to draw."""
 
-    verdict: Verdict = Field(description="The worst of the hops.")
+    verdict: Verdict = Field(
+        description="The worst of the hops; UNKNOWN where the drift from the start is not proved to keep out, too."
+    )
     lambda_: float | None = Field(
         alias="lambda",
         description="Greatest multiple of the standard deviations, as a box, for which all hops are proved to keep "
@@ -86,6 +89,10 @@ class HopPlanOutputs(WireModel):
     burns: list[HopPlanBurnOutput]
     path: list[Pair] = Field(description="Of all hops, LVLH: radial and along-track, m.")
     drifts: list[HopPlanDriftOutput]
+    document: dict[str, Any] | None = Field(
+        description="Proof of the hops in CWH motion (safestart-abort-proof/1); null where it is not asked for or the "
+        "verdict is not PROVED."
+    )
     notes: list[str]
 
 

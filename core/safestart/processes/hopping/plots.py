@@ -61,7 +61,8 @@ def plan_picture(inputs: HoppingInputs, plan: Approach, proof: Proof) -> Figure:
     )
     fuel.legend(fontsize=8)
     drawing.suptitle(
-        f"Hopping approach, planned; drifts of {inputs.abort_orbits:g} orbits with errors of one sigma (linear motion)",
+        f"Hopping approach, planned; drifts of {inputs.abort_orbits:g} orbits with errors of one sigma "
+        f"({inputs.proof_model} motion)",
         fontsize=11,
     )
     return drawing

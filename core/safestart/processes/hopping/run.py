@@ -13,12 +13,15 @@ from safestart.control.hopping import Hopping
 from safestart.hopping.approach import Approach
 from safestart.hopping.barrier import Noise
 from safestart.hopping_flights.fly import Flown, World, fly
+from safestart.missed_burn.document import document_of
+from safestart.missed_burn.earth import Earth
 from safestart.missed_burn.plan import Errors, Plan, Question
-from safestart.missed_burn.prove import Proof, greatest_scale, prove
+from safestart.missed_burn.prove import Proof, Verdict, greatest_scale, prove
 from safestart.processes.base import Artifact, ProcessOutput
 from safestart.processes.hopping.plots import flights_picture, plan_picture
 from safestart.processes.hopping.spec import HoppingInputs
 from safestart.processes.hopping.study import plan_of, study_of, summary
+from safestart.records.comparable import canonical
 from safestart.runtime.progress import Context
 
 _SHOWN = 50
@@ -43,6 +46,7 @@ def world_of(inputs: HoppingInputs) -> World:
         kappa=inputs.kappa,
         noise=noise,
         abort_orbits=inputs.abort_orbits,
+        drag=inputs.drag_m_s2,
     )
 
 
@@ -86,7 +90,7 @@ def merge(inputs: HoppingInputs, parts: Sequence[Part], context: Context) -> Pro
     proof, level = proved(inputs, plan)
     document["proof"] = {
         "verdict": proof.verdict.value,
-        "model": "linear",
+        "model": inputs.proof_model,
         "lambda": level,
         "least_distance_m": [finding.least for finding in proof.findings if finding.case.kind == "made"],
     }
@@ -99,6 +103,8 @@ def merge(inputs: HoppingInputs, parts: Sequence[Part], context: Context) -> Pro
         flights_picture(inputs, world, shown, document["study"]["breach"]),
         Artifact("approaches.parquet", MEDIA_TYPE, study_of(inputs).recorded(parts)),
     ]
+    if proof.verdict is Verdict.PROVED:
+        artifacts.append(Artifact("proof.json", "application/json", canonical(document_of(proof)).encode()))
     return ProcessOutput(document, tuple(artifacts))
 
 
@@ -111,6 +117,13 @@ def proved(inputs: HoppingInputs, plan: Approach) -> tuple[Proof, float | None]:
         plan.mean_motion, plan.states()[0].tolist(), plan.times[:-1].tolist(), plan.impulses[:-1]
     )
     horizon = inputs.abort_orbits * math.tau / plan.mean_motion
-    question = Question(flight, inputs.keep_out_m, horizon, errors)
+    radius = inputs.semi_major_axis_m if inputs.proof_model == "nonlinear" else None
+    earth = None
+    if inputs.proof_model == "earth":
+        # The burns are planned anew from estimates, so the box lies around the planned states.
+        tilt = math.radians(inputs.inclination_deg)
+        before = plan.states()[:-1]
+        earth = Earth.of(flight, inputs.semi_major_axis_m, inputs.eccentricity, tilt, before=before)
+    question = Question(flight, inputs.keep_out_m, horizon, errors, radius=radius, earth=earth)
     exact = not any((at, fast, sigma.thrust_share, sigma.thrust_deg))
     return prove(question), None if exact else greatest_scale(question)

@@ -43,7 +43,8 @@ class HoppingInputs(WireModel):
         0.0,
         ge=0,
         lt=1,
-        description="Of the target's orbit, flown from its perigee; plan and proof are for a circle.",
+        description="Of the target's orbit, flown from its perigee; the plan is for a circle, and so is the proof "
+        "unless proof_model is earth.",
     )
     angle_deg: float = Field(
         0.0, ge=0, le=360, description="Line from the target: 0 V-bar ahead, 90 R-bar below, deg."
@@ -64,6 +65,17 @@ class HoppingInputs(WireModel):
     )
     kappa: float = Field(3.0, ge=0, le=10, description="Standard deviations of the drift that are kept free.")
     sigma: SigmaInput = Field(default_factory=lambda: SigmaInput.model_validate({}))
+    drag_m_s2: float = Field(
+        0.0,
+        ge=-1e-3,
+        le=1e-3,
+        description="The chaser's deceleration by drag less the target's, in the flights only, m/s^2.",
+    )
+    proof_model: Literal["linear", "nonlinear", "earth"] = Field(
+        "linear",
+        description="Motion that the proof speaks about: linear (CWH); nonlinear (two point masses, circular orbit); "
+        "earth: both bodies about the Earth with J2, on the given orbit from its perigee. As in passive-abort.",
+    )
     runs: int = Field(200, ge=1, le=100_000, description="Approaches flown.")
     seed: Seed = 0
     abort_orbits: Orbits = 2.0
@@ -122,10 +134,10 @@ class StudyOutput(WireModel):
 
 
 class ProofOutput(WireModel):
-    """The missed-burn proof of the plan's hops in CWH motion, with a box of one standard deviation at each burn."""
+    """The missed-burn proof of the plan's hops, with a box of one standard deviation at each burn."""
 
     verdict: Literal["PROVED", "VIOLATED", "UNKNOWN"]
-    model: Literal["linear"]
+    model: Literal["linear", "nonlinear", "earth"] = Field(description="proof_model.")
     lambda_: float | None = Field(
         alias="lambda",
         description="Greatest multiple of the standard deviations, as a box, for which all hops are proved to keep "
@@ -163,7 +175,8 @@ SPEC = ProcessSpec(
                 Column("Abort breach probability", "study.breach.probability"),
                 Column("from (95 %)", "study.breach.low"),
                 Column("to", "study.breach.high"),
-                Column("Proof of the hops (CWH)", "proof.verdict"),
+                Column("Proof of the hops", "proof.verdict"),
+                Column("Its motion", "proof.model"),
                 Column("Error level lambda", "proof.lambda"),
                 Column("Length [orbits]", "plan.orbits"),
                 Column("Fuel planned, 1-norm [m/s]", "plan.fuel_1norm_m_s"),

@@ -15,7 +15,8 @@ from safestart.hopping.approach import Approach, approach, mean_motion_of
 from safestart.processes.hopping.spec import PER_SHARD, HoppingInputs
 
 NOTES = [
-    "Plan and proof are in CWH motion about a circular orbit; the study flies about the true Earth with J2.",
+    "The plan is in CWH motion about a circular orbit, and so is the proof unless proof_model says otherwise; the "
+    "study flies about the true Earth with J2.",
     "A breach: thrusters that die right after a hop's impulse, and a drift of abort_orbits that enters the sphere. The "
     "drift from the hold point, after the stop, is counted apart.",
     "The proof's box has one standard deviation in every direction, at every burn; lambda is its greatest multiple.",

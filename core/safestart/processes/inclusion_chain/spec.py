@@ -164,6 +164,7 @@ SPEC = ProcessSpec(
     ),
     inputs=ChainInputs,
     outputs=ChainOutputs,
+    kernels=("level sets", "reachable sets", "exact answers"),
     run="safestart.processes.inclusion_chain.run:run",
     views=(
         Rows(

@@ -16,6 +16,7 @@ from safestart.processes.passive_abort.wire import (
     KeepOut,
     Orbits,
     SemiMajorAxis,
+    ZoneInput,
 )
 from safestart.processes.views import Column, Facts, Findings, Rows
 
@@ -42,7 +43,15 @@ class PassiveAbortInputs(WireModel):
     )
     start: AbortStartInput = Field(description="State right before the first burn, LVLH.")
     burns: list[BurnInput] = Field(min_length=1, max_length=200, description="The plan, in order.")
-    keep_out_m: KeepOut = 50.0
+    keep_out_m: KeepOut = Field(
+        50.0, gt=0, le=1e5, description="Distance to keep from the target, or from each of the zones, m."
+    )
+    zones: list[ZoneInput] | None = Field(
+        None,
+        min_length=1,
+        max_length=8,
+        description="Bodies to keep keep_out_m away from, instead of the target's centre.",
+    )
     abort_orbits: Orbits = 2.0
     errors: ErrorsInput = Field(default_factory=lambda: ErrorsInput.model_validate({}))
     failures: FailuresInput = Field(default_factory=lambda: FailuresInput.model_validate({}))
@@ -72,9 +81,18 @@ class PassiveAbortInputs(WireModel):
         if self.model != "linear" and not self.errors.at_each_burn:
             raise ValueError(f"errors.at_each_burn: true where model is {self.model}")
         self._orbit()
-        if self.failures.stuck_s > 0.0 and self.failures.acceleration_m_s2 == 0.0:
-            raise ValueError("failures.acceleration_m_s2: more than 0 where a burn may be stuck on")
+        self._lasting()
         return self
+
+    def _lasting(self) -> None:
+        impulses = any(burn.duration_s == 0.0 for burn in self.burns)
+        if impulses and self.failures.stuck_s > 0.0 and self.failures.acceleration_m_s2 == 0.0:
+            raise ValueError("failures.acceleration_m_s2: more than 0 where an impulse may be stuck on")
+        for before, after in zip(self.burns, self.burns[1:], strict=False):
+            if before.time_s + before.duration_s > after.time_s:
+                raise ValueError(f"burns: each ends before the next, the one at {before.time_s:g} s does not")
+        if self.model == "earth" and (self.zones or any(burn.duration_s for burn in self.burns)):
+            raise ValueError("model: linear or nonlinear where burns have a duration or zones are given")
 
     def _orbit(self) -> None:
         angles = self.inclination_deg, self.argument_of_perigee_deg, self.true_anomaly_deg
@@ -92,7 +110,7 @@ class CaseOutput(WireModel):
     """One burn with one failure, over all its pieces of time."""
 
     burn: int = Field(description="Number of the burn, from 0; -1: none is made.")
-    failure: Literal["missed", "partial", "misdirected", "late", "stuck"]
+    failure: Literal["missed", "cut short", "partial", "misdirected", "late", "stuck"]
     least_distance_m: float = Field(description="Proved: at no time nearer than this; 0: nothing is proved.")
     nearest_m: float | None = Field(description="A state within the errors comes this near; null: no search.")
     when_s: float | None = Field(description="When it does, s after the burn.")
@@ -132,11 +150,11 @@ SPEC = ProcessSpec(
     id="passive-abort",
     title="Missed burns: does a plan stay away from the target, proved",
     description=(
-        "Any plan of impulses near a target, on a circular orbit or about the Earth with J2 and any eccentricity: "
-        "any one burn missed, late, partial, stuck on or "
-        "misdirected, with errors of navigation and thrust. The least distance to the target is proved at all times of "
-        "the drift that follows, in the linear (CWH), the nonlinear or the true motion, with a document that safestart "
-        "verify checks; or a flight to replay that comes too near; or UNKNOWN with the gap."
+        "Any plan of impulses or burns near a target, on a circular orbit or about the Earth with J2 and any "
+        "eccentricity: any one burn missed, cut short, late, partial, stuck on or misdirected, with errors of "
+        "navigation and thrust. The least distance to the target, or to spheres, ellipsoids and boxes, is proved at "
+        "all times of the drift that follows, in the linear (CWH), the nonlinear or the true motion, with a document "
+        "that safestart verify checks; or a flight to replay that comes too near; or UNKNOWN with the gap."
     ),
     inputs=PassiveAbortInputs,
     outputs=PassiveAbortOutputs,

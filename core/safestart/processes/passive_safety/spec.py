@@ -137,6 +137,7 @@ SPEC = ProcessSpec(
     ),
     inputs=PassiveSafetyInputs,
     outputs=PassiveSafetyOutputs,
+    kernels=("passive safety",),
     run="safestart.processes.passive_safety.run:run",
     views=(
         Findings(

@@ -98,6 +98,7 @@ SPEC = ProcessSpec(
     ),
     inputs=PlaneBenchmarkInputs,
     outputs=PlaneBenchmarkOutputs,
+    kernels=("exact answers",),
     run="safestart.processes.plane_benchmark.run:run",
     keywords=("reachability", "torque-free", "Monte Carlo", "IoU"),
     views=(

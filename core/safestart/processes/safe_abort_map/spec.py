@@ -96,6 +96,7 @@ SPEC = ProcessSpec(
     ),
     inputs=SafeAbortMapInputs,
     outputs=SafeAbortMapOutputs,
+    kernels=("passive safety",),
     sharding=Sharding.of("safestart.processes.safe_abort_map"),
     tables=(Table("starts", ("x_m", "y_m", "safe_abort_until_min", "all_proved_until_min")),),
     views=(

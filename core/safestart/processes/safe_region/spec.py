@@ -39,6 +39,7 @@ SPEC = ProcessSpec(
     ),
     inputs=SafeRegionInputs,
     outputs=SafeRegionOutputs,
+    kernels=("exact answers",),
     run="safestart.processes.safe_region.run:run",
     light=True,
     cost=lambda inputs: region_s(inputs.horizon_s),

@@ -1,4 +1,4 @@
-"""The flight of a GO as curves over time: the thrust history of its proof, flown."""
+"""Curves over time: the flight of a GO, which is the thrust history of its proof, flown; and how the target turns."""
 
 from __future__ import annotations
 
@@ -44,4 +44,14 @@ def curves(question: SpaceQuestion, state: Floats, history: Floats) -> dict[str,
         "thrust_m_s2": [*np.repeat(thrust, _PARTS, axis=0).tolist(), thrust[-1].tolist()],
         "distance_m": np.stack(distance, axis=1).tolist(),
         "delta_v_m_s": question.dt * math.fsum(np.linalg.norm(thrust, axis=1)),
+    }
+
+
+def turning(question: SpaceQuestion) -> dict[str, Any]:
+    """:class:`~safestart.processes.start_in_space.spec.Turning` at the ends of every interval."""
+    times: Floats = question.dt * np.arange(question.steps + 1, dtype=np.float64)
+    return {
+        "time_s": times.tolist(),
+        "attitude_wxyz": [quaternion_of(turn).tolist() for turn in question.attitude.rotation(times)],
+        "rate_deg_s": np.degrees(question.attitude.angular_velocity(times)).tolist(),
     }

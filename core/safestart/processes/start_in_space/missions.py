@@ -7,6 +7,7 @@ from typing import Any
 _ENVISAT = [[17023.3, 397.1, -2171.4], [397.1, 124825.7, 344.2], [-2171.4, 344.2, 129112.2]]
 """kg m^2; Envisat's orbit is nearly circular at about 770 km."""
 _ENVISAT_ORBIT = {"semi_major_axis_m": 7143500.0, "eccentricity": 0.00012, "true_anomaly_deg": 90.0}
+_PAPER_ORBIT = {"semi_major_axis_m": 7144800.0, "eccentricity": 0.0, "true_anomaly_deg": 0.0}
 _TRANSFER = {"semi_major_axis_m": 24396000.0, "eccentricity": 0.7283}
 _MOLNIYA = {"semi_major_axis_m": 26600000.0, "eccentricity": 0.74}
 
@@ -49,6 +50,33 @@ MISSIONS: dict[str, dict[str, Any]] = {
         "hold_m": [0, 5, 0],
         "ball_radius_m": 1.0,
         "within_s": 60,
+    },
+    # Rebollo et al. (paper 002), Table I: start, rate against LVLH, corridor. Impulses of 0.075 m/s every second there,
+    # 0.075 m/s^2 held here. Inertia and orbit are not in the paper.
+    "envisat-tracked": {
+        "starts": [{"position_m": [1.5, 2.5, 1.5], "velocity_m_s": [0, 0, 0], "frame": "lvlh"}],
+        "attitude": {
+            "kind": "torque_free",
+            "inertia_kg_m2": _ENVISAT,
+            "body_rate_deg_s": [0.0, 3.53, 3.53],
+            "reference": "lvlh",
+        },
+        "orbit": _PAPER_ORBIT,
+        "corridor": {"c_x": 1.0, "c_z": 1.0, "x0_m": 0.1, "z0_m": 0.1, "r_h_m": 0.0},
+        "thrust": {"kind": "box", "a_max_m_s2": [0.075, 0.075, 0.075], "frame": "lvlh"},
+    },
+    # A CZ-3B third stage turns once in 117.724 s (Zhao et al., Adv. Space Res. 65, 2020); here in a flat spin.
+    # Inertia of a thin cylinder of 2740 kg, 12.4 m long, 3 m wide, along y; on its way to a ring at 21 500 km.
+    "rocket-body": {
+        "starts": [{"position_m": [2, 25, 1], "velocity_m_s": [0, 0, 0], "frame": "body"}],
+        "attitude": {
+            "kind": "torque_free",
+            "inertia_kg_m2": [[38190.0, 0, 0], [0, 6165.0, 0], [0, 0, 38190.0]],
+            "body_rate_deg_s": [0.0, 0.0, 3.058],
+        },
+        "orbit": {"semi_major_axis_m": 17278000.0, "eccentricity": 0.6135, "true_anomaly_deg": 180.0},
+        "corridor": {"axis": [0, 1, 0], "c_x": 1.0, "c_z": 1.0, "x0_m": 1.5, "z0_m": 1.5, "r_h_m": 7.0},
+        "a_max_m_s2": 0.1,
     },
     "r-bar": {
         "starts": [{"position_m": [-150, 0, 0], "velocity_m_s": [0.3, 0, 0]}],

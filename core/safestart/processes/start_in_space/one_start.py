@@ -12,7 +12,14 @@ from safestart.processes.flat import Flat, Parameter
 from safestart.processes.go_no_go.question_fields import QuestionKind
 from safestart.processes.sharding import load
 from safestart.processes.start_in_space.parts import FiveFaces, SpaceStart
-from safestart.processes.start_in_space.spec import SPEC, Method, SpaceFlight, SpaceInputs, SpaceOutputs
+from safestart.processes.start_in_space.spec import (
+    SPEC,
+    Method,
+    SpaceFlight,
+    SpaceInputs,
+    SpaceOutputs,
+    Turning,
+)
 from safestart.processes.tracking_mpc.controller_input import TrackingAnswer
 from safestart.runtime.progress import Context
 
@@ -42,6 +49,7 @@ class SpaceAnswer(WireModel):
         None, description=SpaceOutputs.model_fields["restriction"].description
     )
     flight: SpaceFlight | None = Field(None, description="The flight of a GO (flights=true).")
+    turning: Turning | None = Field(None, description=SpaceOutputs.model_fields["turning"].description)
     tracking: TrackingAnswer | None = Field(
         None, description="Method tracking: the controller's flight, beside the exact answer."
     )

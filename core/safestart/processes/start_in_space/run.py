@@ -17,7 +17,7 @@ from safestart.exact.space.watch import space_watch_of
 from safestart.model.scenario import Floats
 from safestart.processes.base import ProcessOutput
 from safestart.processes.go_no_go import question as asked
-from safestart.processes.start_in_space.flights import curves
+from safestart.processes.start_in_space.flights import curves, turning
 from safestart.processes.start_in_space.question import half_of, question_of, states_of
 from safestart.processes.start_in_space.spec import MOST_PROOFS, SpaceInputs
 from safestart.processes.wire import finite
@@ -84,6 +84,7 @@ def run(inputs: SpaceInputs, context: Context) -> ProcessOutput:
             ]
             if inputs.flights
             else None,
+            "turning": turning(question) if inputs.flights else None,
             "tracking": [said for said, _ in tracking] or None,
             "proof": proof,
         }

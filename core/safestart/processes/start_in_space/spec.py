@@ -91,7 +91,10 @@ class SpaceInputs(SpaceScenario, _Starts):
     plume: PlumeInput | None = Field(
         None, description="No exhaust towards the target near it, for thrust of kind ball; absent: none."
     )
-    flights: bool = Field(False, description="Return the flight of every GO as curves; at most 100 starts.")
+    flights: bool = Field(
+        False,
+        description="Return the flight of every GO as curves, and how the target turns; at most 100 starts.",
+    )
     proofs: bool = Field(
         False, description="Return proof documents for `safestart verify`; at most 100 starts."
     )
@@ -115,6 +118,16 @@ class SpaceFlight(WireModel):
     thrust_m_s2: list[list[float]] = Field(description="Acceleration in LVLH, held over 2 s, m/s^2.")
     distance_m: list[list[float]] = Field(description="Distance to each face, m; negative: outside.")
     delta_v_m_s: float
+
+
+class Turning(WireModel):
+    """How the target turns over ``time_s``, every 2 s from 0 to the latest end."""
+
+    time_s: list[float]
+    attitude_wxyz: list[list[float]] = Field(description="From LVLH to the body, scalar first.")
+    rate_deg_s: list[list[float]] = Field(
+        description="Angular velocity against LVLH, in the body's axes, deg/s."
+    )
 
 
 class SpaceOutputs(WireModel):
@@ -150,6 +163,9 @@ class SpaceOutputs(WireModel):
     flight: list[SpaceFlight | None] | None = Field(
         None, description="The flights of the GOs, when asked for; null for the others."
     )
+    turning: Turning | None = Field(
+        None, description="How the target turns, where flights are asked for: whatever the verdicts."
+    )
     tracking: list[TrackingAnswer] | None = Field(
         None, description="Method tracking: the controller's flight from each start, beside the exact answer."
     )
@@ -183,6 +199,7 @@ SPEC = ProcessSpec(
     ),
     inputs=SpaceInputs,
     outputs=SpaceOutputs,
+    kernels=("exact answers",),
     run="safestart.processes.start_in_space.run:run",
     light=True,
     cost=_cost,

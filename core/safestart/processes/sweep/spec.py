@@ -34,6 +34,7 @@ SPEC = ProcessSpec(
     ),
     inputs=SweepInputs,
     outputs=SweepOutputs,
+    kernels=("flights", "exact answers"),
     sharding=Sharding(
         split=f"{HERE}.split:split",
         shard=f"{HERE}.shard:shard",

@@ -11,6 +11,7 @@ from safestart.model.orbit import EARTH_RADIUS, MU
 from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.sharding import Sharding
 from safestart.processes.tracking_mpc.outputs import TrackingMpcOutputs
+from safestart.processes.tracking_mpc.targets import presets
 from safestart.processes.views import Column, Facts, Findings, Matrices, Overlay, Rows, Scene
 from safestart.processes.wire import Seed
 
@@ -183,6 +184,7 @@ SPEC = ProcessSpec(
     ),
     inputs=TrackingMpcInputs,
     outputs=TrackingMpcOutputs,
+    kernels=("tracking",),
     sharding=Sharding.of("safestart.processes.tracking_mpc"),
     tables=(Table("flight", ("time_s", "range_m", "cost_to_go", "slack_m")),),
     views=(
@@ -227,7 +229,8 @@ SPEC = ProcessSpec(
     extensions={
         "safestart:engines": [
             dict(zip(("name", "title", "colour", "summary"), one, strict=True)) for one in _SETS
-        ]
+        ],
+        "safestart:examples": presets({"n_c": 3, "theta_limit": "polytope", "region": {"rows": 10}}),
     },
     keywords=("MPC", "tracking", "tumbling", "docking", "guidance"),
     example={"n_c": 3, "theta_limit": "polytope", "region": {"rows": 10}},

@@ -77,6 +77,7 @@ SPEC = ProcessSpec(
     ),
     inputs=TradeStudyInputs,
     outputs=TradeStudyOutputs,
+    kernels=("flights", "exact answers"),
     sharding=Sharding.of("safestart.processes.trade_study"),
     views=(
         Facts(

@@ -1,6 +1,7 @@
 """Every case of a missed-burn proof, at all times: the cells cover the drift, and each keeps the claimed distance.
 
-On a cell [a, b] with direction d, q(t) = Phi_p(t)' d and f = q . centre - sum |M_k' q|, which is concave in q:
+On a cell [a, b] with direction d, q(t) = Phi_p(t)' d and f = q . centre - sum |M_k' q|, which is concave in q, less
+d . z and sum |Z_k' d| of the zone's centre and blocks:
 
     |d| distance >= min(f(a), f(b)) - (b - a)^2/8 (sup |q'' . centre| + sum sup |M_k' q''|).
 """
@@ -13,8 +14,9 @@ from flint import arb, arb_mat, fmpq
 
 from safestart.proofs.abort.complete import Complete
 from safestart.proofs.abort.earth import EarthChecker
-from safestart.proofs.abort.sets import Reached, Sets, transition
-from safestart.proofs.abort.statement import Asked, Event, read
+from safestart.proofs.abort.reached import Reached, transition
+from safestart.proofs.abort.sets import Sets
+from safestart.proofs.abort.statement import Asked, Event, Zone, read
 from safestart.proofs.abort.strays import strays
 from safestart.proofs.strict import ProofRejected
 from safestart.runtime.precision import precise
@@ -45,7 +47,7 @@ class Checker(Complete):
 
     def held(self, event: Event) -> None:
         """Check the cells of an event."""
-        self._held(event, self.sets.of(event.kind, event.burn, event.first, event.last))
+        self._held(event, self.sets.of(event))
 
     def _strays(self, event: Event, table: arb_mat, sizes: list[int]) -> list[list[arb]]:
         """How far each axis may be from the linear motion, up to the end of each part; empty in the linear model."""
@@ -75,7 +77,7 @@ class Checker(Complete):
             ends = [self._levels(row * self._rows(at) * table, sizes) for at in (begin, end)]
             one, two = (row * bend * table for bend in self.bends)
             span = arb(end - begin)
-            rest = span * span / 8 * _swing(one, two, sizes)
+            rest = span * span / 8 * _swing(one, two, sizes) + _support(d, self.asked.zones[event.zone])
             if strays:
                 # A cell that ends within a part gets the stray up to the end of that part.
                 at = min(max(int((end * len(strays) / duration).ceil()), 1), len(strays))
@@ -113,6 +115,15 @@ def _size(one: arb_mat, two: arb_mat | None, sizes: list[int]) -> arb:
         total = total + _norm([m[i, at + j] for m in parts for i in range(3) for j in range(size)])
         at += size
     return total
+
+
+def _support(d: list[arb], zone: Zone) -> arb:
+    """What a zone takes off the distance in the direction d."""
+
+    def along(v: list[fmpq]) -> arb:
+        return sum((e * arb(x) for e, x in zip(d, v, strict=True)), arb(0))
+
+    return sum((_norm([along(v) for v in block]) for block in zone.blocks), along(zone.centre))
 
 
 def _norm(entries: list[arb]) -> arb:

@@ -19,7 +19,8 @@ from flint import arb, arb_mat, fmpq
 from safestart.proofs.abort.complete import Complete
 from safestart.proofs.abort.course import Course, inverse
 from safestart.proofs.abort.pushes import Pushes, lift
-from safestart.proofs.abort.sets import Reached, Sets, column
+from safestart.proofs.abort.reached import Reached, column
+from safestart.proofs.abort.sets import Sets
 from safestart.proofs.abort.statement import Asked, Event
 from safestart.proofs.abort.taylor import frobenius, middle
 from safestart.proofs.strict import ProofRejected
@@ -140,7 +141,7 @@ class EarthChecker(Complete):
         asked = self.asked
         lifted = lift(self.target, arb(reference.begin))
         if event.kind not in ("late", "stuck"):
-            return self.sets.of(event.kind, event.burn, event.first, event.last).moved(lifted)
+            return self.sets.of(event).moved(lifted)
         impulse = [arb(e) for e in asked.impulses[burn]]
         limits = arb(asked.share), arb(asked.angle)
         pushes = Pushes(self.target, reference.course, reference.begin, k)

@@ -10,7 +10,7 @@ from __future__ import annotations
 from flint import arb, arb_mat, fmpq
 
 from safestart.proofs.abort.course import Course, inverse
-from safestart.proofs.abort.sets import Reached, axes, column, shell
+from safestart.proofs.abort.reached import Reached, axes, column, shell
 from safestart.proofs.abort.taylor import middle
 
 Limits = tuple[arb, arb]

@@ -19,18 +19,26 @@ def lines(asked: Asked) -> tuple[str, ...]:
     if asked.late > 0:
         failures.append(f"late by up to {_double(asked.late):g} s")
     if asked.stuck > 0:
+        own = " or its own thrust" if any(asked.durations) else ""
         failures.append(
-            f"stuck on for up to {_double(asked.stuck):g} s at {_double(asked.acceleration):g} m/s^2"
+            f"stuck on for up to {_double(asked.stuck):g} s at {_double(asked.acceleration):g} m/s^2{own}"
         )
     if asked.misdirected > 0:
         failures.append(f"misdirected by up to {math.degrees(_double(asked.misdirected)):g} deg")
+    if any(asked.durations):
+        failures.append("ended early, at any time, where it has a duration")
     return (
-        f"at all times the chaser stays {_double(asked.keep_out)!r} m away from the target, and more: "
+        f"at all times the chaser stays {_double(asked.keep_out)!r} m away from {_from(asked)}, and more: "
         f"{_double(asked.least)!r} m",
         _model(asked),
         f"horizon: {_double(asked.horizon):g} s after the end of the last burn that is made",
         f"any burn is {'; or '.join(failures)}; no burn follows a failure",
         f"states: within {box[:3]} m and {box[3:]} m/s of the plan {held}",
+        *(
+            [f"and off by L b, |b| <= 1, columns of L: {[[_double(e) for e in m] for m in asked.ellipsoid]}"]
+            if asked.ellipsoid
+            else []
+        ),
         f"burns: size within {100 * _double(asked.share):g} %, direction within "
         f"{math.degrees(_double(asked.angle)):g} deg",
         *(
@@ -43,9 +51,24 @@ def lines(asked: Asked) -> tuple[str, ...]:
         ),
         *(
             f"burn {k} at {_double(time)!r} s: {[_double(e) for e in impulse]} m/s"
-            for k, (time, impulse) in enumerate(zip(asked.times, asked.impulses, strict=True))
+            + (f", evenly over {_double(lasts)!r} s, its errors at any time of it" if lasts else "")
+            for k, (time, impulse, lasts) in enumerate(
+                zip(asked.times, asked.impulses, asked.durations, strict=True)
+            )
         ),
     )
+
+
+def _from(asked: Asked) -> str:
+    zones = [
+        f"the {zone.kind} at {[_double(e) for e in zone.centre]} m with axes "
+        f"{[[_double(e) for e in axis] for block in zone.blocks for axis in block]} m, LVLH"
+        for zone in asked.zones
+        if not zone.is_point
+    ]
+    if len(zones) < len(asked.zones):
+        zones.insert(0, "the target")
+    return " and from ".join(zones)
 
 
 def _model(asked: Asked) -> str:

@@ -65,6 +65,12 @@ class Claims:
                     return claim
         return None
 
+    def next_process(self) -> str | None:
+        """The process of the job that the next claim will find, or None; takes nothing."""
+        with self._database.session() as session:
+            row = _next(session)
+            return None if row is None else str(row.process_id)
+
     def renew(self, claim: Claim, lease_s: float) -> bool:
         """Extend the lease. Returns False when the job's dismissal was requested, else True. Raises ``LeaseLost``."""
         with self._database.session(write=True) as session:

@@ -31,7 +31,7 @@ const pick = (values, names) => Object.fromEntries(names.map((name) => [name, va
 export const planOf = (values) => ({ ...pick(values, PLAN), sigma: pick(values, SIGMA) });
 
 /** Inputs of the study of the same approach; every input is there, so that a stored one can be told apart. */
-export const studyOf = (values) => ({ ...planOf(values), ...pick(values, STUDY), eccentricity: 0, gamma: null });
+export const studyOf = (values) => ({ ...planOf(values), ...pick(values, STUDY), eccentricity: 0, gamma: null, drag_m_s2: 0, proof_model: "linear" });
 
 /** Whether a job's inputs are these. */
 export const isOf = (inputs, question) => digest(inputs) === digest(question);

@@ -18,13 +18,13 @@ const isLight = (one) => one.jobControlOptions.includes("sync-execute");
 let entry = null, labels = null;
 
 // `entered` is the content of the form, `sent` the inputs of the run; the answer is shown while both are equal.
-const store = new Store({ process: null, from: address.get("from"), entered: null, sent: null });
+const store = new Store({ process: null, from: address.get("from"), preset: "", entered: null, sent: null });
 
 store.panel({
-  poses: ({ process, from }) => process && { process, from },
-  asks: async ({ process, from }, signal) => {
+  poses: ({ process, from, preset }) => process && { process, from, preset },
+  asks: async ({ process, from, preset }, signal) => {
     const [spec, job] = await Promise.all([description(process), from ? get(`/jobs/${from}`, { signal }) : null]);
-    return { spec, given: job?.inputs, named: job ? { name: job.name, tags: job.tags, note: job.note } : {} };
+    return { spec, given: presets(spec)[preset] ?? job?.inputs, preset, named: job ? { name: job.name, tags: job.tags, note: job.note } : {} };
   },
   shows: showForm,
 });
@@ -55,15 +55,27 @@ function showForm({ state, answer, error }) {
     loading($("form"));
     return;
   }
-  const { spec, given, named } = answer, schema = whole(spec), light = isLight(spec);
+  const { spec, given, preset, named } = answer, schema = whole(spec), light = isLight(spec);
   $("what").textContent = spec.description;
   entry = field(schema, schema, "", "", given);
   labels = labelFields(named);
-  $("form").replaceChildren(entry.node, el("details", { class: "rare", open: !light }, el("summary", {}, `Name, tags and note${light ? " of a queued run" : ""}`), ...labels.nodes), el("div", { class: "tools" },
+  $("form").replaceChildren(...choices(spec, preset), entry.node, el("details", { class: "rare", open: !light }, el("summary", {}, `Name, tags and note${light ? " of a queued run" : ""}`), ...labels.nodes), el("div", { class: "tools" },
     el("button", { type: "submit" }, light ? "Run now" : "Submit"),
     light ? el("button", { type: "button", class: "plain", onclick: queue }, "Queue it") : null), el("p", { class: "note", id: "estimate", role: "status" }), copies(() => ({ id: spec.id, inputs: entry.value() })));
   explain($("form"));
   store.set({ entered: entered() });
+}
+
+/** Questions that a process describes by name. */
+const presets = (spec) => spec["safestart:examples"] ?? {};
+
+/** A menu of them, where there are any. */
+function choices(spec, chosen) {
+  const names = Object.keys(presets(spec));
+  if (!names.length) return [];
+  const menu = el("select", { id: "preset", onchange: ({ target }) => store.set({ preset: target.value, entered: null, sent: null }) },
+    el("option", { value: "" }, "none: as in the fields"), ...names.map((name) => el("option", { value: name, selected: name === chosen }, name)));
+  return [el("div", { class: "inline" }, el("label", { for: "preset" }, "Preset"), menu)];
 }
 
 /** One schema of all inputs, from the description's separate schemas. */
@@ -123,7 +135,7 @@ async function queue() {
 $("process").addEventListener("change", ({ target }) => {
   history.replaceState(null, "", `?process=${target.value}`);
   $("state").replaceChildren();
-  store.set({ process: target.value, from: null, entered: null, sent: null });
+  store.set({ process: target.value, from: null, preset: "", entered: null, sent: null });
 });
 for (const kind of ["input", "change"]) $("form").addEventListener(kind, () => store.set({ entered: entered() }));
 $("form").addEventListener("submit", (event) => {

@@ -5,11 +5,14 @@ import { draw, theme } from "./chart.js";
 import { $ } from "./page.js";
 
 const FACES = ["#0072B2", "#D55E00", "#CC79A7", "#E69F00", "#56B4E9"];
+const DASHES = ["solid", "dash", "dot", "dashdot"];
 const SPEED = 6; // seconds of flight per second of animation
 
 export class Flight {
-  constructor(redraw) {
+  /** `redraw` draws the scene at the clock's time; `controls` are of use only while there is a flight. */
+  constructor(redraw, controls = ["play", "clock", "frame"]) {
     this.redraw = redraw;
+    this.controls = controls.map($);
     this.data = null;
     this.step = 0;
     this.running = 0;
@@ -21,21 +24,21 @@ export class Flight {
   clear(text = "") {
     this.stop();
     this.data = null;
-    $("play").disabled = $("clock").disabled = $("frame").disabled = true;
+    for (const control of this.controls) control.disabled = true;
     $("flown").textContent = text;
     $("time").textContent = $("instant").textContent = "";
     $("flight-line").hidden = true;
     $("flight").classList.toggle("empty-flight", true);
   }
 
-  /** Show a flight at its end; `text` describes it, `limit` is its largest thrust acceleration. */
+  /** Show a flight at its end; `text` describes it, `limit` is its largest thrust acceleration, null for none. */
   load(data, text, limit) {
     this.stop();
     this.data = data;
     this.limit = limit;
     $("flight-line").hidden = false;
     $("clock").max = data.time_s.length - 1;
-    $("play").disabled = $("clock").disabled = $("frame").disabled = false;
+    for (const control of this.controls) control.disabled = false;
     $("flown").textContent = text;
     $("flight").classList.toggle("empty-flight", false);
     this.curves();
@@ -66,13 +69,14 @@ export class Flight {
     const { time_s: x, thrust_m_s2: thrust, distance_m: distance, faces } = this.data;
     const { soft, ink, limit } = theme(), ends = [x[0], x.at(-1)];
     const traces = faces.map((face, k) => ({
-      name: spoken(face), x, y: distance.map((row) => row[k]), mode: "lines", line: { color: FACES[k], width: 2 }, hovertemplate: "%{y:.2f} m",
+      name: spoken(face), x, y: distance.map((row) => row[k]), mode: "lines", line: { color: FACES[k % FACES.length], width: 2, dash: DASHES[Math.floor(k / FACES.length) % DASHES.length] }, hovertemplate: "%{y:.2f} m",
     }));
     traces.push({
       name: "thrust", x, y: thrust.map((u) => Math.hypot(...u)), mode: "lines", line: { color: soft, width: 1.5, shape: "hv", dash: "dot" },
       yaxis: "y2", hovertemplate: "%{y:.4f} m/s²",
-    }, { name: "thrust limit", x: ends, y: [this.limit, this.limit], mode: "lines", line: { color: limit, width: 1.5, dash: "dash" }, yaxis: "y2", hoverinfo: "skip" },
-    { name: "face", x: ends, y: [0, 0], mode: "lines", line: { color: ink, width: 1.5 }, showlegend: false, hoverinfo: "skip" });
+    });
+    if (this.limit !== null) traces.push({ name: "thrust limit", x: ends, y: [this.limit, this.limit], mode: "lines", line: { color: limit, width: 1.5, dash: "dash" }, yaxis: "y2", hoverinfo: "skip" });
+    traces.push({ name: "face", x: ends, y: [0, 0], mode: "lines", line: { color: ink, width: 1.5 }, showlegend: false, hoverinfo: "skip" });
     draw($("curves"), traces, {
       hovermode: "x", shapes: [this.mark()], margin: { l: 46, r: 50, t: 8, b: 84 }, legend: { orientation: "h", xref: "container", yref: "container", y: 0, yanchor: "bottom", x: 0, xanchor: "left", font: { size: 11 } },
       xaxis: { title: { text: "time [s]" } }, yaxis: { title: { text: "to face [m]" }, rangemode: "tozero" },

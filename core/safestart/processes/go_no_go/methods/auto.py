@@ -15,6 +15,7 @@ from safestart.processes.go_no_go.atlases import atlas_for
 from safestart.processes.go_no_go.conditions import Conditions
 from safestart.processes.go_no_go.cost import MANY
 from safestart.processes.go_no_go.methods import certified
+from safestart.processes.go_no_go.methods.agreement import agreeing
 from safestart.processes.go_no_go.methods.exact import one_by_one
 from safestart.processes.go_no_go.methods.proofs import MOST_PROGRAMS, Solved, prove
 from safestart.processes.go_no_go.spec import GoNoGoInputs
@@ -24,6 +25,8 @@ from safestart.runtime.progress import Context
 def decide(inputs: GoNoGoInputs, _: Conditions, context: Context) -> Verdicts:
     """The certificate's GOs stand; the other starts, and questions outside the certificate, go to the proving
     methods."""
+    if inputs.proofs and certified.covers(inputs):
+        return agreeing(inputs, prove_all(inputs, context))
     if not certified.answers(inputs):
         return prove_all(inputs, context)
     found = certified.certificates(inputs)

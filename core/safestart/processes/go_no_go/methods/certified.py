@@ -50,7 +50,12 @@ def go_at_once(inputs: GoNoGoInputs, _: Conditions) -> Verdicts | None:
 
 def answers(inputs: GoNoGoInputs) -> bool:
     """Whether the certificate covers the question and no proof document is requested, as it has none."""
-    return not inputs.proofs and more_asked(inputs) is None
+    return not inputs.proofs and covers(inputs)
+
+
+def covers(inputs: GoNoGoInputs) -> bool:
+    """Whether the certificate covers the question; its GO is then the answer, whatever document is requested."""
+    return more_asked(inputs) is None
 
 
 def certificates(inputs: GoNoGoInputs) -> list[PointCertificate]:

@@ -7,6 +7,7 @@ from safestart.errors import invalid
 from safestart.exact.answer import Answer, Verdict
 from safestart.exact.question import Question
 from safestart.model.scenario import Floats
+from safestart.processes.go_no_go.question import held
 from safestart.processes.go_no_go.spec import GoNoGoInputs
 from safestart.runtime.progress import Context
 
@@ -40,8 +41,8 @@ def sentence(disturbance: Disturbance, question: Question, answer: Answer) -> st
     if answer.verdict is Verdict.NO_GO:
         short = f"{-answer.upper:.2f} m"
         return (
-            f"even undisturbed no thrust history stays for {span}: each is at some time at least {short} "
-            "outside a face"
+            f"even undisturbed no thrust {held(question)} stays for {span}: each history is at some time at least "
+            f"{short} outside a face"
         )
     return f"undecided: {answer.reason}"
 

@@ -72,8 +72,8 @@ def _sentence(answer: ForAll, horizon: float) -> str:
         return f"undecided: {answer.reason}"
     if answer.verdict is Verdict.NO_GO:
         return (
-            f"whatever is true within the half-widths, no thrust history stays for {horizon:g} s: each is at "
-            f"some time at least {-answer.margin_m:.2f} m outside a face"
+            f"whatever is true within the half-widths, no thrust held over steps stays for {horizon:g} s: each "
+            f"history is at some time at least {-answer.margin_m:.2f} m outside a face"
         )
     kept = f"keeps {answer.margin_m:.2f} m to every face for {horizon:g} s, whatever is true within the half-widths"
     if answer.witness == "common":

@@ -24,6 +24,7 @@ def nearest(
     centre: Floats,
     offset: Floats,
     columns: Floats,
+    still: Floats,
     ends: NDArray[np.int64],
     guess: Floats,
     direction: Floats,
@@ -31,16 +32,19 @@ def nearest(
 ) -> float:
     """Distance of the nearest member found.
 
-    ``rows`` (3, 6), ``offset`` (3,) of all positions, ``columns`` (C, 6), ``ends`` (K,), ``guess`` (3,): a first
-    direction. Writes the ``direction`` (3,) with the greatest lower bound seen and the coordinates (C,) of the nearest
-    ``member`` in the columns.
+    ``rows`` (3, 6), ``offset`` (3,) of all positions, ``columns`` (C, 6), ``still`` (S, 3): columns of positions that
+    do not move, ``ends`` (K,) of the blocks of both, ``guess`` (3,): a first direction. Writes the ``direction`` (3,)
+    with the greatest lower bound seen and the coordinates (C + S,) of the nearest ``member`` in the columns.
     """
-    count = len(columns)
+    moving = len(columns)
+    count = moving + len(still)
     centre3, images = np.empty(3), np.empty((count, 3))
     for i in range(3):
         centre3[i] = offset[i] + _dot6(rows[i], centre)
-        for j in range(count):
+        for j in range(moving):
             images[j, i] = _dot6(rows[i], columns[j])
+        for j in range(moving, count):
+            images[j, i] = still[j - moving, i]
     points, coordinates = np.empty((4, 3)), np.empty((4, count))
     weights = np.zeros(4)
     held, best = 0, -np.inf

@@ -6,7 +6,7 @@ k = K (b - a)^2/8, and so sup |y| <= max(|y(a)|, |y(b)|) / (1 - k). For a unit v
 
     distance >= min(f_d(a), f_d(b)) - k/(1 - k) sum of max(|y(a)|, |y(b)|) over path, centre, blocks,
 
-f_d as in :mod:`safestart.missed_burn.drift_kernel`, less what the true motion may stray.
+f_d as in :mod:`safestart.missed_burn.kernels.drift`, less what the true motion may stray.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from safestart.missed_burn.drift_kernel import ROUNDING
-from safestart.missed_burn.nearest import nearest
+from safestart.missed_burn.kernels.drift import ROUNDING
+from safestart.missed_burn.kernels.nearest import nearest
 from safestart.model.scenario import Floats
 from safestart.runtime.kernels import compiled
 
@@ -101,7 +101,7 @@ def least_between(
     """Bounds on the least distance over all nodes of ``path`` (T, 3) and ``tables`` (T, 3, 6), and between them.
 
     ``strays`` (L,): how far the true motion may be from the linear one up to the end of each part of ``per_part``
-    nodes. Ends as :func:`safestart.missed_burn.drift_kernel.least_distance` does. Returns the lower bound, the least
+    nodes. Ends as :func:`safestart.missed_burn.kernels.drift.least_distance` does. Returns the lower bound, the least
     distance of a member, its node and coordinates, and the cells (N, 5): two nodes and a direction.
     """
     images, off = images_of(tables, centre, columns, ends)
@@ -114,6 +114,7 @@ def least_between(
     cells, bounds = np.empty((most, 5)), np.empty(most)
     sharp = np.zeros(most, dtype=np.bool_)
     d, member, best = np.empty(3), np.empty(len(columns)), np.zeros(len(columns))
+    none = np.empty((0, 3))
     count = min(_FIRST, last)
     for k in range(count):
         cells[k, 0], cells[k, 1] = last * k // count, last * (k + 1) // count
@@ -138,7 +139,7 @@ def least_between(
         if not sharp[worst]:
             sharp[worst] = True
             distance = nearest(
-                tables[middle], centre, path[middle], columns, ends, cells[worst, 2:], d, member
+                tables[middle], centre, path[middle], columns, none, ends, cells[worst, 2:], d, member
             )
             if distance < upper:
                 upper, when = distance, middle

@@ -3,11 +3,12 @@
 The set of states at t = 0 is centre + sum_k M_k b_k with |b_k|_2 <= 1: a block of one column is a segment, of two an
 ellipse. In CWH motion the positions at t are Phi_p(t) times it. For a unit vector d and q(t) = Phi_p(t)' d,
 
-    distance(t) >= f_d(t) = q . centre - sum_k |M_k' q|,
+    distance(t) >= f_d(t) = q . centre - sum_k |M_k' q| - d . z - sum_k |Z_k' d|,
 
-and f_d is concave in q. Over [a, b] q differs from its chord by at most (b - a)^2/8 |q''|, where q'' = P cos n t +
-Q sin n t has no secular part. So min(f_d(a), f_d(b)) minus the remainder bounds f_d on [a, b]. The intervals with the
-lowest bounds are halved until the bound meets a member of the set. docs/theory/hopping.md has the inequalities.
+z and Z_k the centre and the blocks of a zone that does not move, and f_d is concave in q. Over [a, b] q differs from
+its chord by at most (b - a)^2/8 |q''|, where q'' = P cos n t + Q sin n t has no secular part. So min(f_d(a), f_d(b))
+minus the remainder bounds f_d on [a, b]. The intervals with the lowest bounds are halved until the bound meets a member
+of the set. docs/theory/hopping.md has the inequalities.
 """
 
 from __future__ import annotations
@@ -17,14 +18,15 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from safestart.missed_burn.nearest import nearest
+from safestart.missed_burn.kernels.nearest import nearest
 from safestart.model.scenario import Floats
 from safestart.runtime.kernels import compiled
 
 ROUNDING = 1e-12
 """Every bound is lowered by this share of the magnitude of all terms: a hundred times the possible rounding."""
 
-_FIRST = 24
+FIRST = 24
+"""Intervals at the beginning of a search over a whole horizon."""
 Ends = NDArray[np.int64]
 
 
@@ -101,6 +103,21 @@ def _remainder(
 
 
 @compiled()
+def _support(d: Floats, offset: Floats, still: Floats, still_ends: Ends) -> float:
+    """-d . z - sum_k |Z_k' d|: what the zone takes off the distance in the direction d; ``offset``: -z."""
+    total: float = d[0] * offset[0] + d[1] * offset[1] + d[2] * offset[2]
+    begin = 0
+    for end in still_ends:
+        square = 0.0
+        for j in range(begin, end):
+            part = d[0] * still[j, 0] + d[1] * still[j, 1] + d[2] * still[j, 2]
+            square += part * part
+        total -= math.sqrt(square)
+        begin = end
+    return total
+
+
+@compiled()
 def _magnitude(n: float, t: float, centre: Floats, columns: Floats) -> float:
     """Sum of the sizes of all terms of f_d up to t."""
     tau = n * t
@@ -117,36 +134,45 @@ def _magnitude(n: float, t: float, centre: Floats, columns: Floats) -> float:
 @compiled()
 def least_distance(
     n: float,
+    begin: float,
     horizon: float,
     centre: Floats,
     columns: Floats,
     ends: Ends,
+    offset: Floats,
+    still: Floats,
+    still_ends: Ends,
     strays: Floats,
+    first: int,
     enough: float,
     below: float,
     tolerance: float,
     most: int,
 ) -> tuple[float, float, float, Floats, Floats, int]:
-    """Bounds on the least distance over [0, horizon].
+    """Bounds on the least distance to a zone over [begin, horizon].
 
-    ``strays`` (L, 3): how far the true motion may be from the linear one, per axis, up to the end of each of L equal
-    parts of the horizon; not decreasing. The search ends when the lower bound reaches ``enough``, a member is nearer
-    than ``below``, both bounds agree to ``tolerance``, or ``most`` intervals are used. Returns the lower bound, the
-    least distance of a member with its time and its coordinates (C,) in the columns, and the intervals (N, 5): begin,
-    end, direction.
+    ``offset`` (3,): the zone's centre, negative; ``still`` (S, 3) and ``still_ends``: its blocks. ``strays`` (L, 3):
+    how far the true motion may be from the linear one, per axis, up to the end of each of L equal parts of [0,
+    horizon]; not decreasing. ``first``: intervals at the beginning. The search ends when the lower bound reaches
+    ``enough``, a member is nearer than ``below``, both bounds agree to ``tolerance``, or ``most`` intervals are used.
+    Returns the lower bound, the least distance of a member with its time and its coordinates (C + S,) in the columns,
+    and the intervals (N, 5): begin, end, direction.
     """
     cells = np.empty((most, 5))
     bounds = np.empty(most)
     sharp = np.zeros(most, dtype=np.bool_)
-    rows, q, p, still = np.empty((3, 6)), np.empty(6), np.empty(6), np.zeros(3)
-    d, member, best = np.empty(3), np.empty(len(columns)), np.zeros(len(columns))
-    loss = ROUNDING * _magnitude(n, horizon, centre, columns)
+    rows, q, p = np.empty((3, 6)), np.empty(6), np.empty(6)
+    both = len(columns) + len(still)
+    d, member, best = np.empty(3), np.empty(both), np.zeros(both)
+    all_ends = np.concatenate((ends, still_ends + len(columns)))
+    loss = ROUNDING * (_magnitude(n, horizon, centre, columns) + np.abs(offset).sum() + np.abs(still).sum())
     # ``goal``: the best possible bound, given how far the true motion may stray.
     count, upper, goal, when = 0, np.inf, np.inf, 0.0
-    for k in range(_FIRST):
-        cells[k, 0], cells[k, 1] = horizon * k / _FIRST, horizon * (k + 1) / _FIRST
-    cells[_FIRST - 1, 1] = horizon
-    count = _FIRST
+    for k in range(first):
+        cells[k, 0] = begin + (horizon - begin) * k / first
+        cells[k, 1] = begin + (horizon - begin) * (k + 1) / first
+    cells[0, 0], cells[first - 1, 1] = begin, horizon
+    count = first
     fresh = 0
     while True:
         # Bounds of the new intervals: first by the direction to the centre, which needs no search.
@@ -155,13 +181,14 @@ def least_distance(
             position_rows(n, middle, rows)
             size = 0.0
             for i in range(3):
-                d[i] = _dot(rows[i], centre)
+                d[i] = offset[i] + _dot(rows[i], centre)
                 size += d[i] * d[i]
             size = math.sqrt(size)
             for i in range(3):
                 d[i] = d[i] / size if size > 0.0 else 1.0 if i == 0 else 0.0
             cells[k, 2:] = d
             bounds[k] = _bound(n, horizon, cells[k], centre, columns, ends, strays, rows, q, p) - loss
+            bounds[k] += _support(cells[k, 2:], offset, still, still_ends)
             sharp[k] = False
         fresh = count
         worst = int(np.argmin(bounds[:count]))
@@ -172,7 +199,7 @@ def least_distance(
             sharp[worst] = True
             middle = 0.5 * (cells[worst, 0] + cells[worst, 1])
             position_rows(n, middle, rows)
-            distance = nearest(rows, centre, still, columns, ends, cells[worst, 2:], d, member)
+            distance = nearest(rows, centre, offset, columns, still, all_ends, cells[worst, 2:], d, member)
             if distance < upper:
                 upper, when = distance, middle
                 best[:] = member
@@ -180,6 +207,7 @@ def least_distance(
             one, two = cells[worst].copy(), 0.0
             one[2:] = d
             two = _bound(n, horizon, one, centre, columns, ends, strays, rows, q, p) - loss
+            two += _support(d, offset, still, still_ends)
             if two > low:
                 cells[worst], bounds[worst] = one, two
             continue
@@ -194,6 +222,7 @@ def least_distance(
         cells[count, 2:] = cells[worst, 2:]
         for k in (worst, count):
             bounds[k] = _bound(n, horizon, cells[k], centre, columns, ends, strays, rows, q, p) - loss
+            bounds[k] += _support(cells[k, 2:], offset, still, still_ends)
             sharp[k] = False
         count += 1
         fresh = count

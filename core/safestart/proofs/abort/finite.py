@@ -1,0 +1,113 @@
+"""Burns with a duration, as sets of states at their planned time, in ball arithmetic.
+
+A burn that begins t late and lasts for u gives H(t + u) - H(t), H(s) = int_0^s Phi(-r) (0, a) dr; over a piece of times
+it lies within its value and its tangents in the middle and a box for the second derivatives H'' and H'''.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from flint import arb, arb_mat, fmpq
+
+from safestart.proofs.abort.reached import Reached, axes, column, generator, held, shell, transition
+from safestart.proofs.abort.statement import Asked, Event
+
+FULL_THRUST = ("made", "cut", "late", "stuck")
+LONG = ("made", "cut", "stuck")
+"""Kinds after which the chaser drifts for the whole horizon, however long the burn lasts."""
+
+
+Piece = tuple[fmpq, fmpq]
+
+
+def times(asked: Asked, event: Event) -> tuple[Piece, Piece]:
+    """How late the burn of an event begins, and how long it lasts; one that is stuck on goes on for the event's piece
+    after its whole time."""
+    if event.kind != "stuck":
+        return (event.first, event.last), event.on
+    whole = asked.durations[event.burn]
+    return (fmpq(0), fmpq(0)), (whole + event.first, whole + event.last)
+
+
+def window(asked: Asked, event: Event) -> tuple[fmpq, fmpq]:
+    """From when to when the chaser may drift from the set of an event of a burn with a duration, s after its planned
+    time. A burn that is late, weak or misdirected and still burns is covered only for as long as it may."""
+    late, on = times(asked, event)
+    begin, end = late[0] + on[0], late[1] + on[1]
+    whole = asked.durations[event.burn]
+    if event.kind not in LONG and event.on != (whole, whole):
+        return begin, end
+    until = asked.horizon + end
+    if event.kind == "made" and event.burn + 1 < len(asked.times):
+        until = max(until, asked.times[event.burn + 1] - asked.times[event.burn] + asked.late)
+    return begin, until
+
+
+@dataclass(frozen=True, slots=True)
+class _Rates:
+    """Greatest sizes of the first two derivatives of Phi(-s) (0, e), in each of the six, |e| = 1, s in a ball."""
+
+    first: list[arb]
+    second: list[arb]
+
+
+def burning(asked: Asked, before: Reached, event: Event) -> Reached:
+    """The set before burn ``event.burn``, and all that the burn adds in this event."""
+    n, burn = arb(asked.n), event.burn
+    share, angle = arb(asked.share), arb(asked.angle)
+    wide = arb.min(angle + arb(asked.misdirected), arb.pi()) if event.kind == "misdirected" else angle
+    least = arb(0) if event.kind == "partial" else 1 - share
+    middle, half, across = shell(least, 1 + share, wide)
+    along, one, two, impulse = axes([arb(e) for e in asked.impulses[burn]])
+    size = impulse / arb(asked.durations[burn])
+    delay, lasts = times(asked, event)
+    late, late_by = _piece(*delay)
+    on, on_by = _piece(*lasts)
+    gives, given = (held(n, -late) - held(n, -late - time) for time in (on, arb(lasts[1])))
+    # Across the burn: u/u_2 of what it gives in its longest time u_2, but for the chord's error u_2^2/8 |H''|.
+    blocks = [
+        [gives * column([half * size * e for e in along])],
+        [given * column([across * size * e for e in unit]) for unit in (one, two)],
+    ]
+    end, begin = _pushed(n, late + on), _pushed(n, late)
+    most = column([(1 + share) * size * e for e in along])
+    blocks += [[late_by * ((end - begin) * most)], [on_by * (end * most)]]
+    state = Reached(
+        before.centre + gives * column([middle * size * e for e in along]), [*before.blocks, *blocks]
+    )
+    longest = arb(delay[1] + lasts[1])
+    rates = _rates(n, longest / 2 + arb(0, 1) * (longest / 2))
+    _, own, aside = shell(1 - share, 1 + share, angle)
+    unsteady = size * (own * own + aside * aside).sqrt()
+    reach, top = arb(lasts[1]), (1 + share) * size
+    chord = reach**2 / 8 if lasts[0] < lasts[1] else arb(0)
+    return state.grown(
+        [
+            top
+            * (late_by**2 / 2 * reach * rates.second[k] + (late_by * on_by + on_by**2 / 2) * rates.first[k])
+            + size * across * (late_by * reach + chord) * rates.first[k]
+            + unsteady * reach**2 / 2 * rates.first[k]
+            for k in range(6)
+        ]
+    )
+
+
+def _piece(first: fmpq, last: fmpq) -> tuple[arb, arb]:
+    return arb((first + last) / 2), arb((last - first) / 2)
+
+
+def _pushed(n: arb, time: arb) -> arb_mat:
+    """Phi(-time) (0, I), (6, 3)."""
+    return arb_mat([row[3:] for row in transition(n, -time).tolist()])
+
+
+def _rates(n: arb, span: arb) -> _Rates:
+    a = generator(n)
+    slope = a * _pushed(n, span)
+    return _Rates(_sizes(slope), _sizes(a * slope))
+
+
+def _sizes(matrix: arb_mat) -> list[arb]:
+    """Norms of the rows, from above."""
+    return [sum((arb(e.abs_upper()) ** 2 for e in row), arb(0)).sqrt() for row in matrix.tolist()]
