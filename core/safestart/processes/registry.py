@@ -27,6 +27,7 @@ _SPECS = {
     "collision-avoidance": "safestart.processes.collision_avoidance.spec",
     "inclusion-chain": "safestart.processes.inclusion_chain.spec",
     "sweep": "safestart.processes.sweep.spec",
+    "sweep-in-space": "safestart.processes.sweep_in_space.spec",
     "trade-study": "safestart.processes.trade_study.spec",
     "tracking-mpc": "safestart.processes.tracking_mpc.spec",
     "commit-timeline": "safestart.processes.commit_timeline.spec",

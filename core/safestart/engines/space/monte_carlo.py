@@ -19,12 +19,13 @@ from safestart.dynamics.motion import RelativeMotion
 from safestart.engines.base import EngineResult, ResultCode
 from safestart.engines.space.problem import PlaneProblem
 from safestart.engines.space.sequence import SequenceInSpace
-from safestart.exact.space.question import Face
+from safestart.exact.space.question import Face, SpaceQuestion
 from safestart.model.scenario import Floats
 from safestart.runtime.progress import Context
 from safestart.simulation.loop import fly
 from safestart.simulation.noise import Drawn, draws, truth_of
 from safestart.simulation.plant import Plant
+from safestart.simulation.record import Record
 
 
 class _Still:
@@ -73,6 +74,30 @@ class _Remembered(RelativeMotion):
         return self._held(t0, t1)
 
 
+class FlownInSpace:
+    """Flies starts of one question by the sequence controller; ``sigma`` is the noise of navigation, m and m/s.
+
+    Case ``n`` has the same noise in every study with this ``seed``.
+    """
+
+    def __init__(self, question: SpaceQuestion, sigma: tuple[float, float], seed: int) -> None:
+        frames = [[face for face in question.faces if face.frame == frame] for frame in ("body", "lvlh")]
+        self._question, self._seed = question, seed
+        self._constraints = [_Fixed(faces) for faces in frames if faces]
+        self._plant = Plant(_Remembered(question.motion), question.attitude)
+        self._controller = SequenceInSpace(question)
+        self._truth = truth_of(position_sigma=sigma[0], velocity_sigma=sigma[1])
+
+    def fly(self, state: Floats, case: int) -> Record:
+        """One flight from ``state`` (6,), LVLH, watched at all times until it leaves the faces."""
+        question = self._question
+        drawn = draws(self._truth, self._seed, np.array([case]), question.steps, planar=False)
+        errors = Drawn(self._truth, drawn[0] if len(drawn) else drawn)
+        return fly(
+            self._plant, self._constraints, self._controller, state, question.steps, question.dt, errors
+        )
+
+
 class MonteCarlo:
     """Flies every start inside the faces over the whole horizon."""
 
@@ -80,10 +105,7 @@ class MonteCarlo:
         """``margin`` is the least distance of the flight, m; outside the faces that of the start."""
         begin = time.perf_counter()
         question = problem.question
-        frames = [[face for face in question.faces if face.frame == frame] for frame in ("body", "lvlh")]
-        constraints = [_Fixed(faces) for faces in frames if faces]
-        plant, controller = Plant(_Remembered(question.motion), question.attitude), SequenceInSpace(question)
-        truth = truth_of(position_sigma=problem.sigma[0], velocity_sigma=problem.sigma[1])
+        flown = FlownInSpace(question, problem.sigma, problem.seed)
         distance = problem.distance()
         margin = distance.copy()
         inside = np.argwhere(distance >= 0.0)
@@ -91,12 +113,7 @@ class MonteCarlo:
         safe = planned = steps = fallbacks = 0
         effort = 0.0
         for done, (row, column) in enumerate(inside.tolist()):
-            case = row * problem.across + column
-            drawn = draws(truth, problem.seed, np.array([case]), question.steps, planar=False)
-            errors = Drawn(truth, drawn[0] if len(drawn) else drawn)
-            flight = fly(
-                plant, constraints, controller, states[row, column], question.steps, question.dt, errors
-            )
+            flight = flown.fly(states[row, column], row * problem.across + column)
             margin[row, column] = flight.margin[0]
             safe += int(flight.margin[0] >= 0.0)
             steps += int(flight.steps[0])

@@ -1,0 +1,1 @@
+"""The sweep-in-space process: many starts of one question in space, decided exactly and flown in closed loop."""
