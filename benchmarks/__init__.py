@@ -13,4 +13,5 @@ BENCHMARKS = (
     "http",
     "start_up",
     "first_start",
+    "two_workers",
 )

@@ -23,8 +23,8 @@ CELL = 8
 SHADES = 16
 STEP = 30
 """A cell is another one if its shade (0 to 255) differs by more: two steps of the sixteen shades and the averaging."""
-SHARE = 0.004
-"""Share of other cells that a picture may have."""
+SHARE = 0.001
+"""Share of other cells that a picture may have: a page stretched by a pixel has 0.00004, one without its menu 0.003."""
 FONT = Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf"
 _WORN = """
 @font-face { font-family: "Baseline"; src: url("/baseline.ttf"); }

@@ -9,11 +9,13 @@ The same visits make the screenshots of docs/pages.md (``just screenshots``).
 
 from __future__ import annotations
 
+import io
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from PIL import Image, ImageFilter
 from playwright.sync_api import Browser, Page, expect
 
 from safestart.runtime.access import LOCAL, Role
@@ -96,6 +98,25 @@ def test_every_page_is_in_the_docs() -> None:
     for name in STOPS:
         assert f"](screenshots/{name}.png)" in page
         assert (docs / "screenshots" / f"{name}.png").is_file()
+
+
+@pytest.mark.parametrize(
+    ("change", "is_seen"),
+    [
+        (lambda page: page.filter(ImageFilter.GaussianBlur(0.6)), False),
+        (lambda page: page.resize((page.width + 1, page.height)).crop((0, 0, *page.size)), False),
+        (lambda page: page.crop((0, 24, page.width, page.height)), True),
+    ],
+    ids=["letters smoothed in another way", "a pixel wider", "a line higher"],
+)
+def test_how_a_machine_draws_letters_is_no_difference(
+    change: Callable[[Image.Image], Image.Image], is_seen: bool
+) -> None:
+    page = Image.open(Path(__file__).parents[2] / "docs/screenshots/explore.png").convert("RGB")
+    one, two = io.BytesIO(), io.BytesIO()
+    page.save(one, "PNG")
+    change(page).save(two, "PNG")
+    assert difference(coarse(one.getvalue()), coarse(two.getvalue())).seen is is_seen
 
 
 @pytest.mark.parametrize("name", STOPS)

@@ -1,4 +1,4 @@
-"""Bundles, settings and query strings changed at random, for a time: ``python -m tests.fuzzing.timed --seconds 180``.
+"""Bundles, settings, inputs and query strings changed at random: ``python -m tests.fuzzing.timed --seconds 180``.
 
 Each is taken or refused in words. Ends with 1 if one raised anything else, or took longer than a second.
 """
@@ -18,6 +18,7 @@ from safestart.errors import InvalidInput, SafestartError
 from safestart.records.bundle import unpack
 from safestart.runtime.settings import Settings, settings
 from tests.contract.records.test_hostile_bundles import EVENT, JOB, RESULT, sealed
+from tests.fuzzing.urls import url
 
 SLOW_S = 1.0
 WORDS: tuple[Any, ...] = (
@@ -80,7 +81,7 @@ def query(draw: random.Random) -> Callable[[], object]:
     return lambda: SPEC.parse(asked)
 
 
-KINDS = {"bundles": bundle, "settings": setting, "queries": query}
+KINDS = {"bundles": bundle, "settings": setting, "queries": query, "urls": url}
 
 
 def main() -> int:
@@ -94,6 +95,7 @@ def main() -> int:
     asked = parser.parse_args()
     wrong = 0
     for kind in asked.kinds:
+        KINDS[kind](random.Random(0))  # what it needs is loaded before its time begins
         draw, end, worst = random.Random(asked.seed), time.monotonic() + asked.seconds, 0.0
         outcomes: Counter[str] = Counter()
         while time.monotonic() < end:

@@ -178,14 +178,13 @@ async def work(options: Options) -> int:
         where = options.scheduler or f"{options.processes} task processes"
         log.info("%s on %s, cluster ready in %.1f s", owner, where, time.monotonic() - start)
         kernels = Kernels(cluster)
-        if await kernels.load(stopping):
-            announcing.cancel()
+        announcing.cancel()
+        if not stopping.is_set():
             log.info("takes jobs from %s", database.shown)
             purging = asyncio.create_task(_purge(Retention(database), options.keep_s))
             await Worker(options, jobs, cluster, owner, kernels).run(stopping)
             purging.cancel()
             kernels.stop()
-        announcing.cancel()
         lost = bool(cluster.lost) or kernels.failed
         await _say_goodbye(jobs, owner)
         log.info("stopping")

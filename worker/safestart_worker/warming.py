@@ -1,7 +1,7 @@
 """What a worker that has just started still compiles, and which jobs need not wait for it.
 
 A job starts when the kernels of its process are there. What the next job needs is compiled first, by as many task
-processes as are free; the rest follows beside running jobs.
+processes as are free; the rest follows beside running jobs, and last the modules that no job has loaded yet.
 """
 
 from __future__ import annotations
@@ -10,6 +10,9 @@ import asyncio
 import logging
 import time
 from collections.abc import Awaitable, Callable, Iterable
+
+from distributed import KilledWorker
+from distributed.client import FutureCancelledError
 
 from safestart.errors import NotFound
 from safestart.processes.registry import process
@@ -43,17 +46,6 @@ class Kernels:
     def over(self) -> bool:
         """True when no job waits for kernels any more."""
         return not (self._left or self._running) or time.monotonic() - self._begun > self._patience_s
-
-    async def load(self, stopping: asyncio.Event) -> bool:
-        """Load the modules in all processes, as long as patience lasts; False: take no jobs."""
-        self._begun = time.monotonic()
-        loading = asyncio.ensure_future(self._kept("the modules", self._cluster.load()))
-        stop = asyncio.ensure_future(stopping.wait())
-        await asyncio.wait({loading, stop}, timeout=self._patience_s, return_when=asyncio.FIRST_COMPLETED)
-        stop.cancel()
-        if not loading.done():
-            loading.cancel()
-        return not (self.failed or stopping.is_set())
 
     def there(self, process_id: str) -> bool:
         """Whether a job of this process finds its kernels compiled; if not, they come next."""
@@ -92,12 +84,17 @@ class Kernels:
         self.on_change()
 
     async def _everywhere(self) -> None:
-        await self._kept("all kernels", self._cluster.warm_all())
+        """All modules and kernels in every process, so that no later job loads them."""
+        await self._kept("modules and kernels", self._cluster.warm_all())
 
     async def _kept(self, what: str, work: Awaitable[None]) -> bool:
         """Whether ``work`` has ended well; an error of it ends the worker."""
         try:
             await work
+        except (KilledWorker, FutureCancelledError):
+            # The process was killed for a job that it ran beside: jobs compile what they miss.
+            log.warning("%s: the task process that warmed up was ended", what)
+            return False
         except Exception:
             self.failed = True
             log.exception("%s: warming up failed: this worker takes no jobs and ends", what)

@@ -9,8 +9,9 @@ import math
 
 import numpy as np
 
+from safestart.hopping.hop_constraints import Flags
 from safestart.hopping.hop_program import HopProgram, Solved, Weights
-from safestart.hopping.hop_solver import Flags, solved
+from safestart.hopping.hop_solver import solved
 from safestart.model.scenario import Floats
 from safestart.runtime.kernels import compiled
 

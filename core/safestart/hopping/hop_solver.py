@@ -15,8 +15,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from safestart.hopping.hop_constraints import Flags, factored, linear_parts, pulled_back, substituted
 from safestart.model.scenario import Floats
 from safestart.runtime.kernels import compiled
 
@@ -25,100 +25,6 @@ _GAP = 1e-9
 """Mean product of a constraint with its multiplier at which the method stops, over the cost's own scale."""
 _FIT = 1e-9
 _BACK = 0.995
-Flags = NDArray[np.bool_]
-
-
-@compiled()
-def _factor(m: Floats) -> bool:
-    """Cholesky factor of ``m`` (N, N), in its lower triangle; False if it is not positive definite."""
-    size = len(m)
-    for j in range(size):
-        pivot = m[j, j]
-        for k in range(j):
-            pivot -= m[j, k] * m[j, k]
-        if not pivot > 0.0:
-            return False
-        root = math.sqrt(pivot)
-        m[j, j] = root
-        for i in range(j + 1, size):
-            total = m[i, j]
-            for k in range(j):
-                total -= m[i, k] * m[j, k]
-            m[i, j] = total / root
-    return True
-
-
-@compiled()
-def _back(m: Floats, x: Floats) -> None:
-    """Solve with the factor, in place."""
-    size = len(m)
-    for i in range(size):
-        for k in range(i):
-            x[i] -= m[i, k] * x[k]
-        x[i] /= m[i, i]
-    for i in range(size - 1, -1, -1):
-        for k in range(i + 1, size):
-            x[i] -= m[k, i] * x[k]
-        x[i] /= m[i, i]
-
-
-@compiled()
-def _rows(
-    u: Floats,
-    p: Floats,
-    m: Floats,
-    s: Floats,
-    t: float,
-    a: Floats,
-    both: Flags,
-    g: Floats,
-    boxed: bool,
-    out: Floats,
-) -> None:
-    """The linear parts of all constraints, in order: p, m, s, s + A u, s - A u, t, t + G u_0, the box of u_0."""
-    c, r, b = len(u), len(s), len(g)
-    for i in range(c):
-        out[i], out[c + i] = p[i], m[i]
-    at = 2 * c
-    for i in range(r):
-        value = 0.0
-        for j in range(c):
-            value += a[i, j] * u[j]
-        out[at + i] = s[i]
-        out[at + r + i] = s[i] + value
-        out[at + 2 * r + i] = s[i] - value if both[i] else 0.0
-    at += 3 * r
-    out[at] = t
-    for i in range(b):
-        out[at + 1 + i] = t + g[i, 0] * u[0] + g[i, 1] * u[1] + g[i, 2] * u[2]
-    at += 1 + b
-    for i in range(3):
-        out[at + i] = -u[i] if boxed else 0.0
-        out[at + 3 + i] = u[i] if boxed else 0.0
-
-
-@compiled()
-def _pulled(c: int, a: Floats, both: Flags, g: Floats, boxed: bool, y: Floats, out: Floats) -> float:
-    """(A' (y4 - y5) + G' y7 + box)(c,) of vectors over the constraints; returns the sum over t and the barrier."""
-    r, b = len(a), len(g)
-    out[:] = 0.0
-    at = 2 * c + r
-    for i in range(r):
-        v = y[at + i] - (y[at + r + i] if both[i] else 0.0)
-        for j in range(c):
-            out[j] += v * a[i, j]
-    at += 2 * r
-    total: float = y[at]
-    for i in range(b):
-        v = y[at + 1 + i]
-        total += v
-        for j in range(3):
-            out[j] += v * g[i, j]
-    at += 1 + b
-    if boxed:
-        for j in range(3):
-            out[j] += y[at + 3 + j] - y[at + j]
-    return total
 
 
 @compiled()
@@ -167,7 +73,7 @@ def solved(
             p[i], m[i] = 1.0 + max(centre[i], 0.0), 1.0 + max(-centre[i], 0.0)
     u = p - m
     y, lam, row = np.ones(count), np.ones(count), np.zeros(count)
-    _rows(u, p, m, s, t, a, both, g, boxed, row)
+    linear_parts(u, p, m, s, t, a, both, g, boxed, row)
     for i in range(count):
         y[i] = max(row[i] + h[i], 1.0) if live[i] else 1.0
         lam[i] = 1.0 if live[i] else 0.0
@@ -185,14 +91,14 @@ def solved(
     three, four = two + r, two + 2 * r
     for k in range(_STEPS):
         # Residuals of the constraints and of stationarity.
-        _rows(u, p, m, s, t, a, both, g, boxed, row)
+        linear_parts(u, p, m, s, t, a, both, g, boxed, row)
         gap, off = 0.0, 0.0
         for i in range(count):
             res[i] = row[i] + h[i] - y[i] if live[i] else 0.0
             off = max(off, abs(res[i]))
             gap += y[i] * lam[i] if live[i] else 0.0
         gap /= many
-        total = _pulled(c, a, both, g, boxed, lam, pull)
+        total = pulled_back(c, a, both, g, boxed, lam, pull)
         grad = q2 @ u + q
         stray = abs(heavy - total) if b else 0.0
         for i in range(c):
@@ -234,7 +140,7 @@ def solved(
         for j in range(c):
             matrix[j, j] += w[j] * w[c + j] / (w[j] + w[c + j])
         factor[:] = matrix
-        if not _factor(factor):
+        if not factored(factor):
             return u, False, k
         sigma = 0.0
         for phase in range(2):
@@ -244,7 +150,7 @@ def solved(
                 if live[i]:
                     target = sigma * gap - (dy[i] * dlam[i] if phase else 0.0)
                     extra[i] = target / y[i] - w[i] * res[i]
-            total = _pulled(c, a, both, g, boxed, extra, pull)
+            total = pulled_back(c, a, both, g, boxed, extra, pull)
             # Right sides of p, m; of s and t through their elimination.
             for i in range(c):
                 right[i] = pull[i]
@@ -265,7 +171,7 @@ def solved(
                 both_sides = r1 + r2
                 step[i] = r1 - w[i] * both_sides / (w[i] + w[c + i])
                 dm[i] = both_sides
-            _back(factor, step)
+            substituted(factor, step)
             for i in range(c):
                 dp[i] = (w[c + i] * step[i] + dm[i]) / (w[i] + w[c + i])
                 dm[i] = dp[i] - step[i]
@@ -278,7 +184,7 @@ def solved(
             dt = 0.0
             if b:
                 dt = (rt - lean[0] * step[0] - lean[1] * step[1] - lean[2] * step[2]) / by_t
-            _rows(step, dp, dm, ds, dt, a, both, g, boxed, drow)
+            linear_parts(step, dp, dm, ds, dt, a, both, g, boxed, drow)
             most, most_dual = 1.0, 1.0
             for i in range(count):
                 if live[i]:

@@ -137,6 +137,17 @@ def test_the_document_is_checked_by_its_own_arithmetic(document, proof: Proof) -
     assert any("ended early, at any time" in line for line in verified.statement)
 
 
+def test_the_nonlinear_motion_is_checked_too_and_its_radii_count() -> None:
+    plan = Plan(N, (0.0, 300.0, 0.0, 0.0, 0.0, 0.0), (Burn(0.0, (0.05, 0.0, 0.0), 40.0),))
+    made = prove(Question(plan, 50.0, 0.3 * ORBIT, STUDY, Failures(20.0), 8.1e6), sharp=False)
+    document = json.loads(json.dumps(document_of(made)))
+    assert check(document).verdict == "PROVED"
+    cut = next(case for case in document["cases"] if case["kind"] == "cut")
+    cut["radii_m"] = [radius - 1.0 for radius in cut["radii_m"]]
+    with pytest.raises(ProofRejected, match="radii_m"):
+        check(_sealed(document))
+
+
 def _late_piece(document):
     """The path of a late burn in one of its thirds of time is left out."""
     found = [c for c in document["cases"] if c["kind"] == "late" and c["burn"] == 1]

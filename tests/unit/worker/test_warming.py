@@ -1,9 +1,11 @@
 """A job waits for its own kernels only; a worker whose warm-up failed takes no jobs."""
 
 import asyncio
-from typing import Any, cast
+from typing import cast
 
 import pytest
+from distributed import KilledWorker
+from distributed.client import FutureCancelledError
 
 from safestart.processes.registry import PROCESS_IDS, process
 from safestart.runtime.warmup import PARTS
@@ -23,9 +25,6 @@ class Processes:
         self.begun: list[str] = []
         self.ends: dict[str, asyncio.Future[None]] = {}
         self.everywhere = 0
-
-    async def load(self) -> None:
-        pass
 
     async def compile(self, part: str) -> None:
         self.begun.append(part)
@@ -145,14 +144,38 @@ def test_a_part_that_cannot_be_compiled_ends_the_worker(caplog: pytest.LogCaptur
     assert "cannot cache function" in caplog.text
 
 
+async def killed(error: Exception) -> Kernels:
+    cluster = Processes()
+    kernels = over(cluster)
+    kernels.go_on(1)
+    await settled()
+    await cluster.end(PARTS_ORDER[0], error)
+    kernels.go_on(1)
+    await settled()
+    assert cluster.begun == PARTS_ORDER[:2]
+    return kernels
+
+
+@pytest.mark.parametrize("error", [KilledWorker("task", None, 3), FutureCancelledError("task", "lost")])
+def test_a_process_that_is_killed_beside_a_job_does_not_end_the_worker(error: Exception) -> None:
+    assert not asyncio.run(killed(error)).failed
+
+
 class NotLoading(Processes):
-    async def load(self) -> None:
+    async def warm_all(self) -> None:
         raise ImportError("no module")
 
 
-@pytest.mark.parametrize(("made", "taken"), [(Processes, True), (NotLoading, False)])
-def test_what_cannot_be_loaded_takes_no_jobs(made: Any, taken: bool) -> None:
-    async def loaded() -> bool:
-        return await over(made()).load(asyncio.Event())
+async def last_part(cluster: Processes) -> Kernels:
+    kernels = Kernels(cast(Cluster, cluster), ("flights",))
+    kernels.go_on(1)
+    await settled()
+    await cluster.end("flights")
+    await settled()
+    return kernels
 
-    assert asyncio.run(loaded()) is taken
+
+def test_what_cannot_be_loaded_ends_the_worker(caplog: pytest.LogCaptureFixture) -> None:
+    cluster = NotLoading()
+    assert asyncio.run(last_part(cluster)).failed
+    assert "modules and kernels: warming up failed" in caplog.text

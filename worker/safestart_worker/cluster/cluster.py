@@ -143,21 +143,15 @@ class Cluster:
             with suppress(TimeoutError, OSError):
                 await asyncio.wait_for(self.stop(job, futures, outcome), LEAVE_TIMEOUT_S)
 
-    async def load(self) -> None:
-        """Load the modules in every process."""
-        addresses = list(await self._client.nthreads())
-        await self._all([self._client.submit(load, workers=[a], pure=False) for a in addresses])
-
     async def compile(self, part: str) -> None:
         """Compile one part of :data:`safestart.runtime.warmup.PARTS` in one of the processes; jobs go first."""
         await self._all([self._client.submit(warm, part, pure=False, priority=_LAST)])
 
     async def warm_all(self) -> None:
-        """Bring every kernel into every process, from the cache on disk; jobs go first."""
-        addresses = list(await self._client.nthreads())
-        await self._all(
-            [self._client.submit(warm, workers=[a], pure=False, priority=_LAST) for a in addresses]
-        )
+        """Bring all modules and kernels into every process, one after the other: the others stay free for jobs."""
+        for address in list(await self._client.nthreads()):
+            for work in (load, warm):
+                await self._all([self._client.submit(work, workers=[address], pure=False, priority=_LAST)])
 
     async def _all(self, tasks: Sequence[Future[Any]]) -> None:
         for task in tasks:  # the client's gather would log stack traces when interrupted

@@ -127,9 +127,8 @@ def _support(d: list[arb], zone: Zone) -> arb:
 
 
 def _norm(entries: list[arb]) -> arb:
-    if len(entries) == 1:
-        return abs(entries[0])
-    return sum((e * e for e in entries), arb(0)).sqrt()
+    """From above: where a column's image passes through zero, the square of its ball would reach below."""
+    return sum((arb(e.abs_upper()) ** 2 for e in entries), arb(0)).sqrt()
 
 
 def _swing(one: arb_mat, two: arb_mat, sizes: list[int]) -> arb:

@@ -8,7 +8,7 @@ from typing import Any
 from sqlalchemy import ColumnElement, Select, func, select
 from sqlalchemy.orm import aliased
 
-from safestart.store.dialect import after, seconds_between
+from safestart.store.dialect import after, holds, seconds_between
 from safestart.store.jobs.filters import JobFilter, Order
 from safestart.store.jobs.labelling import of_tag
 from safestart.store.models import JobRow
@@ -24,7 +24,7 @@ def matching(wanted: JobFilter) -> Select[int] | None:
     if not texts:
         return None
     row = aliased(JobRow)
-    return select(row.seq).where(*(row.search.contains(text, autoescape=True) for text in texts))
+    return select(row.seq).where(*(holds(row.search.expression, text) for text in texts))
 
 
 def conditions(wanted: JobFilter) -> Iterator[ColumnElement[bool]]:

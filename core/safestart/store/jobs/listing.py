@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from base64 import urlsafe_b64decode, urlsafe_b64encode
+from collections.abc import Sequence
 from dataclasses import fields
 from typing import Any
 
@@ -56,29 +57,54 @@ class Listing:
         if cursor is not None and not by_cursor:
             raise invalid("cursor", "none with an offset or another order than the newest first", cursor)
         with self._database.session() as session:
-            meets = (*conditions(wanted), *_found(session, wanted))
+            meets, many = _met(session, wanted)
+            order = order_of(by, descending=descending)
+            if many and cursor is None:
+                # A search that finds many reads all texts: once for the number of jobs and the page.
+                numbers, total = _counted(session, meets, order, limit + by_cursor, offset)
+                older = _encode(_BEFORE, numbers[limit - 1]) if len(numbers) > limit else None
+                return _page(_rows(session, numbers[:limit]), older, None, total)
             total = session.scalar(select(func.count()).select_from(JobRow).where(*meets)) or 0
             if by_cursor:
                 return _beside(session, meets, limit, cursor, total)
-            order = order_of(by, descending=descending)
             query = select(JobRow.seq).where(*meets).order_by(*order).limit(limit).offset(offset)
-            numbers = session.scalars(query).all()
-            rows = {row.seq: row for row in session.execute(select(*_ENTRY).where(JobRow.seq.in_(numbers)))}
-        return _page([rows[number] for number in numbers], None, None, total)
+            return _page(_rows(session, session.scalars(query).all()), None, None, total)
 
 
-def _found(session: Session, wanted: JobFilter) -> tuple[ColumnElement[bool], ...]:
-    """The condition of a filter's words and tags. Few jobs are looked up once for the page, its count and its ends."""
-    query = matching(wanted)
+_Conditions = tuple[ColumnElement[bool], ...]
+
+
+def _met(session: Session, wanted: JobFilter) -> tuple[_Conditions, bool]:
+    """The conditions of a filter, and whether many jobs have its words and tags.
+
+    Few are looked up once for the page, its count and its ends.
+    """
+    others, query = tuple(conditions(wanted)), matching(wanted)
     if query is None:
-        return ()
+        return others, False
     numbers = session.scalars(query.limit(_FEW + 1)).all()
-    return (JobRow.seq.in_(query if len(numbers) > _FEW else numbers),)
+    many = len(numbers) > _FEW
+    return (*others, JobRow.seq.in_(query if many else numbers)), many
 
 
-def _beside(
-    session: Session, meets: tuple[ColumnElement[bool], ...], limit: int, cursor: str | None, total: int
-) -> JobPage:
+def _counted(
+    session: Session, meets: _Conditions, order: Sequence[ColumnElement[Any]], limit: int, offset: int
+) -> tuple[list[int], int]:
+    """Numbers of a page's jobs, and how many meet the conditions."""
+    query = select(JobRow.seq, func.count().over().label("total")).where(*meets)
+    rows = session.execute(query.order_by(*order).limit(limit).offset(offset)).all()
+    if rows or not offset:
+        return [row.seq for row in rows], rows[0].total if rows else 0
+    return [], session.scalar(select(func.count()).select_from(JobRow).where(*meets)) or 0
+
+
+def _rows(session: Session, numbers: Sequence[int]) -> list[Row[Any]]:
+    """The rows of these jobs, in their order."""
+    rows = {row.seq: row for row in session.execute(select(*_ENTRY).where(JobRow.seq.in_(numbers)))}
+    return [rows[number] for number in numbers]
+
+
+def _beside(session: Session, meets: _Conditions, limit: int, cursor: str | None, total: int) -> JobPage:
     newer, seq = (False, None) if cursor is None else _decode(cursor)
     query = select(*_ENTRY).where(*meets).limit(limit + 1)
     if seq is not None:

@@ -93,28 +93,38 @@ const stored = store.panel({
 
 // ---- their pictures and texts
 
+/** The inputs of the picture, and the frame in which the next one is drawn; 0 for none. */
+let drawnFor = null, due = 0;
+
+/** Whether the previous picture stays, greyed, as the next answer is awaited. */
+const stays = () => (certified.old !== null || region.old !== null) && certified.state === "asking";
+
+/** Mark the picture at once, and draw it anew in the next frame: several panels change with one key. */
 function redraw() {
-  const values = given(store.inputs), old = certified.old !== null || region.old !== null;
-  // While the next answer is awaited, the previous picture stays, greyed at once and not drawn again.
-  map.classList.toggle("old", old && values !== null);
-  map.dataset.digest = certified.state === "there" ? certified.digest : "";
-  map.dataset.proved = region.state === "there" ? region.digest : "";
-  if (values === null) {
-    map.hidden = true;
-    return showMapState();
-  }
-  map.hidden = false;
+  const values = given(store.inputs), fresh = drawnFor === store.inputs;
+  map.hidden = values === null;
+  map.classList.toggle("old", values !== null && (!fresh || stays()));
+  map.dataset.digest = fresh && certified.state === "there" ? certified.digest : "";
+  map.dataset.proved = fresh && region.state === "there" ? region.digest : "";
   showMapState();
-  if (old && certified.state === "asking") return undefined;
-  map.classList.remove("old");
+  if (values !== null && !stays() && due === 0) due = requestAnimationFrame(paint);
+}
+
+function paint() {
+  due = 0;
+  const values = given(store.inputs);
+  if (values === null || stays()) return;
   const inOrbit = $("frame").value === "lvlh" && flight.data !== null;
   const done = drawMap(map, {
     values, certified: certified.answer, region: region.answer, sets: setsOf(values), says: mapWords(values),
     turn: inOrbit ? flight.turn(values.omega_t_deg_s) : null,
     overlay: (frame) => [...(frame === "body" ? pins.traces(values) : []), ...flight.traces(frame, startOf(values))],
   });
+  drawnFor = store.inputs;
+  map.classList.remove("old");
+  map.dataset.digest = certified.state === "there" ? certified.digest : "";
+  map.dataset.proved = region.state === "there" ? region.digest : "";
   if (certified.answer) done.then(() => { map.dataset.drawnMs = (performance.now() - begun).toFixed(1); });
-  return undefined;
 }
 
 /** The stored sets, if they answer the question of the fields. */
