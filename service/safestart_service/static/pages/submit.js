@@ -24,7 +24,8 @@ store.panel({
   poses: ({ process, from, preset }) => process && { process, from, preset },
   asks: async ({ process, from, preset }, signal) => {
     const [spec, job] = await Promise.all([description(process), from ? get(`/jobs/${from}`, { signal }) : null]);
-    return { spec, given: presets(spec)[preset] ?? job?.inputs, preset, named: job ? { name: job.name, tags: job.tags, note: job.note } : {} };
+    // A new form opens as the example, which is quick; one of a preset or a job holds what that asks, and nothing else.
+    return { spec, given: presets(spec)[preset] ?? job?.inputs ?? spec.example, preset, named: job ? { name: job.name, tags: job.tags, note: job.note } : {} };
   },
   shows: showForm,
 });

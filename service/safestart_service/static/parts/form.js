@@ -21,11 +21,8 @@ export function field(schema, whole, name, path, given) {
 function group(schema, whole, name, path, given) {
   const example = whole.examples?.[0] ?? {};
   const parts = Object.entries(schema.properties).map(([key, inner]) => {
-    const required = schema.required?.includes(key);
-    // What has no value of its own stands as in the example, so that the form as it opens is a question.
-    const bare = required || (inner.default ?? null) === null;
-    const known = given?.[key] ?? (path === "" && bare ? example[key] : undefined);
-    return [key, field(inner, whole, key, path ? `${path}.${key}` : key, known), path !== "" || required || key in example || given?.[key] !== undefined];
+    const required = schema.required?.includes(key), known = given?.[key];
+    return [key, field(inner, whole, key, path ? `${path}.${key}` : key, known), path !== "" || required || key in example || known !== undefined];
   });
   const open = parts.filter(([, , first]) => first), rare = parts.filter(([, , first]) => !first);
   const folded = rare.length ? el("details", { class: "rare" }, el("summary", {}, `${rare.length} more ${rare.length === 1 ? "setting" : "settings"}, as usual unless changed: ${rare.map(([key]) => titled(key).text.toLowerCase()).join(", ")}`),
@@ -53,10 +50,15 @@ function number(schema, name, path, given) {
   return { node: dial(schema, name, path, control), value: () => (control.value === "" ? undefined : Number(control.value)) };
 }
 
+/** A line; where the text of a file is wanted, many lines, which may come from a file. */
 function text(schema, name, path, given) {
-  const control = el("input", { type: "text" });
+  const long = schema.maxLength > 10000, control = el(long ? "textarea" : "input", long ? { rows: 4, spellcheck: "false" } : { type: "text" });
   if (given !== undefined && given !== null) control.value = given;
-  return { node: dial(schema, name, path, control), value: () => (control.value === "" ? undefined : control.value) };
+  const file = long ? el("input", { type: "file", "aria-label": `${titled(name).text}, from a file`, onchange: async () => {
+    control.value = await file.files[0]?.text() ?? control.value;
+    control.dispatchEvent(new Event("input", { bubbles: true }));
+  } }) : null;
+  return { node: dial(schema, name, path, control, file), value: () => (control.value === "" ? undefined : control.value) };
 }
 
 function choice(schema, name, path, given) {
