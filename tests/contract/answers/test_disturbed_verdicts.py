@@ -40,7 +40,7 @@ def test_three_verdicts_and_what_their_proofs_are_about() -> None:
     assert no_go["question"]["max_acceleration_m_s2"] == 0.05
     assert none is None
     assert found["reason"][0].startswith("against every disturbance up to 0.004 m/s^2")
-    assert found["reason"][1].startswith("even undisturbed no thrust history stays")
+    assert found["reason"][1].startswith("even undisturbed no thrust held over steps of 2 s stays")
     assert found["reason"][2].startswith("undecided: no plan fits the tube")
     calm = ask(states=[NEAR, EDGE], disturbance_m_s2=0)
     assert calm["verdict"] == ["GO", "GO"]

@@ -123,11 +123,11 @@ def test_a_process_that_starts_slowly_costs_no_answer(
     start = Helpers._start
 
     async def slowly(helpers: Helpers) -> None:
-        await asyncio.sleep(3.0)
+        await asyncio.sleep(9.0)
         await start(helpers)
 
     monkeypatch.setattr(Helpers, "_start", slowly)
-    with service(tmp_path, answer_timeout_s=2.5, answer_processes=1) as client:
+    with service(tmp_path, answer_timeout_s=8.0, answer_processes=1) as client:
         quick = {**POINT, "x_m": 5, "y_m": 40, "method": "exact"}
         assert client.get("/go-no-go", params=quick).status_code == 200
 

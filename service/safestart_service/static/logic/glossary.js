@@ -3,7 +3,7 @@
 /** Terms with their meanings; `also` are other forms under which the pages show them. */
 export const TERMS = [
   { term: "GO", means: "A start from which the requirement is proved to be met: the service knows a thrust history and a proof of it." },
-  { term: "NO GO", means: "A start for which it is proved that no thrust history meets the requirement, whatever the controller." },
+  { term: "NO GO", means: "A start for which it is proved that no thrust, held over the steps that the answer states, meets the requirement, whatever the controller." },
   { term: "UNDECIDED", means: "Neither is proved. It never counts as a GO." },
   { term: "Tumble rate", means: "How fast the target turns about its axis, as seen from the orbit frame (LVLH), in degrees per second." },
   { term: "Thrust acceleration", means: "The largest acceleration that the chaser can give itself, in any direction, at any time." },
