@@ -8,7 +8,7 @@ import numpy as np
 
 from safestart.errors import invalid
 from safestart.interchange.covariance import Covariance
-from safestart.interchange.epochs import SECOND, Nanoseconds, system_of, text_of
+from safestart.interchange.epochs import Nanoseconds, system_of, text_of
 from safestart.interchange.frames import frame_of
 from safestart.model.orbit import EARTH_RADIUS
 from safestart.model.scenario import Floats
@@ -64,8 +64,3 @@ class Ephemeris:
                 "(files hold km and km/s)",
                 f"{distance[k]:g} m and {speed[k]:g} m/s at {text_of(self.epochs[k : k + 1], self.time_system)[0]}",
             )
-
-    @property
-    def span_s(self) -> float:
-        """From the first to the last epoch, s."""
-        return float(self.epochs[-1] - self.epochs[0]) / SECOND

@@ -65,12 +65,6 @@ def _hermite(nodes: Floats, states: Floats, times: Floats) -> Floats:
     return np.concatenate([course(times), course.derivative(times)], axis=1)
 
 
-def gaps_of(ephemeris: Ephemeris) -> list[tuple[int, int]]:
-    """The gaps as pairs of TAI epochs, ns."""
-    ends = np.nonzero(np.diff(_runs(ephemeris)))[0]
-    return [(int(ephemeris.epochs[k]), int(ephemeris.epochs[k + 1])) for k in ends]
-
-
 def quaternions_at(course: AttitudeCourse, epochs: Nanoseconds) -> Floats:
     """Quaternions (K, 4) at TAI ``epochs`` (K,) by slerp; raises ``InvalidInput`` outside of the course's span."""
     from scipy.spatial.transform import Rotation, Slerp

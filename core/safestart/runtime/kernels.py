@@ -3,8 +3,8 @@
 Numba freezes every global that a kernel reads, its constants and the kernels it calls. But its cache key covers
 only the bytecode of the one function and the time of its file, so a constant or callee changed in another file
 would still run as the old machine code. The cache key of a :func:`compiled` function covers all of it: the source
-text of every function that it calls, at any depth, the value of every constant, and the fields of its record
-arguments.
+text of every function that it calls, at any depth, their options and default arguments, the value of every constant,
+and the fields of its record arguments.
 
 Inside a kernel arrays are copied by loops: ``a[:] = b`` of two arrays compiles the text of an error about their shapes,
 two seconds of it.
@@ -48,6 +48,7 @@ def compiled(**options: Any) -> Callable[[Any], Any]:
         kernel = by_types(njit(**named)(function))
         try:
             kernel._cache = KernelCache(function)
+            kernel._cache.options = _options(kernel)
         except (RuntimeError, OSError) as error:  # Numba found no folder that it may write to
             _say("no place to keep compiled kernels", error)
         return kernel
@@ -74,6 +75,9 @@ def by_types(kernel: Any) -> Any:
 
 class KernelCache(FunctionCache):
     """Numba's cache of one function, with a key that covers its dependencies and a digest of every file's content."""
+
+    options = ""
+    """Those of the compilation."""
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """The compiled code of a signature, or None when no trusted code exists."""
@@ -113,7 +117,7 @@ class KernelCache(FunctionCache):
 
     def _index_key(self, sig: Any, codegen: Any) -> Any:
         records = tuple(_record for argument in sig for _record in _records(argument))
-        return (*super()._index_key(sig, codegen), dependencies(self._py_func), records)
+        return (*super()._index_key(sig, codegen), self.options, dependencies(self._py_func), records)
 
 
 @cache
@@ -130,19 +134,21 @@ def _frozen(function: Any, seen: set[Any]) -> Iterator[str]:
         return
     seen.add(function)
     yield f"text of {function.__module__}: {_text_digest(function.__module__)}"
+    yield f"defaults of {function.__qualname__}: {function.__defaults__!r} {function.__kwdefaults__!r}"
     cells = zip(function.__code__.co_freevars, function.__closure__ or (), strict=True)
-    read = {name: cell.cell_contents for name, cell in cells}
-    read |= {
-        name: function.__globals__[name] for name in _names(function.__code__) if name in function.__globals__
-    }
+    names = _names(function.__code__)
+    read = {name: cell.cell_contents for name, cell in cells} | _named(names, function.__globals__)
+    for value in list(read.values()):
+        if isinstance(value, ModuleType) and value.__name__.startswith(_OURS):
+            yield f"text of {value.__name__}: {_text_digest(value.__name__)}"
+            read |= {f"{value.__name__}.{name}": one for name, one in _named(names, vars(value)).items()}
     for name, value in read.items():
         inner = getattr(value, "py_func", value)
         if isinstance(inner, FunctionType):
+            if inner is not value:
+                yield f"options of {name}: {_options(value)}"
             if inner.__module__.startswith(_OURS) or inner is not value:
                 yield from _frozen(inner, seen)
-        elif isinstance(value, ModuleType):
-            if value.__name__.startswith(_OURS):
-                yield f"text of {value.__name__}: {_text_digest(value.__name__)}"
         elif isinstance(value, type):
             if value.__module__.startswith(_OURS):
                 yield f"text of {value.__module__}: {_text_digest(value.__module__)}"
@@ -151,6 +157,16 @@ def _frozen(function: Any, seen: set[Any]) -> Iterator[str]:
             yield f"value of {name}: {value.dtype} {value.shape} {content}"
         elif isinstance(value, _CONSTANTS):
             yield f"value of {name}: {value!r}"
+
+
+def _options(kernel: Any) -> str:
+    """A kernel's options as a text that is the same in every process."""
+    options = kernel.targetoptions.items()
+    return repr(sorted((name, sorted(one) if isinstance(one, set) else one) for name, one in options))
+
+
+def _named(names: set[str], space: dict[str, Any]) -> dict[str, Any]:
+    return {name: space[name] for name in names if name in space}
 
 
 def _names(code: CodeType) -> set[str]:

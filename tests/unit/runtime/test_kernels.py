@@ -4,6 +4,7 @@ import ast
 import importlib
 import os
 import pkgutil
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -94,6 +95,45 @@ def test_a_changed_dependency_reaches_the_cache(
     assert toy(tmp_path) == (12.0, 1)
     assert toy(tmp_path, **changed) == (value, 0)
     assert toy(tmp_path) == (12.0, 1)
+
+
+# A kernel that takes an option, a callee's default and a module's constant from elsewhere.
+INDIRECT = {
+    "settings": "OPTION = 'python'\nDEFAULT = 2.0\nFACTOR = 2.0\n",
+    "numbers": "from safestart_toy.settings import FACTOR\n",
+    "callee": (
+        "from safestart.runtime.kernels import compiled\nfrom safestart_toy.settings import DEFAULT\n"
+        "@compiled()\ndef twice(x, by=DEFAULT):\n    return by * x\n"
+    ),
+    "kernel": (
+        "from safestart.runtime.kernels import compiled\nimport safestart_toy.numbers as numbers\n"
+        "from safestart_toy.callee import twice\nfrom safestart_toy.settings import OPTION\n"
+        "@compiled(error_model=OPTION)\n"
+        "def run(pair):\n    return numbers.FACTOR * twice(pair.first)\n"
+    ),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "text", "value"),
+    [("DEFAULT", "7.0", 42.0), ("FACTOR", "10.0", 60.0), ("OPTION", "'numpy'", 12.0)],
+)
+def test_what_a_kernel_takes_indirectly_reaches_the_cache(
+    tmp_path: Path, name: str, text: str, value: float
+) -> None:
+    assert toy(tmp_path, **INDIRECT) == (12.0, 0)
+    settings = re.sub(rf"{name} = .*", f"{name} = {text}", INDIRECT["settings"])
+    assert toy(tmp_path, **INDIRECT | {"settings": settings}) == (value, 0)
+
+
+def test_options_belong_to_the_key() -> None:
+    """Of the kernel, and of those that it calls; in the same words in every process, whatever the order of a set."""
+    callee = compiled(fastmath={"nsz", "contract"})(lambda x: x)
+    kernel = compiled(fastmath=True)(lambda x: callee(x))
+    if hasattr(kernel._cache, "options"):  # another kind where no folder can be written to
+        assert "('fastmath', True)" in kernel._cache.options
+    assert any("('fastmath', ['contract', 'nsz'])" in line for line in lines_of(kernel))
 
 
 @pytest.mark.slow

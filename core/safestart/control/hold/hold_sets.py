@@ -25,6 +25,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
+from safestart.attitude.body_frame import rotation
 from safestart.constraints.corridor import Corridor
 from safestart.control.hold.hold_lqr import Design
 from safestart.control.hold.turning_reference import TurningReference
@@ -174,9 +175,7 @@ def _rows(hold: Hold, phase: float, steps: int, sag: float) -> tuple[Floats, Flo
         state, thrust = hold.reference.at(angle)
         for tau in hold.instants().tolist():
             turned = angle + rate * tau
-            face = normals @ np.array(
-                [[math.cos(turned), math.sin(turned)], [-math.sin(turned), math.cos(turned)]]
-            )
+            face = normals @ rotation(-turned)
             place = (planar_transition(n, tau) @ state + planar_input(n, tau) @ thrust)[:2]
             rows.append(face @ hold.moved(tau) @ power)
             bounds.append(offsets - face @ place - sag)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from safestart.attitude.body_frame import rotation
 from safestart.control.hold.hold_sets import Ellipsoid, Hold, Polyhedron
 from safestart.model.scenario import Floats
 from safestart.processes.hold_region.spec import HoldRegionInputs
@@ -24,7 +23,7 @@ def picture(
     """Left: where a start that turns with the reference may be. Right: the sets' shadows along x and y, LVLH."""
     drawing = figure(12.0, 5.0)
     place, radial, along = drawing.subplots(1, 3)
-    back = np.array([[math.cos(phase), math.sin(phase)], [-math.sin(phase), math.cos(phase)]])
+    back = rotation(-phase)
     point = np.array([0.0, inputs.corridor.r_h_m + inputs.hold_clearance_m])
     small, large = _section(hold, inner) @ back.T + point, None
     if outer is not None:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from safestart.attitude.body_frame import rotation
 from safestart.attitude.spin import Spin
 from safestart.constraints.corridor import corridor_of
 from safestart.control.hold.hold_lqr import Design, HoldLqr
@@ -88,7 +89,7 @@ def run(inputs: HoldRegionInputs, context: Context) -> ProcessOutput:
 
 def turning(rate: float, phase: float) -> Floats:
     """(4, 4): an error of position and velocity as the turning body sees it, into the error in LVLH."""
-    turn = np.array([[math.cos(phase), -math.sin(phase)], [math.sin(phase), math.cos(phase)]])
+    turn = rotation(phase)
     spin = rate * np.array([[0.0, -1.0], [1.0, 0.0]])
     return np.block([[turn, np.zeros((2, 2))], [turn @ spin, turn]])
 
