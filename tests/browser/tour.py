@@ -40,7 +40,7 @@ STOPS: dict[str, Stop] = {
     "explore": Stop(f"/dashboard?{SLIVER}", "#map[data-proved]:not([data-proved=''])", _fly),
     "trade": Stop("/dashboard/trade", "#table tbody tr"),
     "approach": Stop("/dashboard/approach?angle_deg=0", "#burns tbody tr"),
-    "submit": Stop("/dashboard/submit?process=benchmark", "#in-omega_t_deg_s"),
+    "submit": Stop("/dashboard/submit?process=benchmark", "#estimate:not(:empty)"),
     "answer": Stop("/dashboard/submit?process=flight", "#in-horizon_s", _answer),
     "jobs": Stop("/dashboard/jobs", ".jobs tbody tr"),
     "job-findings": Stop("/dashboard/jobs/{safety}", ".findings tbody tr"),

@@ -141,8 +141,8 @@ class Layer:
 
     ``drawn``: a line, the area within a closed line, points (``value``: their verdicts), the set where ``value`` is
     positive, or a heat map of ``value``. ``beside`` names the list among the inputs whose entries belong to the rows; a
-    column ``beside.NAME`` is theirs. ``colour`` is a name of the pages' palette. ``{faces.0}`` in a title is the first
-    of the outputs' ``faces``.
+    column ``beside.NAME`` is theirs. ``colour`` is a name of the pages' palette. ``{faces.0}`` in a title, also of an
+    axis, is the first of the outputs' ``faces``.
     """
 
     title: str

@@ -10,4 +10,12 @@ from safestart.runtime.progress import Context
 
 def run(inputs: RegionInSpaceInputs, context: Context) -> ProcessOutput:
     """The polygons of every plane."""
-    return ProcessOutput({"planes": rows(*survey(inputs, context))})
+    planes = rows(*survey(inputs, context))
+    first = planes[0]
+    return ProcessOutput(
+        {
+            "planes": planes,
+            "first_inner_polygon": first["inner_polygon"],
+            "first_outer_polygon": first["outer_polygon"],
+        }
+    )

@@ -18,6 +18,7 @@ from safestart.exact.space.watch import space_watch_of
 from safestart.model.scenario import Floats
 from safestart.processes.base import ProcessOutput
 from safestart.processes.start_in_space.question import stay_in
+from safestart.processes.sweep_in_space.plots import margins
 from safestart.processes.sweep_in_space.spec import SweepInSpaceInputs
 from safestart.processes.wire import finite
 from safestart.runtime.progress import Context
@@ -74,7 +75,8 @@ def run(inputs: SweepInSpaceInputs, context: Context) -> ProcessOutput:
             "flown_margin_m": [row["flown_margin_m"] for row in rows],
             "delta_v_m_s": [row["delta_v_m_s"] for row in rows],
             "worst": [rows[k] for k in order[:MOST_WORST]],
-        }
+        },
+        (margins(rows),),
     )
 
 

@@ -55,8 +55,8 @@ export async function drawPicture({ view, result, chart, layers }) {
   }
   const equal = view.equal ? { scaleanchor: "x", constrain: "domain" } : {};
   await draw(chart, traces, {
-    title: { text: view.title }, xaxis: { title: { text: view.x }, ...(view.equal ? { constrain: "domain" } : {}) },
-    yaxis: { title: { text: view.y }, ...equal, ...(view.logarithmic ? logarithmic(layers) : {}) },
+    title: { text: view.title }, xaxis: { title: { text: layerTitle(view.x, result.outputs) }, ...(view.equal ? { constrain: "domain" } : {}) },
+    yaxis: { title: { text: layerTitle(view.y, result.outputs) }, ...equal, ...(view.logarithmic ? logarithmic(layers) : {}) },
   });
   chart.after(saveButtons(chart, view.title.toLowerCase().replaceAll(/[^a-z]+/g, "-"), el));
 }
