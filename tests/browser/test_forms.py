@@ -91,8 +91,7 @@ def test_a_preset_fills_the_form(browser: Browser, url: str) -> None:
     visit = Visit(context, url)
     page = visit.go("/dashboard/submit?process=tracking-mpc")
     menu = page.get_by_label("Preset")
-    names = menu.locator("option").all_text_contents()
-    assert names == ["none: as in the fields", *TARGETS]
+    expect(menu.locator("option")).to_have_text(["none: as in the fields", *TARGETS])
     menu.select_option("rocket body, 6 deg/s")
     expect(page.get_by_label("Preset")).to_have_value("rocket body, 6 deg/s")
     expect(page.locator("#in-body_rate_deg_s")).to_have_value("6, 0.4, 0.3")
