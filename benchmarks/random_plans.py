@@ -12,12 +12,13 @@ import argparse
 import json
 import math
 from collections import Counter
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from safestart.dynamics.cwh import transition_matrix
-from safestart.dynamics.two_body_kernel import STAGES, WEIGHTS, drifted, placed, pushed, seen
+from safestart.dynamics.two_body_kernel import STAGES, WEIGHTS, drifted, placed, pushed
 from safestart.hopping.approach import mean_motion_of
 from safestart.missed_burn.earth import Earth, target_before
 from safestart.missed_burn.plan import Burn, Errors, Failures, Plan, Question
@@ -141,21 +142,11 @@ def study(count: int, seed: int = 0) -> dict[str, Any]:
 
 
 def seen_every(proof: Proof, every: float = SAMPLE) -> float:
-    """Least distance, m, of the counter-example's own drift looked at every so many seconds from its last burn on."""
+    """Least distance, m, of the counter-example's own flight looked at every so many seconds from its last burn on."""
     flight = proof.counter_example
     assert flight is not None
-    assert flight.target is not None
-    state, now = placed(flight.target, flight.start), flight.begin
-    for time, impulse in zip(flight.times.tolist(), flight.impulses, strict=True):
-        state, _ = drifted(state, time - now, STAGES, WEIGHTS)
-        pushed(state, impulse)
-        now = time
-    least = float(np.linalg.norm(seen(state)[:3]))
-    while now < flight.look + every:
-        state, _ = drifted(state, every, STAGES, WEIGHTS)
-        now += every
-        least = min(least, float(np.linalg.norm(seen(state)[:3])))
-    return least
+    looks = np.arange(flight.times.max(initial=flight.begin), flight.look + every, every)
+    return min(replace(flight, look=look).distance() for look in looks.tolist())
 
 
 def main() -> None:
