@@ -15,8 +15,7 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[3]
 HERE = Path(__file__).parent
 PACKAGES = ("core/safestart", "service/safestart_service")
-_NOT_SOURCE = shutil.ignore_patterns("*.pyc")
-"""Compiled kernels come along: their keys hold the text of all that they were made of."""
+_NOT_SOURCE = shutil.ignore_patterns("__pycache__", "*.pyc", "*.nbi", "*.nbc")
 
 
 class House:
