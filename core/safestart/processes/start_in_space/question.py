@@ -16,6 +16,7 @@ from safestart.constraints.thrust_limit import ThrustLimit, ball
 from safestart.errors import InvalidInput, invalid
 from safestart.exact.question import Goal
 from safestart.exact.space.question import Face, SpaceQuestion, five_faces, starts_in_lvlh
+from safestart.exact.space.unknowns import Unknowns
 from safestart.model.orbit import KeplerOrbit
 from safestart.model.scenario import Floats
 from safestart.processes.start_in_space.demand_parts import demands_of
@@ -66,7 +67,18 @@ def question_of(inputs: SpaceInputs) -> SpaceQuestion:
             goal,
             inputs.speed_limit_m_s,
             demands,
+            unknowns_of(inputs),
         )
+
+
+def unknowns_of(inputs: SpaceInputs) -> Unknowns:
+    """What is not known beside the start, in SI units."""
+    return Unknowns(
+        math.radians(inputs.attitude_half_angle_deg),
+        math.radians(inputs.body_rate_half_width_deg_s),
+        inputs.inertia_half_width,
+        inputs.disturbance_m_s2,
+    )
 
 
 def stay_in(scenario: SpaceScenario, horizon_s: float) -> SpaceQuestion:
@@ -109,6 +121,7 @@ def _as_asked() -> Iterator[None]:
             "normal": "corridor.faces.normal",
             "offset": "corridor.faces.offset_m",
             "hold": "hold_m",
+            "inertia": "inertia_half_width",
         }
         field = str(error.field)
         place = "attitude.times_s" if field == "times" else places.get(field, field)

@@ -23,6 +23,8 @@ from safestart.processes.wire import Horizon, Triple
 
 MOST_STARTS = 1000
 MOST_PROOFS = 100
+UNKNOWNS = ("attitude_half_angle_deg", "body_rate_half_width_deg_s", "inertia_half_width", "disturbance_m_s2")
+"""What may not be known beside the start."""
 Method = Literal["exact", "auto", "tracking"]
 
 
@@ -78,6 +80,35 @@ class SpaceInputs(SpaceScenario, _Starts):
     velocity_half_width_m_s: float = Field(
         0.0, ge=0, le=10, description="Half-width of the box in velocity, m/s (stay)."
     )
+    attitude_half_angle_deg: float = Field(
+        0.0,
+        ge=0,
+        le=30,
+        description="The attitude at t = 0 is within this angle of the one given, deg (stay). For this and the next "
+        "three GO is one thrust history for all, by a bound on how far the attitude and the chaser may be off; NO_GO "
+        "holds for what is given; else UNDECIDED. Starts in body axes are taken to LVLH by the attitude given.",
+    )
+    body_rate_half_width_deg_s: float = Field(
+        0.0,
+        ge=0,
+        le=5,
+        description="The angular velocity differs by at most this, deg/s: at t = 0 of a torque-free body, at all times "
+        "of a spin or a table (stay).",
+    )
+    inertia_half_width: float = Field(
+        0.0,
+        ge=0,
+        le=0.3,
+        description="Each moment about the body's axes (diagonal of inertia_kg_m2) differs by at most this share "
+        "(stay, torque_free).",
+    )
+    disturbance_m_s2: float = Field(
+        0.0,
+        ge=0,
+        le=1,
+        description="Any acceleration of the chaser up to this acts beside the thrust, m/s^2 (stay); no feedback is "
+        "assumed.",
+    )
     keep_outs: list[KeepOutInput] = Field(
         default_factory=list,
         max_length=8,
@@ -98,6 +129,11 @@ class SpaceInputs(SpaceScenario, _Starts):
     proofs: bool = Field(
         False, description="Return proof documents for `safestart verify`; at most 100 starts."
     )
+
+    @property
+    def uncertain(self) -> bool:
+        """Whether more than the start is not known."""
+        return any(getattr(self, name) > 0.0 for name in UNKNOWNS)
 
     @model_validator(mode="after")
     def _settings_of_its_method(self) -> SpaceInputs:
@@ -182,6 +218,8 @@ def _cost(inputs: SpaceInputs) -> float:
     one = 3.0 * program_s(inputs.within_s if synchronize else inputs.horizon_s)
     if inputs.position_half_width_m or inputs.velocity_half_width_m_s:
         one *= 10.0
+    if inputs.uncertain:
+        one *= 5.0
     if inputs.keep_outs or inputs.field_of_view or inputs.plume:
         one *= 6.0
     flight = _FLIGHT_S if inputs.method == "tracking" else 0.0
