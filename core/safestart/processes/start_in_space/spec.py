@@ -11,6 +11,7 @@ from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.costs import FIRST_S, program_s
 from safestart.processes.go_no_go.question_fields import QuestionKind
 from safestart.processes.start_in_space.demand_parts import FieldOfViewInput, KeepOutInput, PlumeInput
+from safestart.processes.start_in_space.flight_output import SpaceFlight, Turning
 from safestart.processes.start_in_space.missions import MISSIONS
 from safestart.processes.start_in_space.parts import (
     SpaceStart,
@@ -140,30 +141,6 @@ class SpaceInputs(SpaceScenario, _Starts):
         if self.tracking is not None and self.method != "tracking":
             raise ValueError(f"tracking: only with method tracking, received {self.method}")
         return self
-
-
-class SpaceFlight(WireModel):
-    """Curves over ``time_s``, four instants for each 2 s; vectors as rows."""
-
-    time_s: list[float]
-    lvlh_m: list[list[float]] = Field(description="Position in LVLH, m.")
-    lvlh_m_s: list[list[float]] = Field(description="Velocity in LVLH, m/s.")
-    body_m: list[list[float]] = Field(description="Position in the body frame, m.")
-    body_m_s: list[list[float]] = Field(description="Velocity against the turning body, in its axes, m/s.")
-    attitude_wxyz: list[list[float]] = Field(description="From LVLH to the body, scalar first.")
-    thrust_m_s2: list[list[float]] = Field(description="Acceleration in LVLH, held over 2 s, m/s^2.")
-    distance_m: list[list[float]] = Field(description="Distance to each face, m; negative: outside.")
-    delta_v_m_s: float
-
-
-class Turning(WireModel):
-    """How the target turns over ``time_s``, every 2 s from 0 to the latest end."""
-
-    time_s: list[float]
-    attitude_wxyz: list[list[float]] = Field(description="From LVLH to the body, scalar first.")
-    rate_deg_s: list[list[float]] = Field(
-        description="Angular velocity against LVLH, in the body's axes, deg/s."
-    )
 
 
 class SpaceOutputs(WireModel):

@@ -159,7 +159,7 @@ def _thrust(stated: SpaceStated) -> str:
         f"{_number(bound)} along {_vector(direction)}"
         for bound, direction in zip(limit.bounds, limit.directions, strict=True)
     )
-    return f"thrust: shares, together at most 1, of thrusters in {axes}, m/s^2: {arms}{still}"
+    return f"thrust: shares, together at most 1, of thrusters in {axes}, m/s^2: {arms}{still and '; no disturbance'}"
 
 
 def _degrees(value: fmpq) -> str:
