@@ -16,7 +16,6 @@ import math
 
 import numpy as np
 
-from safestart.attitude.quaternion import matrix_of
 from safestart.control.tracking_mpc.sampled import Sampled
 from safestart.control.tracking_mpc.tumble import Tumble
 from safestart.control.tracking_mpc.tuning import InputLimit
@@ -145,7 +144,15 @@ def _seen_rates(tumble: Tumble) -> tuple[float, float]:
 def _attitudes() -> Floats:
     """(A, 3, 3): rotations spread over all attitudes, the same every time."""
     units = np.random.default_rng(2).normal(size=(_ATTITUDES, 4))
-    return matrix_of(units / np.linalg.norm(units, axis=1, keepdims=True)).swapaxes(1, 2)
+    w, x, y, z = (units / np.linalg.norm(units, axis=1, keepdims=True)).T
+    # Not quaternion.matrix_of, whose last bits differ: the bracket's upper end is a maximum over exactly these.
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    ).transpose(2, 0, 1)
 
 
 def _norm(matrix: Floats) -> float:
