@@ -51,11 +51,11 @@ class InLvlh:
 
     @property
     def knots(self) -> Floats:
-        """Those of the inertial attitude."""
+        """The knots of the inertial attitude, s."""
         return self.inertial.knots
 
     def turn_bounds(self) -> Bounds:
-        """Those of the body and of LVLH together."""
+        """Bounds on the derivatives of the product of both turns, the body's and LVLH's."""
         return product(of_rates(*self.orbit.turn_bounds()), self.inertial.turn_bounds())
 
 

@@ -62,7 +62,7 @@ class Manoeuvre:
         return np.asarray(acceleration + turning - gravity)
 
     def thrust_lvlh(self, times: Floats) -> Floats:
-        """The same thrust in LVLH axes."""
+        """The thrust of :meth:`thrust` (T, 3), m/s^2, in LVLH axes."""
         angle = self.omega * np.asarray(times, dtype=np.float64)
         body = self.thrust(times)
         x, y = out_of_body(np.cos(angle), np.sin(angle), body[:, 0], body[:, 1])

@@ -47,7 +47,7 @@ _WIDER = ("omega_t_deg_s",)
 
 
 def _parameters() -> dict[str, Parameter]:
-    """Those of both questions; none is needed for both."""
+    """Join the parameters of both questions; none is needed for both."""
     out: dict[str, Parameter] = {}
     for name, one in ONE_START.parameters.items():
         field = in_space.PARAMETERS[name].field if name in _WIDER else one.field

@@ -98,7 +98,7 @@ class Exact:
     """No errors: known state, exact thrust, no external acceleration; the base of all other kinds."""
 
     def seen(self, k: int, state: Floats) -> Floats:  # noqa: ARG002
-        """The state itself."""
+        """Navigation sees the state itself."""
         return state
 
     def delivered(self, k: int, asked: Floats, held_s: float) -> Floats:  # noqa: ARG002
@@ -106,7 +106,7 @@ class Exact:
         return asked
 
     def push(self, k: int, state: Floats, thrust: Floats) -> Floats | None:  # noqa: ARG002
-        """Nothing."""
+        """No acceleration acts from outside."""
         return None
 
 

@@ -80,7 +80,7 @@ class OneInSpace:
         return SPEC.cost(self.inputs)
 
     def at_once(self, context: Context) -> dict[str, Any] | None:  # noqa: ARG002
-        """None: every answer solves a program."""
+        """Nothing is known at once: every answer solves a program."""
         return None
 
     def document(self, context: Context) -> dict[str, Any]:
@@ -93,9 +93,9 @@ class OneInSpace:
         return True
 
     def with_proof(self) -> OneInSpace:
-        """The same question with its proof."""
+        """Ask for the proof, too."""
         return OneInSpace(self.inputs.model_copy(update={"proofs": True}))
 
     def remarks(self, document: Mapping[str, Any]) -> list[str]:  # noqa: ARG002
-        """None: the reason says it all."""
+        """Say nothing more: the reason says it all."""
         return []
