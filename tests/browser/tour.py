@@ -43,7 +43,9 @@ SLIVER = "omega_t_deg_s=2&a_max_m_s2=0.05&x_m=9.364&y_m=81.044"
 STOPS: dict[str, Stop] = {
     "explore": Stop(f"/dashboard?{SLIVER}", "#map[data-proved]:not([data-proved=''])", _fly),
     "space": Stop(
-        "/dashboard/space", "#space[data-digest]:not([data-digest='']):not([data-proved=''])", allowed=SOFTWARE
+        "/dashboard/space",
+        "#space[data-digest]:not([data-digest='']):not([data-proved=''])",
+        allowed=SOFTWARE,
     ),
     "trade": Stop("/dashboard/trade", "#table tbody tr"),
     "approach": Stop("/dashboard/approach?angle_deg=0", "#burns tbody tr"),
