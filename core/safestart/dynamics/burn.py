@@ -1,6 +1,6 @@
 """A burn, an impulse or a held thrust, whose size and direction are off.
 
-The in-plane twin of :func:`misdirected` for compiled loops is ``simulation.noise.delivered``.
+Compiled twins: :mod:`safestart.dynamics.burn_kernel` in space, ``simulation.noise.delivered`` in the plane.
 """
 
 from __future__ import annotations

@@ -128,13 +128,8 @@ class Evidence:
 
 def face_multipliers(times: Floats, faces: Ints, weights: Floats, names: tuple[str, ...]) -> list[Multiplier]:
     """The weights (J,) above 0 of faces at times, by name."""
-    kept = np.nonzero(weights > 0.0)[0]
-    return [
-        Multiplier(time, names[face], value)
-        for time, face, value in zip(
-            times[kept].tolist(), faces[kept].tolist(), weights[kept].tolist(), strict=True
-        )
-    ]
+    rows = zip(times.tolist(), faces.tolist(), weights.tolist(), strict=True)
+    return [Multiplier(time, names[face], value) for time, face, value in rows if value > 0.0]
 
 
 def concluded(

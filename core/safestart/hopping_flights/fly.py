@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from safestart.control.hopping import Hopping
-from safestart.dynamics.burn import scattered
+from safestart.dynamics.burn_kernel import scattered
 from safestart.dynamics.two_body_kernel import STAGES, WEIGHTS, drifted, placed, pushed, seen, target_at
 from safestart.hopping.approach import distances, line, mean_motion_of
 from safestart.hopping.barrier import Barrier, Noise

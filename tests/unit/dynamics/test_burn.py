@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from safestart.dynamics import burn_kernel
 from safestart.dynamics.burn import frame, misdirected, scattered
 from safestart.simulation.noise import Truth, delivered
 
@@ -37,6 +38,16 @@ def test_a_scattered_burn_is_misdirected_by_what_was_drawn() -> None:
     assert turned == pytest.approx(0.05 * math.hypot(-0.4, 2.0), rel=1e-9)
     assert scattered(np.zeros(3), 0.02, 0.05, drawn).tolist() == [0.0, 0.0, 0.0]
     np.testing.assert_allclose(scattered(BURN, 0.02, 0.05, np.zeros(3)), BURN, rtol=1e-15)
+
+
+def test_the_compiled_scatter_is_the_same() -> None:
+    random = np.random.default_rng(7)
+    for burn in (*random.normal(size=(50, 3)), *np.eye(3), np.zeros(3)):
+        for drawn in (random.normal(size=3), np.array([1.0, 0.0, 0.0])):
+            slow = scattered(burn, 0.02, 0.05, drawn)
+            np.testing.assert_allclose(
+                burn_kernel.scattered(burn, 0.02, 0.05, drawn), slow, rtol=1e-13, atol=1e-15
+            )
 
 
 def test_the_compiled_turn_in_the_plane_is_the_same() -> None:
