@@ -13,6 +13,7 @@ from safestart.hopping.approach import distances, line, mean_motion_of
 from safestart.hopping.barrier import Barrier, Noise
 from safestart.hopping.hop_program import Weights
 from safestart.model.scenario import Floats
+from safestart.runtime.kernels import compiled
 
 OFF, NOMINAL, TIGHTENED = "off", "nominal", "tightened"
 DISPERSION = 0.1
@@ -109,7 +110,7 @@ def fly(
         feasible = feasible and command.feasible
         given = np.zeros(3) if command.impulse is None else command.impulse
         impulses[k], times[k] = given, now
-        pushed(flight, _made(given, noise, draws[k, 6:]))
+        pushed(flight, made(given, noise.share, noise.angle, draws[k, 6:]))
         states[k] = seen(flight)
         if aborts:
             _, closest[k] = drifted(flight, horizon, STAGES, WEIGHTS, world.drag)
@@ -129,17 +130,29 @@ def _start(world: World, rng: np.random.Generator) -> Floats:
     return off
 
 
-def _made(given: Floats, noise: Noise, draw: Floats) -> Floats:
-    """The impulse as it comes out: size and direction off."""
-    size = float(np.linalg.norm(given))
+@compiled()
+def made(given: Floats, share: float, angle: float, draw: Floats) -> Floats:
+    """The impulse (3,) as it comes out: its size is off by ``share`` and its direction by ``angle`` rad, one standard
+    deviation each; ``draw`` (3,): of the size, and of the direction about two axes."""
+    out = given.copy()
+    size = math.sqrt(given[0] ** 2 + given[1] ** 2 + given[2] ** 2)
     if size == 0.0:
-        return given
-    along = given / size
-    other = np.eye(3)[int(np.argmin(np.abs(along)))]
-    one = np.cross(along, other)
-    one /= np.linalg.norm(one)
-    away = noise.angle * (draw[1] * one + draw[2] * np.cross(along, one))
-    angle = float(np.linalg.norm(away))
-    aside = away / angle if angle > 0.0 else away
-    made: Floats = size * (1.0 + noise.share * draw[0]) * (math.cos(angle) * along + math.sin(angle) * aside)
-    return made
+        return out
+    along, one, two = given / size, np.zeros(3), np.empty(3)
+    # Of the axes, the one that is furthest from the impulse's direction: one = along x axis.
+    k = 0
+    for i in range(1, 3):
+        if abs(along[i]) < abs(along[k]):
+            k = i
+    b, c = (k + 1) % 3, (k + 2) % 3
+    one[b], one[c] = along[c], -along[b]
+    one /= math.sqrt(one[b] ** 2 + one[c] ** 2)
+    for i in range(3):
+        b, c = (i + 1) % 3, (i + 2) % 3
+        two[i] = along[b] * one[c] - along[c] * one[b]
+    off = math.hypot(angle * draw[1], angle * draw[2])
+    aside = math.sin(off) / off * angle if off > 0.0 else 0.0
+    for i in range(3):
+        turned = math.cos(off) * along[i] + aside * (draw[1] * one[i] + draw[2] * two[i])
+        out[i] = size * (1.0 + share * draw[0]) * turned
+    return out

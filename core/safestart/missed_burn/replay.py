@@ -69,6 +69,11 @@ class Flown:
 
     def earth_state(self) -> Floats:
         """State (6,) at ``look``, both bodies about the Earth with J2."""
+        reached: Floats = seen(self.earth_flight())
+        return reached
+
+    def earth_flight(self) -> Floats:
+        """The same as a flight (12,) of :mod:`safestart.dynamics.two_body_kernel`."""
         assert self.target is not None
         flight, now = placed(self.target, self.start), self.begin
         for time, impulse in zip(self.times.tolist(), self.impulses, strict=True):
@@ -83,8 +88,7 @@ class Flown:
                 pushed(flight, span * self.push)
                 flight, _ = drifted(flight, 0.5 * span, STAGES, WEIGHTS)
             now += span * _PULSES
-        flight, _ = drifted(flight, self.look - now, STAGES, WEIGHTS)
-        reached: Floats = seen(flight)
+        reached: Floats = drifted(flight, self.look - now, STAGES, WEIGHTS)[0]
         return reached
 
     def nonlinear_state(self, radius: float) -> Floats:

@@ -13,6 +13,7 @@ from safestart.hopping.approach import departure, line
 from safestart.hopping.fold import CUSP
 from safestart.hopping.hop_equation import fraction_left, residual, weights
 from safestart.hopping.hop_time import fold_deg, hop_phases, hop_time
+from safestart.hopping.hop_time_kernel import compiled_hop_phases
 
 N = 8.66e-4
 
@@ -99,3 +100,17 @@ def test_bad_input_is_named() -> None:
         assert refused.value.field == field
     with pytest.raises(InvalidInput, match="rho"):
         hop_phases(np.array([40.0]), np.array([math.nan]))
+
+
+def test_compiled_hop_times_are_the_same() -> None:
+    rng = np.random.default_rng(2)
+    angles, shares = rng.uniform(0.0, 360.0, 20_000), rng.uniform(0.0, 0.99, 20_000)
+    angles[:50], angles[50:100], shares[100:150] = 0.0, 90.0, 0.0
+    plain, fast = hop_phases(angles, shares), compiled_hop_phases(angles, shares)
+    assert (np.isnan(plain) == np.isnan(fast)).all()
+    assert 100 < np.isnan(plain).sum() < 10_000
+    np.testing.assert_allclose(fast, plain, rtol=1e-11)
+    for angle, share, field in ((np.inf, 0.5, "angle_deg"), (10.0, 1.5, "rho"), (10.0, -0.1, "rho")):
+        with pytest.raises(InvalidInput) as refused:
+            compiled_hop_phases(np.array([angle]), np.array([share]))
+        assert refused.value.field == field
