@@ -33,6 +33,7 @@ _SPECS = {
     "tracking-mpc": "safestart.processes.tracking_mpc.spec",
     "commit-timeline": "safestart.processes.commit_timeline.spec",
     "hop-time": "safestart.processes.hop_time.spec",
+    "hop-angles": "safestart.processes.hop_angles.spec",
     "hop-plan": "safestart.processes.hop_plan.spec",
     "hopping": "safestart.processes.hopping.spec",
     "approach-trade": "safestart.processes.approach_trade.spec",

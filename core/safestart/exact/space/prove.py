@@ -106,7 +106,7 @@ def _unknowns(unknowns: Unknowns) -> dict[str, Any]:
 
 
 def _demands(demands: Demands) -> dict[str, Any]:
-    """Those that are asked, as they are: not the convex parts by which they were answered."""
+    """The demands as they are asked, not the convex parts by which they were answered."""
     out: dict[str, Any] = {}
     if demands.keep_outs:
         out["keep_outs"] = [
