@@ -1,9 +1,10 @@
 """Random plans: does a flight about the true Earth ever violate what was PROVED, and what would sampling have missed?
 
-``python -m benchmarks.random_plans 1000`` draws plans of one to four impulses near a target, on orbits of any
-inclination, and proves each about the true Earth (``earth``), for missed, partial, late, stuck and misdirected burns.
-PROVED plans are flown with errors and failures at their limits about the true Earth with J2. VIOLATED ones are replayed
-and sampled every 60 s: the drifts after every burn as planned, and the counter-example's own drift.
+``python -m benchmarks.random_plans 10000`` (``--first 1000``: from that plan on) draws plans of one to four impulses
+near a target, on orbits of any inclination, and proves each about the true Earth (``earth``), for missed, partial,
+late, stuck and misdirected burns. PROVED plans are flown with errors and failures at their limits about the true Earth
+with J2. VIOLATED ones are replayed and sampled every 60 s: the drifts after every burn as planned, and the
+counter-example's own drift.
 """
 
 from __future__ import annotations
@@ -11,8 +12,13 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import time
 from collections import Counter
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
+from functools import partial
+from multiprocessing import get_context
 from typing import Any
 
 import numpy as np
@@ -33,6 +39,11 @@ SAMPLE = 60.0
 ERRORS = Errors((0.5,) * 3, (1e-3,) * 3, 0.01, math.radians(0.5))
 FAILURES = Failures(60.0, True, 5.0, 0.002, math.radians(5.0))
 FLIGHTS = 12
+PART = 50
+COUNTED = (
+    *("PROVED", "VIOLATED", "UNKNOWN", "flights", "proved_but_violated", "replayed"),
+    *("missed_by_sampling_as_planned", "missed_between_samples_of_the_violation"),
+)
 _PULSES = 40
 
 
@@ -120,42 +131,91 @@ def replayed(question: Question, proof: Proof) -> bool:
     return proof.counter_example is not None and proof.counter_example.distance() < question.keep_out
 
 
-def study(count: int, seed: int = 0) -> dict[str, Any]:
-    """Counts over plans: verdicts, PROVED ones that a flight violates, VIOLATED ones that sampling misses."""
+def one(number: int, seed: int = 0) -> tuple[Counter[str], float]:
+    """Counts of one plan, and by how much its flights kept more than was proved, m (infinite: not PROVED)."""
+    rng = np.random.default_rng((seed, number))
+    question = question_of(rng)
+    proof = prove(question, sharp=False)
+    found, slack = Counter({proof.verdict.value: 1}), math.inf
+    if proof.verdict is Verdict.PROVED:
+        near = min(flown(question, rng) for _ in range(FLIGHTS))
+        found["flights"] = FLIGHTS
+        found["proved_but_violated"] = int(near < question.keep_out)
+        slack = near - proof.least
+    if proof.verdict is Verdict.VIOLATED:
+        found["replayed"] = int(replayed(question, proof))
+        found["missed_by_sampling_as_planned"] = int(sampled(question) >= question.keep_out)
+        found["missed_between_samples_of_the_violation"] = int(seen_every(proof) >= question.keep_out)
+    return found, slack
+
+
+def part(numbers: range, seed: int = 0) -> tuple[Counter[str], float]:
+    """Counts of several plans, and the least slack."""
     found: Counter[str] = Counter()
     slack = math.inf
-    for number in range(count):
-        rng = np.random.default_rng((seed, number))
-        question = question_of(rng)
-        proof = prove(question, sharp=False)
-        found[proof.verdict.value] += 1
-        if proof.verdict is Verdict.PROVED:
-            near = min(flown(question, rng) for _ in range(FLIGHTS))
-            found["flights"] += FLIGHTS
-            found["proved_but_violated"] += near < question.keep_out
-            slack = min(slack, near - proof.least)
-        if proof.verdict is Verdict.VIOLATED:
-            found["replayed"] += replayed(question, proof)
-            found["missed_by_sampling_as_planned"] += sampled(question) >= question.keep_out
-            found["missed_between_samples_of_the_violation"] += seen_every(proof) >= question.keep_out
-    return {"plans": count, "seed": seed, **dict(sorted(found.items())), "least_slack_m": slack}
+    for number in numbers:
+        counts, kept = one(number, seed)
+        found, slack = found + counts, min(slack, kept)
+    return found, slack
+
+
+def study(
+    count: int,
+    seed: int = 0,
+    first: int = 0,
+    cores: int = 1,
+    tell: Callable[[dict[str, Any]], None] | None = None,
+) -> dict[str, Any]:
+    """Counts over plans ``first`` to ``first + count``: verdicts, PROVED ones that a flight violates, VIOLATED ones
+    that sampling misses. ``tell`` gets them after every part of 50."""
+    cut = [range(k, min(k + PART, first + count)) for k in range(first, first + count, PART)]
+    found: Counter[str] = Counter(dict.fromkeys(COUNTED, 0))
+    slack, done = math.inf, 0
+    said: dict[str, Any] = {}
+    with ProcessPoolExecutor(cores, get_context("spawn")) as pool:
+        # In order: what is told is about the first plans, without gaps.
+        for numbers, (counts, kept) in zip(cut, pool.map(partial(part, seed=seed), cut), strict=True):
+            found.update(counts)
+            slack, done = min(slack, kept), done + len(numbers)
+            said = {"first": first, "plans": done, "seed": seed, **found, "least_slack_m": slack}
+            if tell is not None:
+                tell(said)
+    return said
 
 
 def seen_every(proof: Proof, every: float = SAMPLE) -> float:
     """Least distance, m, of the counter-example's own flight looked at every so many seconds from its last burn on."""
-    flight = proof.counter_example
-    assert flight is not None
-    looks = np.arange(flight.times.max(initial=flight.begin), flight.look + every, every)
-    return min(replace(flight, look=look).distance() for look in looks.tolist())
+    made = proof.counter_example
+    assert made is not None
+    now = float(made.times.max(initial=made.begin))
+    flight = replace(made, look=now).earth_flight()
+    least = float(np.linalg.norm(flight[6:9]))
+    # While its thrust is on it is flown anew for each look; from there on it only drifts.
+    thrust_ends = now + made.push_for
+    while now < made.look:
+        now += every
+        if now - every < thrust_ends:
+            flight = replace(made, look=now).earth_flight()
+        else:
+            flight, _ = drifted(flight, every, STAGES, WEIGHTS)
+        least = min(least, float(np.linalg.norm(flight[6:9])))
+    return least
 
 
 def main() -> None:
-    """Study and print."""
+    """Study and print, a line for every part."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("plans", type=int, nargs="?", default=1000)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--first", type=int, default=0, help="Number of the first plan.")
+    parser.add_argument("--cores", type=int, default=2)
     given = parser.parse_args()
-    print(json.dumps(study(given.plans, given.seed), indent=1))
+    begin = time.perf_counter()
+
+    def tell(said: dict[str, Any]) -> None:
+        print(json.dumps({**said, "seconds": round(time.perf_counter() - begin, 1)}), flush=True)
+
+    study(given.plans, given.seed, given.first, given.cores, tell)
 
 
 if __name__ == "__main__":

@@ -10,7 +10,9 @@ import json
 import math
 import statistics
 import time
+from concurrent.futures import ProcessPoolExecutor
 from importlib import import_module
+from multiprocessing import get_context
 from typing import Any
 
 import numpy as np
@@ -188,6 +190,31 @@ def noise(runs: int, variants: tuple[str, ...] = ("hard", "soft", "tube")) -> di
     return out
 
 
+def closed_loop(count: int = 10_000, cores: int = 2) -> dict[str, float]:
+    """Seconds for so many flights of 60 s with the default errors (tube), compilation apart; and on a processor, as a
+    busy machine takes longer."""
+    with ProcessPoolExecutor(cores, get_context("spawn")) as pool:
+        list(pool.map(_flights, [(0, 1)] * cores))
+        begin = time.perf_counter()
+        parts = [(first, min(first + 100, count)) for first in range(0, count, 100)]
+        found = list(pool.map(_flights, parts))
+    return {
+        "flights": count,
+        "outside": sum(outside for outside, _ in found),
+        "seconds": time.perf_counter() - begin,
+        "processor_seconds": sum(spent for _, spent in found),
+    }
+
+
+def _flights(part: tuple[int, int]) -> tuple[int, float]:
+    begin = time.process_time()
+    inputs = TrackingMpcInputs.model_validate({"study": {"runs": 1}})
+    assert inputs.study is not None
+    setup, flights = flights_of(inputs, inputs.study)
+    done = [one(inputs, inputs.study, setup, flights, Case(index)) for index in range(*part)]
+    return sum(not row["inside"] for row in done), time.process_time() - begin
+
+
 def recursive(starts: int) -> dict[str, Any]:
     """Random feasible starts x 3 tunings, 60 s each: flights that lost their plan, plans not certified."""
     out = {}
@@ -294,4 +321,5 @@ def measure() -> dict[str, dict[str, float]]:
 
 if __name__ == "__main__":
     print(json.dumps({"step": steps(), "regions": regions(), "noise": noise(1000)}, indent=1))
+    print(json.dumps({"closed_loop": closed_loop()}, indent=1))
     print(json.dumps({"recursive": recursive(200), "programs": random_programs(10_000)}, indent=1))

@@ -9,15 +9,17 @@ import socket
 from contextlib import suppress
 from functools import partial
 from time import sleep
-from typing import Annotated, Any, cast
+from typing import TYPE_CHECKING, Annotated, Any, cast
 
 import typer
 
 from safestart.errors import Away, InvalidInput, SafestartError, Unavailable
 from safestart.runtime.logs import configure
-from safestart.runtime.settings import Settings, settings
 from safestart_service.http.open_files import make_room
 from safestart_service.http.places import Places
+
+if TYPE_CHECKING:
+    from safestart.runtime.settings import Settings
 
 REMEDY = (
     "anyone could use it, as no API keys are in force: make one with `safestart keys create --name NAME "
@@ -49,6 +51,9 @@ def serve(
 
 
 def _serve(overrides: dict[str, object]) -> None:
+    # Imported here, so that every other command starts without it.
+    from safestart.runtime.settings import settings
+
     chosen = settings().model_copy(update=overrides)
     family, address = resolve(chosen.host, chosen.port)
     while not is_loopback(address):

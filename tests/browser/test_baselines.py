@@ -74,7 +74,7 @@ def opened(browser: Browser, url: str, path: str, stop: Stop, size: tuple[int, i
     )
     wear_one_font(context)
     visit = Visit(context, url)
-    visit.allowed += ["401", "404"]
+    visit.allowed += ["401", "404", *stop.allowed]
     page = visit.go(path)
     page.wait_for_selector(stop.there, state="attached")
     stop.first(page)

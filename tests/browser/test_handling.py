@@ -74,6 +74,8 @@ def test_a_path_where_nothing_is(browser: Browser, url: str) -> None:
     expect(page.locator("h1")).to_have_text("Nothing is here")
     expect(page.locator("main code")).to_have_text("/dashboard/nowhere")
     visit.shot("not-found")
+    of_menu, of_page = (page.locator(f"{part} a").all_inner_texts() for part in ("header nav", "main li"))
+    assert of_page == of_menu, "it offers every page"
     page.click("main >> text=Jobs")
     expect(page.locator("h1")).to_have_text("Jobs")
     answer = page.request.get(f"{url}/nowhere", headers={"Accept": "application/json"})

@@ -14,16 +14,15 @@ from safestart.proofs.checker import check
 from tests.acceptance.running import Running
 from tests.browser.conftest import Visit
 from tests.browser.explored import FAULTS
+from tests.browser.tour import SOFTWARE, STOPS
 
 WORD = "#verdict .answer:not(.old) .word"
-_THERE = "#space[data-digest]:not([data-digest='']):not([data-proved=''])"
+_THERE = STOPS["space"].there
 _TRACES = "document.getElementById('space').data.map((one) => one.name)"
-_SOFTWARE = ["WebGL", "willReadFrequently"]
-"""What Chromium says of drawing in space without a graphics card."""
 
 
 def open_space(visit: Visit, query: str = "") -> Page:
-    visit.allowed.extend(_SOFTWARE)
+    visit.allowed.extend(SOFTWARE)
     page = visit.go(f"/dashboard/space{'?' if query else ''}{query}")
     page.wait_for_selector(_THERE, state="attached")
     return page
@@ -38,7 +37,7 @@ def answered(up: Running, **inputs: Any) -> dict[str, Any]:
 
 
 def test_the_menu_leads_to_a_verdict_its_proof_and_the_scene(visit: Visit, tmp_path: Path) -> None:
-    visit.allowed.extend(_SOFTWARE)
+    visit.allowed.extend(SOFTWARE)
     page = visit.go("/dashboard")
     page.click("nav >> text=In space")
     page.wait_for_selector(_THERE, state="attached")

@@ -33,11 +33,20 @@ class Stop:
     path: str
     there: str
     first: Callable[[Page], None] = _nothing
+    allowed: tuple[str, ...] = ()
+    """What the browser may say."""
 
 
+SOFTWARE = ("WebGL", "willReadFrequently")
+"""What Chromium says of drawing in space without a graphics card."""
 SLIVER = "omega_t_deg_s=2&a_max_m_s2=0.05&x_m=9.364&y_m=81.044"
 STOPS: dict[str, Stop] = {
     "explore": Stop(f"/dashboard?{SLIVER}", "#map[data-proved]:not([data-proved=''])", _fly),
+    "space": Stop(
+        "/dashboard/space",
+        "#space[data-digest]:not([data-digest='']):not([data-proved=''])",
+        allowed=SOFTWARE,
+    ),
     "trade": Stop("/dashboard/trade", "#table tbody tr"),
     "approach": Stop("/dashboard/approach?angle_deg=0", "#burns tbody tr"),
     "submit": Stop("/dashboard/submit?process=benchmark", "#estimate:not(:empty)"),

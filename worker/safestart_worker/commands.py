@@ -9,7 +9,6 @@ import typer
 
 from safestart.errors import invalid
 from safestart.runtime.logs import configure
-from safestart.runtime.settings import settings
 
 
 def register(app: typer.Typer) -> None:
@@ -24,8 +23,10 @@ def register(app: typer.Typer) -> None:
         processes: Annotated[int, typer.Option(min=0, max=1024, help="Jobs at once; 0: the setting.")] = 0,
     ) -> None:
         """Claim jobs and run them on Dask until SIGTERM or Ctrl-C; running jobs then go back to the queue."""
+        # Imported here, so that every other command starts without settings and Dask.
+        from safestart.runtime.settings import settings
+
         configured = settings()
-        # Imported here, so that every other command starts without Dask.
         try:
             from safestart_worker.loop import Options, work
         except ValueError as error:  # Dask reads its files when it is imported

@@ -3,47 +3,56 @@
 from __future__ import annotations
 
 import sys
-from importlib.metadata import entry_points
+from importlib import import_module
 
 import typer
 
-from safestart.cli import bench, demo, go_no_go, keys, records, run, up, verify
-from safestart.cli.aboard import export_c
-from safestart.cli.field import convert, timeline
-from safestart.cli.reproduce import command as reproduce
 from safestart.cli.streams import patient_streams
 from safestart.runtime.own_process import exit_code, own_configuration
 
 COMMAND_GROUP = "safestart.commands"
+# The modules of our commands in the order of the help, each with the commands that it adds.
+COMMANDS = {
+    "up": ("up",),
+    "go_no_go": ("go-no-go",),
+    "field.timeline": ("timeline",),
+    "field.convert": ("convert",),
+    "run": ("run",),
+    "reproduce.command": ("reproduce",),
+    "demo": ("demo",),
+    "bench": ("bench",),
+    "verify": ("verify",),
+    "records": ("replay", "label", "export", "import", "backup", "restore", "purge"),
+    "keys": ("keys",),
+    "aboard.export_c": ("export-c",),
+}
 
 
-def build() -> typer.Typer:
-    """The application with every installed distribution's commands."""
+def build(asked: str = "") -> typer.Typer:
+    """The application with every installed distribution's commands; with ours alone that is ``asked``, if there is one.
+
+    The modules of all commands take longer to load than a verdict takes to give.
+    """
     app = typer.Typer(
         name="safestart",
-        help="May this chaser start its approach to that tumbling target?",
         no_args_is_help=True,
         add_completion=False,
         pretty_exceptions_enable=False,
         rich_markup_mode=None,
     )
-    for module in (
-        up,
-        go_no_go,
-        timeline,
-        convert,
-        run,
-        reproduce,
-        demo,
-        bench,
-        verify,
-        records,
-        keys,
-        export_c,
-    ):
-        module.register(app)
-    for point in sorted(entry_points(group=COMMAND_GROUP), key=lambda p: p.name):
-        point.load()(app)
+
+    @app.callback()
+    def safestart() -> None:
+        """May this chaser start its approach to that tumbling target?"""
+
+    wanted = [name for name, commands in COMMANDS.items() if asked in commands]
+    for name in wanted or COMMANDS:
+        import_module(f"safestart.cli.{name}").register(app)
+    if not wanted:
+        from importlib.metadata import entry_points
+
+        for point in sorted(entry_points(group=COMMAND_GROUP), key=lambda p: p.name):
+            point.load()(app)
     return app
 
 
@@ -51,5 +60,5 @@ def main() -> None:
     """Run the command line; our own errors, and missing or full places, end it with one line and exit code 2."""
     own_configuration()
     with patient_streams() as streams:
-        code = streams.code(exit_code(lambda: build()()))
+        code = streams.code(exit_code(lambda: build(*sys.argv[1:2])()))
     sys.exit(code)

@@ -10,7 +10,7 @@ from safestart.hopping.approach import departure, line
 from safestart.hopping.barrier import Barrier
 from safestart.hopping.compiled_program import CompiledProgram
 from safestart.hopping.hop_program import Solved, Weights
-from safestart.hopping.hop_time import hop_phases
+from safestart.hopping.hop_time_kernel import compiled_hop_phases
 from safestart.model.scenario import Floats
 
 _MOST_ROUNDS = 10
@@ -79,7 +79,7 @@ class Hopping:
             return np.full(len(remaining), self.phase / self.n)
         begin = max(float(self.axes[0] @ state[:3]), 1.02 * float(remaining[0]))
         rho = remaining / np.concatenate([[begin], remaining[:-1]])
-        phases = hop_phases(np.full(len(rho), self.angle), np.minimum(rho, 0.98))
+        phases = compiled_hop_phases(np.full(len(rho), self.angle), np.minimum(rho, 0.98))
         if np.isnan(phases).any():
             raise invalid("angle_deg", "an angle with a hop for every share that is left", self.angle)
         return phases / self.n
@@ -140,7 +140,7 @@ class Hopping:
             return -state[3:]
         end = float(self.distances[k + 1])
         rho = min(end / max(float(self.axes[0] @ state[:3]), 1.02 * end), 0.98)
-        time = float(hop_phases(np.array([self.angle]), np.array([rho]))[0]) / self.n
+        time = float(compiled_hop_phases(np.array([self.angle]), np.array([rho]))[0]) / self.n
         if np.isnan(time):
             return self._plain(k, state)
         return departure(self.n, time, state[:3], end * self.axes[0]) - state[3:]

@@ -106,7 +106,7 @@ class Evidence:
     weights: Floats
 
     def until(self, latest: float) -> Evidence:
-        """The same with no time after ``latest`` (s): rounding may have put one there."""
+        """Move every time after ``latest`` (s) to it: rounding may have put one there."""
         blocks = replace(self.blocks, times=np.minimum(self.blocks.times, latest))
         return replace(self, times=np.minimum(self.times, latest), blocks=blocks)
 
@@ -128,13 +128,8 @@ class Evidence:
 
 def face_multipliers(times: Floats, faces: Ints, weights: Floats, names: tuple[str, ...]) -> list[Multiplier]:
     """The weights (J,) above 0 of faces at times, by name."""
-    kept = np.nonzero(weights > 0.0)[0]
-    return [
-        Multiplier(time, names[face], value)
-        for time, face, value in zip(
-            times[kept].tolist(), faces[kept].tolist(), weights[kept].tolist(), strict=True
-        )
-    ]
+    rows = zip(times.tolist(), faces.tolist(), weights.tolist(), strict=True)
+    return [Multiplier(time, names[face], value) for time, face, value in rows if value > 0.0]
 
 
 def concluded(

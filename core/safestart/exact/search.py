@@ -184,8 +184,12 @@ class Search:
 def rounding_of(watch: Watched, state: Floats) -> float:
     """What floats may lose of a face's distance (m), from the length that a flight from ``state`` can cover."""
     question = watch.question
-    size = np.abs(state)
-    far, speed = float(size[: question.dimensions].sum()), float(size[question.dimensions :].sum())
+    far = speed = 0.0
+    for k, entry in enumerate(state.tolist()):
+        if k < question.dimensions:
+            far += abs(entry)
+        else:
+            speed += abs(entry)
     reach: float = far + (speed + question.largest_thrust * question.horizon) * question.horizon
     return watch.rounding * reach
 

@@ -17,8 +17,9 @@ from safestart.model.scenario import Floats
 
 LEAST_RHO, GREATEST_RHO = 0.0, 1.0 - 1e-6
 
-_PHASES = math.tau * 0.9 * np.linspace(0.0, 1.0, 33)[1:] ** 1.4
-_NEAR = 140.0
+PHASES = math.tau * 0.9 * np.linspace(0.0, 1.0, 33)[1:] ** 1.4
+NEAR = 140.0
+"""Beyond this angle, deg, folds are looked at: the least one is at 145.64."""
 _BLOCK = 4096
 _STEPS = 50
 
@@ -30,6 +31,16 @@ def hop_phases(angle_deg: Floats, rho: Floats) -> Floats:
     180. ``rho`` (K,), the share of the distance that is left. Raises ``InvalidInput`` for shares outside
     [0, 1 - 1e-6] and angles that are not finite.
     """
+    turned, left = checked(angle_deg, rho)
+    phases = np.empty(left.shape)
+    for begin in range(0, len(left), _BLOCK):
+        block = slice(begin, begin + _BLOCK)
+        phases[block] = _phases(turned[block], left[block])
+    return phases
+
+
+def checked(angle_deg: Floats, rho: Floats) -> tuple[Floats, Floats]:
+    """Angles (K,) in [0, 180) deg and shares (K,); raises ``InvalidInput`` as :func:`hop_phases`."""
     angle = np.asarray(angle_deg, dtype=np.float64)
     left = np.asarray(rho, dtype=np.float64)
     if not np.isfinite(angle).all():
@@ -37,12 +48,7 @@ def hop_phases(angle_deg: Floats, rho: Floats) -> Floats:
     fits = (left >= LEAST_RHO) & (left <= GREATEST_RHO)
     if not fits.all():
         raise invalid("rho", f"a share in [{LEAST_RHO:g}, 1 - 1e-6] of the distance", float(left[~fits][0]))
-    turned = np.mod(angle, 180.0)
-    phases = np.empty(left.shape)
-    for begin in range(0, len(left), _BLOCK):
-        block = slice(begin, begin + _BLOCK)
-        phases[block] = _phases(turned[block], left[block])
-    return phases
+    return np.mod(angle, 180.0), left
 
 
 def fold_deg(rho: float) -> float | None:
@@ -77,7 +83,7 @@ def _phases(turned: Floats, rho: Floats) -> Floats:
     """Phases of angles in [0, 180) deg."""
     theta = np.radians(turned)
     phases = np.full(rho.shape, np.nan)
-    far = turned <= _NEAR
+    far = turned <= NEAR
     phases[far] = _first_root(theta[far], rho[far], None)
     if not far.all():
         near = np.flatnonzero(~far)
@@ -90,12 +96,12 @@ def _phases(turned: Floats, rho: Floats) -> Floats:
 
 
 def _sampled() -> Floats:
-    """g at ``_PHASES`` as it is linear in (1, S, rho, rho S, rho sin 2 theta), (5, L)."""
+    """g at ``PHASES`` as it is linear in (1, S, rho, rho S, rho sin 2 theta), (5, L)."""
 
     def value(square: float, double: float, rho: float) -> Floats:
         secular = np.array(3.0 * square)
         terms = secular, (1.0 + secular) * (1.0 - rho), np.array(3.0 * rho * double), np.array(rho)
-        sampled: Floats = residual(_PHASES, terms)[0]
+        sampled: Floats = residual(PHASES, terms)[0]
         return sampled
 
     plain = value(0.0, 0.0, 0.0)
@@ -104,7 +110,8 @@ def _sampled() -> Floats:
     return np.array([plain, by_square, by_rho, both, value(0.0, 1.0, 1.0) - plain - by_rho])
 
 
-_SAMPLED = _sampled()
+SAMPLED = _sampled()
+"""g at ``PHASES`` as it is linear in (1, S, rho, rho S, rho sin 2 theta), (5, L)."""
 
 
 def _first_root(theta: Floats, rho: Floats, top: Floats | None) -> Floats:
@@ -114,14 +121,14 @@ def _first_root(theta: Floats, rho: Floats, top: Floats | None) -> Floats:
     features = np.empty((len(rho), 5))
     features[:, 0], features[:, 1], features[:, 2] = 1.0, square, rho
     features[:, 3], features[:, 4] = rho * square, terms[2] / 3.0
-    values: Floats = features @ _SAMPLED
+    values: Floats = features @ SAMPLED
     passed = values >= 0.0
     if top is not None:
-        passed |= top[:, None] <= _PHASES
+        passed |= top[:, None] <= PHASES
     k = np.argmax(passed, axis=1)
     rows, before = np.arange(len(k)), np.maximum(k - 1, 0)
     below, above = values[rows, before], values[rows, k]
-    low, high = np.where(k > 0, _PHASES[before], 0.0), _PHASES[k]
+    low, high = np.where(k > 0, PHASES[before], 0.0), PHASES[k]
     with np.errstate(divide="ignore", invalid="ignore"):
         chord = low - below * (high - low) / (above - below)
         small = np.sqrt((1.0 - rho) / (1.5 * square))

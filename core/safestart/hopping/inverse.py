@@ -7,6 +7,7 @@ again. So no, one or several angles may exist; all of them up to the last fold a
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -31,37 +32,48 @@ def greatest_angle(start: float, hold: float, hops: int, gamma: float | None = N
     return min((fold for fold in folds if fold is not None), default=180.0)
 
 
-def angles_for(
-    measure: str,
-    value: float,
-    mean_motion: float,
-    start: float,
-    hold: float,
-    hops: int,
-    gamma: float | None = None,
-) -> list[float]:
-    """Every angle, deg, at which a measure (``orbits``, ``fuel_1norm``, ``fuel_2norm``; m/s) has the value.
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """A ``measure`` (``orbits``, ``fuel_1norm``, ``fuel_2norm``; m/s) over the angle, from 0 deg to the first fold.
 
-    Ascending, from 0 deg to the first fold; empty if none has. Assumes that a measure passes the value at most once
-    between sampled angles (about 0.8 deg apart). Raises ``InvalidInput``.
+    ``angles`` and ``values`` (S,) sample it; ``of`` asks at any angle of the branch, deg.
     """
+
+    measure: str
+    angles: tuple[float, ...]
+    values: tuple[float, ...]
+    of: Callable[[float], float]
+
+    def angles_for(self, value: float) -> list[float]:
+        """Every angle, deg, at which the measure has the value, ascending; empty if none has.
+
+        Assumes that the measure passes the value at most once between sampled angles (about 0.8 deg apart). Raises
+        ``InvalidInput``.
+        """
+        number("value", value, 0.0, 1e6)
+        off = [at - value for at in self.values]
+        found = [angle for angle, at in zip(self.angles, off, strict=True) if at == 0.0]
+        found += [
+            _bisect(lambda angle: self.of(angle) - value, self.angles[k], self.angles[k + 1], off[k])
+            for k in range(len(off) - 1)
+            if off[k] * off[k + 1] < 0.0
+        ]
+        return sorted(found)
+
+
+def curve_of(
+    measure: str, mean_motion: float, start: float, hold: float, hops: int, gamma: float | None = None
+) -> Curve:
+    """A measure of an approach over all its angles. Raises ``InvalidInput``."""
     if measure not in MEASURES:
         raise invalid("measure", f"one of {', '.join(MEASURES)}", measure)
-    number("value", value, 0.0, 1e6)
+
+    def of(angle: float) -> float:
+        return MEASURES[measure](approach(mean_motion, angle, start, hold, hops, gamma))
+
     end = greatest_angle(start, hold, hops, gamma) - 1e-9
-
-    def excess(angle: float) -> float:
-        return MEASURES[measure](approach(mean_motion, angle, start, hold, hops, gamma)) - value
-
-    angles = np.linspace(0.0, end, _SAMPLES).tolist()
-    values = [excess(angle) for angle in angles]
-    found = [angle for angle, at in zip(angles, values, strict=True) if at == 0.0]
-    found += [
-        _bisect(excess, angles[k], angles[k + 1], values[k])
-        for k in range(len(angles) - 1)
-        if values[k] * values[k + 1] < 0.0
-    ]
-    return sorted(found)
+    angles = tuple(np.linspace(0.0, end, _SAMPLES).tolist())
+    return Curve(measure, angles, tuple(of(angle) for angle in angles), of)
 
 
 def _bisect(function: Callable[[float], float], low: float, high: float, at_low: float) -> float:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from safestart.control.hopping import Hopping
+from safestart.dynamics.burn_kernel import scattered
 from safestart.dynamics.two_body_kernel import STAGES, WEIGHTS, drifted, placed, pushed, seen, target_at
 from safestart.hopping.approach import distances, line, mean_motion_of
 from safestart.hopping.barrier import Barrier, Noise
@@ -65,7 +66,7 @@ class World:
 
 
 @dataclass(frozen=True, slots=True)
-class Flown:
+class HoppingFlight:
     """One approach: ``impulses`` (hops + 1, 3) as given, m/s, ``times`` (hops + 1,), s; ``closest`` (hops + 1,), m: the
     least distance when the thrusters die right after each; ``states`` (hops + 1, 6) LVLH after each impulse; ``hold``:
     distance at the end, m; ``feasible``: whether every true row of the barrier held."""
@@ -90,7 +91,7 @@ class Flown:
 
 def fly(
     world: World, rng: np.random.Generator, controller: Hopping | None = None, *, aborts: bool = True
-) -> Flown:
+) -> HoppingFlight:
     """Fly one approach; every number drawn comes from ``rng``."""
     steer = controller or world.controller()
     count, noise = world.hops + 1, world.noise
@@ -109,14 +110,14 @@ def fly(
         feasible = feasible and command.feasible
         given = np.zeros(3) if command.impulse is None else command.impulse
         impulses[k], times[k] = given, now
-        pushed(flight, _made(given, noise, draws[k, 6:]))
+        pushed(flight, scattered(given, noise.share, noise.angle, draws[k, 6:]))
         states[k] = seen(flight)
         if aborts:
             _, closest[k] = drifted(flight, horizon, STAGES, WEIGHTS, world.drag)
         if k + 1 < count:
             flight, _ = drifted(flight, steer.wait(), STAGES, WEIGHTS, world.drag)
             now += steer.wait()
-    return Flown(impulses, closest, states, times, float(np.linalg.norm(seen(flight)[:3])), feasible)
+    return HoppingFlight(impulses, closest, states, times, float(np.linalg.norm(seen(flight)[:3])), feasible)
 
 
 def _start(world: World, rng: np.random.Generator) -> Floats:
@@ -127,19 +128,3 @@ def _start(world: World, rng: np.random.Generator) -> Floats:
     least = np.repeat([LEAST_POSITION, LEAST_VELOCITY], 3)
     off: Floats = state + np.maximum(DISPERSION * np.abs(state), least) * rng.uniform(-1.0, 1.0, 6)
     return off
-
-
-def _made(given: Floats, noise: Noise, draw: Floats) -> Floats:
-    """The impulse as it comes out: size and direction off."""
-    size = float(np.linalg.norm(given))
-    if size == 0.0:
-        return given
-    along = given / size
-    other = np.eye(3)[int(np.argmin(np.abs(along)))]
-    one = np.cross(along, other)
-    one /= np.linalg.norm(one)
-    away = noise.angle * (draw[1] * one + draw[2] * np.cross(along, one))
-    angle = float(np.linalg.norm(away))
-    aside = away / angle if angle > 0.0 else away
-    made: Floats = size * (1.0 + noise.share * draw[0]) * (math.cos(angle) * along + math.sin(angle) * aside)
-    return made

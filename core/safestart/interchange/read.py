@@ -10,6 +10,7 @@ from safestart.interchange.attitude_course import AttitudeCourse
 from safestart.interchange.ccsds import acm, aem, cdm, ocm, oem, parameters
 from safestart.interchange.ccsds.cdm import Encounter
 from safestart.interchange.ccsds.message import message_of
+from safestart.interchange.ccsds.parameters import Manoeuvre
 from safestart.interchange.covariance import Sense
 from safestart.interchange.ephemeris import Ephemeris
 from safestart.interchange.source import bytes_of
@@ -21,7 +22,7 @@ def ephemeris_of(path: Path | str, sense: Sense | None = None) -> Ephemeris:
 
 
 def ephemeris_from(data: bytes, name: str = "", sense: Sense | None = None) -> Ephemeris:
-    """The same of a file's bytes; its ``name`` tells tables apart."""
+    """Read an ephemeris from a file's bytes; its ``name`` tells tables apart."""
     if tables.is_table(data, name):
         return tables.ephemeris_of(data, name)
     message = message_of(data)
@@ -40,7 +41,7 @@ def attitude_of(path: Path | str) -> AttitudeCourse:
 
 
 def attitude_from(data: bytes, name: str = "") -> AttitudeCourse:
-    """The same of a file's bytes."""
+    """Read an attitude from a file's bytes."""
     if tables.is_table(data, name):
         return tables.attitude_of(data, name)
     message = message_of(data)
@@ -64,6 +65,16 @@ def course_from(data: bytes, name: str = "", sense: Sense | None = None) -> Ephe
     if message_of(data).kind in ("AEM", "ACM", "APM"):
         return attitude_from(data, name)
     return ephemeris_from(data, name, sense)
+
+
+def manoeuvres_from(data: bytes) -> tuple[Manoeuvre, ...]:
+    """The burns of an OPM or OCM, in the order of the file; raises ``InvalidInput`` for another one."""
+    message = message_of(data)
+    if message.kind == "OPM":
+        return parameters.orbit_of(message).manoeuvres
+    if message.kind == "OCM":
+        return ocm.manoeuvres_of(message)
+    raise invalid("file", "manoeuvres: OPM or OCM", message.kind)
 
 
 def encounter_of(path: Path | str, sense: Sense) -> Encounter:

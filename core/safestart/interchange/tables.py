@@ -19,6 +19,7 @@ from safestart.interchange.attitude_course import AttitudeCourse
 from safestart.interchange.ccsds.tokens import number
 from safestart.interchange.ephemeris import MOST_STATES, Ephemeris
 from safestart.interchange.epochs import epochs_of, shortened, text_of
+from safestart.interchange.foreign import refuse_foreign
 from safestart.interchange.matlab import arrays_in
 from safestart.interchange.source import text_of as decoded
 from safestart.model.scenario import Floats
@@ -95,6 +96,7 @@ def parquet_of(columns: Mapping[str, Sequence[Any]]) -> bytes:
 
 
 def _columns(data: bytes, name: str) -> Columns:
+    refuse_foreign(data)
     if data[:4] == b"PAR1":
         pa, pq = _arrow()
         try:

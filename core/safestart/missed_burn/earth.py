@@ -31,7 +31,8 @@ from safestart.dynamics.two_body_kernel import (
     target_with,
 )
 from safestart.errors import invalid
-from safestart.missed_burn.kernels.variation import carried
+from safestart.missed_burn.kernels.strays import influence_of
+from safestart.missed_burn.kernels.variation import carried, course_of
 from safestart.missed_burn.plan import Plan, Question, longest_drift
 from safestart.model.orbit import EARTH_RADIUS as RADIUS
 from safestart.model.orbit import MAX_ECCENTRICITY, MU
@@ -176,14 +177,11 @@ def drift_of(target: Six, state: Six, longest: float) -> Drift:
     inner = max(math.ceil(step / _STEP), 1)
     lift = lift_of(start)
     reference = lift @ np.array(state)
-    away, _ = carried(start, step / inner, GRID * inner, inner, STAGES, WEIGHTS)
+    away = course_of(start, step / inner, GRID * inner, inner, STAGES, WEIGHTS)
     course, tables = carried(start + reference, step / inner, GRID * inner, inner, STAGES, WEIGHTS)
     least = min(np.linalg.norm(c[:, :3], axis=1).min() for c in (away, course))
     lowest = float(least) * _LOWER
     nodes = tables[::PER_PART]
-    whole = np.matmul(nodes[:, None], inverse(nodes)[None, :])
-    blocks = whole.reshape(PARTS + 1, PARTS + 1, 2, 3, 2, 3)
-    influence = np.sqrt((blocks**2).sum(axis=(3, 5))).transpose(2, 3, 0, 1)
     return Drift(
         target=start,
         chaser=start + reference,
@@ -194,7 +192,7 @@ def drift_of(target: Six, state: Six, longest: float) -> Drift:
         lift=lift,
         stiffness=stiffness_of(lowest),
         lowest=lowest,
-        influence=influence,
+        influence=influence_of(np.ascontiguousarray(nodes)),
     )
 
 
@@ -207,11 +205,3 @@ def drift_after(question: Question, kind: str, burn: int) -> Drift:
     state[3:] += share * np.array(question.plan.burns[k].impulse)
     target = tuple(target_before(question, k).tolist())
     return drift_of(target, tuple(state.tolist()), longest_drift(question, k))
-
-
-def remainder(lowest: float, rho: float) -> float:
-    """Bound on |w|, m/s^2, up to the distance ``rho`` m; infinite from half the radius on."""
-    r = lowest - rho
-    if not r > 0.5 * lowest:
-        return math.inf
-    return (3.0 * MU / r**4 + 30.0 * MU * J2 * RADIUS**2 / r**6) * rho * rho * (1.0 + 1e-12)

@@ -12,15 +12,14 @@ import math
 
 import numpy as np
 
-from safestart.missed_burn.earth import PARTS, PER_PART, Drift, drift_after, remainder
+from safestart.missed_burn.earth import PARTS, PER_PART, Drift, drift_after
+from safestart.missed_burn.kernels.strays import strays_from
 from safestart.missed_burn.kernels.table import images_of, least_between
 from safestart.missed_burn.plan import Question
 from safestart.missed_burn.sets import Case
 from safestart.model.scenario import Floats
 
-UNBOUNDED = 1e30
 _UP = 1.0 + 1e-9
-_TRIALS = 60
 
 
 def earth_bound(
@@ -53,28 +52,8 @@ def strays_along(case: Case, question: Question, drift: Drift) -> tuple[Floats, 
     reached = _UP * np.maximum(nodes[:-1], nodes[1:]).sum(axis=1) / (1.0 - curve)
     reached += detour(case, question, k) + 1e-6
     grown, slid = math.cosh(k * h), math.sinh(k * h) / k
-    pushed = (grown - 1.0) / drift.stiffness, slid
-    strays, trials, pushes = np.full(PARTS, UNBOUNDED), np.full(PARTS, UNBOUNDED), np.zeros(PARTS)
-    influence = drift.influence
-    for j in range(PARTS):
-        # influence[:, :, j, m]: from the end of part m - 1.
-        from_position = influence[:, 0, j, 1 : j + 1] @ pushes[:j] * pushed[0]
-        from_velocity = influence[:, 1, j, 1 : j + 1] @ pushes[:j] * pushed[1]
-        at, fast = from_position + from_velocity
-        before = _UP * (grown * at + slid * fast)
-        trial = float(reached[j] + before) * _UP + 1e-6
-        for _ in range(_TRIALS):
-            push = remainder(drift.lowest, trial)
-            if not math.isfinite(push):
-                return strays, trials
-            there = before + pushed[0] * push * _UP
-            needed = float(reached[j] + there)
-            if needed < trial:
-                break
-            trial = needed * _UP + 1e-6
-        else:
-            return strays, trials
-        pushes[j], strays[j], trials[j] = push, there, trial
+    by_position = (grown - 1.0) / drift.stiffness
+    strays, trials = strays_from(reached, drift.influence, grown, slid, by_position, drift.lowest)
     return strays, trials
 
 

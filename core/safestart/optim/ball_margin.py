@@ -38,12 +38,13 @@ _LEAST_CURVATURE = 1e-6
 _LEAST_PIVOT = 1e-15
 
 
-@compiled(error_model="numpy")
+# Inlined: a call with two rows counts references to them, which takes longer than the sum.
+@compiled(error_model="numpy", forceinline=True)
 def _dot(a: Any, b: Any, count: int) -> float:
     # Eight sums side by side: vector instructions without the freedom to reorder, so every processor gives these bits.
     s0 = s1 = s2 = s3 = s4 = s5 = s6 = s7 = 0.0
-    whole = count - count % 8
-    for i in range(0, whole, 8):
+    for eight in range(count // 8):
+        i = 8 * eight
         s0 += a[i] * b[i]
         s1 += a[i + 1] * b[i + 1]
         s2 += a[i + 2] * b[i + 2]
@@ -53,7 +54,7 @@ def _dot(a: Any, b: Any, count: int) -> float:
         s6 += a[i + 6] * b[i + 6]
         s7 += a[i + 7] * b[i + 7]
     total = ((s0 + s1) + (s2 + s3)) + ((s4 + s5) + (s6 + s7))
-    for i in range(whole, count):
+    for i in range(count - count % 8, count):
         total += a[i] * b[i]
     return total
 
@@ -105,27 +106,61 @@ def _pull(rows: Any, ends: Any, z: Any, pull: Any) -> None:
             pull[i] += z[j] * rows[j, i]
 
 
+# Two and three components are written out: a loop of two takes ten times as long.
 @compiled(error_model="numpy")
-def _reach(pull: Any, d: int) -> float:
+def _inner(a: Any, b: Any, d: int, out: Any) -> None:
+    """a . b of every ball into ``out``."""
+    if d == 2:
+        for k in range(len(out)):
+            i = 2 * k
+            out[k] = a[i] * b[i] + a[i + 1] * b[i + 1]
+        return
+    if d == 3:
+        for k in range(len(out)):
+            i = 3 * k
+            out[k] = a[i] * b[i] + a[i + 1] * b[i + 1] + a[i + 2] * b[i + 2]
+        return
+    for k in range(len(out)):
+        out[k] = 0.0
+        for i in range(d * k, d * k + d):
+            out[k] += a[i] * b[i]
+
+
+@compiled(error_model="numpy")
+def _reach(pull: Any, d: int, squares: Any) -> float:
     """Largest pull . w over the balls: the sum of norms."""
     total = 0.0
-    for k in range(len(pull) // d):
-        square = 0.0
-        for i in range(d * k, d * k + d):
-            square += pull[i] * pull[i]
-        total += math.sqrt(square)
+    _inner(pull, pull, d, squares)
+    for k in range(len(squares)):
+        total += math.sqrt(squares[k])
     return total
 
 
 @compiled(error_model="numpy")
-def _through_root(v: Any, w: Any, gamma: float, root: float, begin: int, d: int, out: Any) -> None:
-    """B^(-1/2) v for one ball, B = 2 y (I + (2 / h) w w^T): ``root`` (I - ``gamma`` w w^T) v."""
-    along = 0.0
-    for i in range(begin, begin + d):
-        along += v[i] * w[i]
-    along *= gamma
-    for i in range(begin, begin + d):
-        out[i] = root * (v[i] - along * w[i])
+def _through_root(v: Any, w: Any, gamma: Any, root: Any, balls: int, d: int, out: Any) -> None:
+    """B^(-1/2) v for the first ``balls``, B = 2 y (I + (2 / h) w w^T): ``root`` (I - ``gamma`` w w^T) v."""
+    if d == 2:
+        for k in range(balls):
+            i = 2 * k
+            along = (v[i] * w[i] + v[i + 1] * w[i + 1]) * gamma[k]
+            out[i] = root[k] * (v[i] - along * w[i])
+            out[i + 1] = root[k] * (v[i + 1] - along * w[i + 1])
+        return
+    if d == 3:
+        for k in range(balls):
+            i = 3 * k
+            along = (v[i] * w[i] + v[i + 1] * w[i + 1] + v[i + 2] * w[i + 2]) * gamma[k]
+            out[i] = root[k] * (v[i] - along * w[i])
+            out[i + 1] = root[k] * (v[i + 1] - along * w[i + 1])
+            out[i + 2] = root[k] * (v[i + 2] - along * w[i + 2])
+        return
+    for k in range(balls):
+        along = 0.0
+        for i in range(d * k, d * k + d):
+            along += v[i] * w[i]
+        along *= gamma[k]
+        for i in range(d * k, d * k + d):
+            out[i] = root[k] * (v[i] - along * w[i])
 
 
 @compiled(error_model="numpy")
@@ -152,9 +187,10 @@ def largest_margin(constant: Any, rows: Any, d: int, tolerance: float) -> Any:
     ones, z, best = np.zeros(count), np.zeros(count), np.zeros(count)
     h, dy, dy_trial = np.zeros(balls), np.zeros(balls), np.zeros(balls)
     gamma, root = np.zeros(balls), np.zeros(balls)
+    inners, squares = np.zeros(balls), np.zeros(balls)
     reach = 1e-300
     for j in range(count):
-        reach = max(reach, _reach(rows[j], d))
+        reach = max(reach, _reach(rows[j], d, squares))
     margin, y = constant[0], np.empty(balls)
     for j in range(count):
         margin, z[j] = min(margin, constant[j]), 1.0 / count
@@ -173,7 +209,7 @@ def largest_margin(constant: Any, rows: Any, d: int, tolerance: float) -> Any:
             total += z[j]
             weighted += z[j] * constant[j]
         _pull(rows, ends, z, pull)
-        here = (weighted + _reach(pull, d)) / total
+        here = (weighted + _reach(pull, d, squares)) / total
         if here < bound:
             bound = here
             for j in range(count):
@@ -188,10 +224,10 @@ def largest_margin(constant: Any, rows: Any, d: int, tolerance: float) -> Any:
             gamma[k] = 2.0 / (wide * (1.0 + math.sqrt(h[k] / wide)))
         product /= count + balls
         for j in range(count):
-            for k in range(ends[j] // d):
-                _through_root(rows[j], w, gamma[k], root[k], d * k, d, scaled[j])
+            row = scaled[j]
+            _through_root(rows[j], w, gamma, root, ends[j] // d, d, row)
             for i in range(j + 1):
-                system[j, i] = _dot(scaled[j], scaled[i], min(ends[i], ends[j]))
+                system[j, i] = _dot(row, scaled[i], min(ends[i], ends[j]))
             system[j, j] += s[j] / z[j]
             ones[j] = 1.0
         if not (lowest > 0.0 and _factor(system)):
@@ -210,8 +246,8 @@ def largest_margin(constant: Any, rows: Any, d: int, tolerance: float) -> Any:
                     q[i] = pull[i] - 2.0 * w[i] * (y[k] + missing / h[k])
                     if phase == 1:
                         q[i] -= 2.0 * dy_trial[k] * trial[i]
-                _through_root(q, w, gamma[k], root[k], d * k, d, along)
                 dy[k] = missing / h[k]
+            _through_root(q, w, gamma, root, balls, d, along)
             for j in range(count):
                 dz[j] = target / z[j] - s[j] - _dot(scaled[j], along, ends[j])
                 if phase == 1:
@@ -228,12 +264,11 @@ def largest_margin(constant: Any, rows: Any, d: int, tolerance: float) -> Any:
                     along[i] += scaled[j, i] * dz[j]
             # The step, and how far it stays strictly inside.
             primal, dual = 1.0, 1.0
+            _through_root(along, w, gamma, root, balls, d, step)
+            _inner(w, step, d, inners)
+            _inner(step, step, d, squares)
             for k in range(balls):
-                _through_root(along, w, gamma[k], root[k], d * k, d, step)
-                inner, square = 0.0, 0.0
-                for i in range(d * k, d * k + d):
-                    inner += w[i] * step[i]
-                    square += step[i] * step[i]
+                inner, square = inners[k], squares[k]
                 dy[k] += 2.0 * y[k] * inner / h[k]
                 if dy[k] < 0.0:
                     dual = min(dual, -y[k] / dy[k])
@@ -268,12 +303,11 @@ def largest_margin(constant: Any, rows: Any, d: int, tolerance: float) -> Any:
         margin += primal * dm
         for j in range(count):
             z[j] += dual * dz[j]
+        for i in range(size):
+            w[i] += primal * step[i]
+        _inner(w, w, d, squares)
         for k in range(balls):
-            square = 0.0
-            for i in range(d * k, d * k + d):
-                w[i] += primal * step[i]
-                square += w[i] * w[i]
-            h[k] = 1.0 - square
+            h[k] = 1.0 - squares[k]
             y[k] += dual * dy[k]
             if not (h[k] > 0.0 and y[k] > 0.0):
                 return w, best, CLOSE if gap <= _USABLE * reach else SINGULAR, iteration

@@ -27,6 +27,16 @@ if TYPE_CHECKING:
 _HERE = Path(__file__).parents[1]
 _TYPES = {".css": "text/css", ".svg": "image/svg+xml", ".js": "text/javascript"}
 _PLOTLY = "plotly.min.js"
+# The pages in the order of the menu: path, name, what a lost visitor finds there.
+PAGES = (
+    ("/dashboard", "Explore", "may the chaser start here?"),
+    ("/dashboard/space", "In space", "any start, tumble, orbit and corridor"),
+    ("/dashboard/trade", "Trade study", "which tumble and thrust are enough?"),
+    ("/dashboard/approach", "Approach designer", "hops to the target, and burns that are missed"),
+    ("/dashboard/submit", "Submit", "any process, by a form"),
+    ("/dashboard/jobs", "Jobs", "what runs, and what came out"),
+    ("/docs", "API", "every call"),
+)
 # Hashes of the three style attributes that plotly.js writes as text; it sets all other styles through the DOM.
 _PLOTLY_STYLES = (
     "'sha256-ji27qzEtxXZW+7dun6UwjHXJ18e6WAin1VvNtkzIE/o='",
@@ -53,6 +63,7 @@ def _environment() -> Environment:
         lstrip_blocks=True,
     )
     found.filters["coded"] = coded
+    found.globals["pages"] = PAGES
     return found
 
 

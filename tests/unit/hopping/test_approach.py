@@ -6,7 +6,7 @@ import pytest
 from safestart.dynamics.cwh import transition_matrix
 from safestart.errors import InvalidInput
 from safestart.hopping.approach import approach, distances, line, mean_motion_of
-from safestart.hopping.inverse import angles_for, greatest_angle
+from safestart.hopping.inverse import curve_of, greatest_angle
 
 N = mean_motion_of(8.1e6)
 
@@ -57,14 +57,14 @@ def test_ten_times_the_fuel_holds_in_the_1_norm_and_five_times_faster_nearly() -
 
 def test_angles_for_a_time_or_a_fuel() -> None:
     for measure, value in (("orbits", 0.6), ("fuel_1norm", 8.5), ("fuel_2norm", 4.5)):
-        angles = angles_for(measure, value, N, 2000.0, 100.0, 5)
+        angles = curve_of(measure, N, 2000.0, 100.0, 5).angles_for(value)
         assert len(angles) == 2 or measure == "fuel_2norm"
         assert angles
         for angle in angles:
             plan = approach(N, angle, 2000.0, 100.0, 5)
             reached = {"orbits": plan.orbits, "fuel_1norm": plan.fuel_1norm, "fuel_2norm": plan.fuel_2norm}
             assert reached[measure] == pytest.approx(value, abs=1e-8)
-    assert angles_for("fuel_1norm", 20.0, N, 2000.0, 100.0, 5) == []
+    assert curve_of("fuel_1norm", N, 2000.0, 100.0, 5).angles_for(20.0) == []
     assert greatest_angle(2000.0, 100.0, 5) == pytest.approx(145.7, abs=0.2)
 
 

@@ -11,8 +11,9 @@ from safestart.dynamics.cwh import transition_matrix
 from safestart.errors import InvalidInput
 from safestart.hopping.approach import departure, line
 from safestart.hopping.fold import CUSP
-from safestart.hopping.hop_equation import fraction_left, residual, weights
+from safestart.hopping.hop_equation import residual, weights
 from safestart.hopping.hop_time import fold_deg, hop_phases, hop_time
+from safestart.hopping.hop_time_kernel import compiled_hop_phases
 
 N = 8.66e-4
 
@@ -39,12 +40,18 @@ def test_the_v_bar_takes_half_an_orbit_for_every_share() -> None:
     assert hop_time(1e-5, 0.5)[0] == pytest.approx(0.5, abs=1e-3)
 
 
+def _share_left(phi: np.ndarray, theta: float) -> np.ndarray:
+    """rho that a hop of phase ``phi`` (rad) along ``theta`` (rad) leaves: g = N - rho D vanishes."""
+    numerator, _ = residual(phi, weights(np.array(theta), np.zeros(())))
+    return numerator / (numerator - residual(phi, weights(np.array(theta), np.ones(())))[0])
+
+
 def test_the_r_bar_limit_and_its_closed_form() -> None:
     assert _phase(90.0, 0.0) == pytest.approx(1.2757, abs=5e-5)
     phi = np.linspace(0.05, 1.2, 40)
     printed = (3 * phi - 4 * np.sin(phi)) / (3 * phi * np.cos(phi) - 4 * np.sin(phi))
-    assert np.allclose(fraction_left(phi, np.array(0.5 * math.pi)), printed, rtol=1e-12)
-    assert float(fraction_left(np.array(0.6), np.array(0.5 * math.pi))) == pytest.approx(0.593, abs=5e-4)
+    assert np.allclose(_share_left(phi, 0.5 * math.pi), printed, rtol=1e-12)
+    assert float(_share_left(np.array(0.6), 0.5 * math.pi)) == pytest.approx(0.593, abs=5e-4)
 
 
 def test_folds() -> None:
@@ -99,3 +106,17 @@ def test_bad_input_is_named() -> None:
         assert refused.value.field == field
     with pytest.raises(InvalidInput, match="rho"):
         hop_phases(np.array([40.0]), np.array([math.nan]))
+
+
+def test_compiled_hop_times_are_the_same() -> None:
+    rng = np.random.default_rng(2)
+    angles, shares = rng.uniform(0.0, 360.0, 20_000), rng.uniform(0.0, 0.99, 20_000)
+    angles[:50], angles[50:100], shares[100:150] = 0.0, 90.0, 0.0
+    plain, fast = hop_phases(angles, shares), compiled_hop_phases(angles, shares)
+    assert (np.isnan(plain) == np.isnan(fast)).all()
+    assert 100 < np.isnan(plain).sum() < 10_000
+    np.testing.assert_allclose(fast, plain, rtol=1e-11)
+    for angle, share, field in ((np.inf, 0.5, "angle_deg"), (10.0, 1.5, "rho"), (10.0, -0.1, "rho")):
+        with pytest.raises(InvalidInput) as refused:
+            compiled_hop_phases(np.array([angle]), np.array([share]))
+        assert refused.value.field == field

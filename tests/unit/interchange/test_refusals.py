@@ -10,6 +10,7 @@ from safestart.errors import InvalidInput
 from safestart.interchange.covariance import Covariance
 from safestart.interchange.ephemeris import Ephemeris
 from safestart.interchange.epochs import epochs_of
+from safestart.interchange.foreign import refuse_foreign
 from safestart.interchange.read import attitude_from, attitude_of, encounter_of, ephemeris_from, ephemeris_of
 from safestart.interchange.source import MOST_BYTES
 from safestart.interchange.write import course_bytes
@@ -62,7 +63,8 @@ def _swapped(text: str) -> str:
         (XML.replace("<X>", '<X units="m">', 1), "X in km"),
         (XML[:2000], "well-formed XML"),
         (XML.replace("<Z_DOT>", "<Z_DOTT>", 1).replace("</Z_DOT>", "</Z_DOTT>", 1), "Z_DOT in stateVector"),
-        (XML.replace("<oem ", "<tdm ").replace("</oem>", "</tdm>"), "one message"),
+        (XML.replace("<oem ", "<tdm ").replace("</oem>", "</tdm>"), "tracking data"),
+        (XML.replace("<oem ", "<xyz ").replace("</oem>", "</xyz>"), "one message"),
         (XML.replace("CCSDS_OEM_VERS", "CCSDS_AEM_VERS"), 'id="CCSDS_OEM_VERS"'),
     ],
 )  # fmt: skip
@@ -156,6 +158,42 @@ def test_covariances_that_cannot_be() -> None:
     text[first] = "-1.0"
     with pytest.raises(InvalidInput, match="positive semi-definite"):
         ephemeris_from("\n".join(text).encode())
+
+
+TLE = "1 27386U 02009A   26332.51782528  .00000071  00000-0  37432-4 0  9993\n2 27386  98.1 10 0001 90 270 14.38\n"
+
+
+@pytest.mark.parametrize(
+    ("data", "name"),
+    [
+        (b"#dP2026 11 29  0  0  0.00000000      96 ORBIT IGS20 FIT  IGS\n", "SP3"),
+        (b"#cV2026  1  1  0  0  0.00000000      96 ORBIT IGS20 FIT  IGS\n", "SP3"),
+        (b"stk.v.11.0\nBEGIN Ephemeris\n", "STK"),
+        (b"DAF/SPK " + bytes(1000), "SPICE"),
+        (b"KPL/FK\n", "SPICE"),
+        (TLE.encode(), "TLE"),
+        (b"ENVISAT\r\n" + TLE.encode(), "TLE"),
+        (b"CCSDS_OMM_VERS = 2.0\n", "OMM"),
+        (b'<?xml version="1.0"?>\n<omm id="CCSDS_OMM_VERS" version="2.0">', "OMM"),
+        (b"CCSDS_TDM_VERS = 1.0\n", "tracking data"),
+        (b"\x89HDF\r\n\x1a\n", "HDF5"),
+        (b"MATLAB 7.3 MAT-file, Platform: GLNXA64", "HDF5"),
+        (b"CDF\x01", "NetCDF"),
+        (b"PK\x03\x04", "ZIP"),
+        (b"\x1f\x8b\x08", "gzip"),
+    ],
+)
+@pytest.mark.parametrize("ending", ["", "csv", "mat"])
+def test_other_formats_of_the_field_are_refused_by_name(data: bytes, name: str, ending: str) -> None:
+    for read in (ephemeris_from, attitude_from):
+        with pytest.raises(InvalidInput, match=rf"required a CCSDS message .*received .*{name}"):
+            read(data, f"a.{ending}")
+
+
+def test_no_message_or_table_of_ours_is_taken_for_another_format() -> None:
+    for form in ("kvn", "xml", "csv", "parquet", "mat"):
+        for record in (course(), turning()):
+            refuse_foreign(course_bytes(record, form, CREATED))
 
 
 @pytest.mark.parametrize("form", ["csv", "parquet", "mat"])

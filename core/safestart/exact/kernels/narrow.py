@@ -119,13 +119,36 @@ def _touch(
 
 
 @compiled()
+def _that_may_bind(state: Any, normals: Any, offsets: Any, constant: Any, reach: Any) -> Any:
+    """Places of the first rows that may bind, and the distance (m) to the nearest face now.
+
+    At t = 0 only the nearest face matters; a row that cannot fall below the best possible margin cannot bind.
+    """
+    nearest, distance = 0, math.inf
+    for f in range(len(offsets)):
+        here = 0.0
+        for i in range(normals.shape[1]):
+            here += normals[f, i] * state[i]
+        if offsets[f] - here < distance:
+            nearest, distance = f, offsets[f] - here
+    places, count = np.empty(len(constant), np.int64), 0
+    most = constant[nearest] + reach[nearest]
+    for j in range(len(constant)):
+        if j == nearest or (j >= len(offsets) and constant[j] - reach[j] < most):
+            places[count] = j
+            count += 1
+    return places[:count], distance
+
+
+@compiled()
 def narrow(
     state: Any,
     tables: Any,
-    times: Any,
-    faces: Any,
-    constant: Any,
-    rows: Any,
+    first_times: Any,
+    first_faces: Any,
+    first_constant: Any,
+    first_rows: Any,
+    reach: Any,
     a_max: float,
     rounding: float,
     tolerance: float,
@@ -133,15 +156,24 @@ def narrow(
 ) -> Any:
     """Bracket the margin of ``state`` (2 d,) from the first rows; :meth:`Search.narrow` says how.
 
-    ``times``, ``faces``, ``constant`` (J,), ``rows`` (J, N d) in m at full thrust. Returns whether every program was
-    settled, lower, upper (m), rounds, thrust (N, d), and times, faces and weights of the evidence for upper.
+    The first rows, those of all faces at t = 0 in front: times, faces, ``first_constant`` (J,), ``first_rows`` (J, N d)
+    in m at full thrust, and how far thrust can move each. Returns whether every program was settled (no for a start
+    outside), lower, upper (m), rounds, thrust (N, d), and times, faces and weights of the evidence for upper.
     """
-    d, columns = tables.normals.shape[1], rows.shape[1]
+    d, columns = tables.normals.shape[1], first_rows.shape[1]
     horizon = tables.dt * len(tables.free)
     lower, upper, rounds = -math.inf, math.inf, 0
     best = np.zeros((columns // d, d))
     known_times, known_faces, known_weights = np.empty(0), np.empty(0, np.int64), np.empty(0)
     dips = np.full((len(tables.offsets), 2), math.nan)
+    places, distance = _that_may_bind(state, tables.normals, tables.offsets, first_constant, reach)
+    if distance < -GUARD:
+        return False, lower, upper, rounds, best, known_times, known_faces, known_weights
+    times, faces, constant = first_times[places], first_faces[places], first_constant[places]
+    rows = np.empty((len(places), columns))
+    for j in range(len(places)):
+        for i in range(columns):
+            rows[j, i] = first_rows[places[j], i]
     fine = False
     while rounds < MOST_ROUNDS:
         rounds += 1

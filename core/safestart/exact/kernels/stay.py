@@ -19,22 +19,14 @@ def stay(watch: Watch, state: Floats, tolerance: float, *, verdict_only: bool) -
     None where the start is outside, and where a program or the verdict stays open or the bracket wide.
     """
     known, question = _known(watch), watch.question
-    distances = watch.offsets - watch.normals @ state[: question.dimensions]
-    nearest = int(distances.argmin())
-    if distances[nearest] < -GUARD:
-        return None
-    constant = known.offset + known.start @ state
-    # At t = 0 only the nearest face matters; a row that cannot fall below the best possible margin cannot bind.
-    kept = constant - known.reach < constant[nearest] + known.reach[nearest]
-    kept[: len(distances)] = False
-    kept[nearest] = True
     settled, lower, upper, rounds, thrust, times, faces, weights = narrow(
         state,
         known.tables,
-        known.times[kept],
-        known.faces[kept],
-        constant[kept],
-        known.rows[kept],
+        known.times,
+        known.faces,
+        known.offset + known.start @ state,
+        known.rows,
+        known.reach,
         question.thrust_scale,
         rounding_of(watch, state),
         tolerance,

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from safestart.errors import invalid
 from safestart.interchange.ccsds import kvn, xml_form
 from safestart.interchange.ccsds.tokens import Fields, Kind, Token, blocks_of, refused
+from safestart.interchange.foreign import refuse_foreign
 from safestart.interchange.source import text_of
 
 VERSIONS = {
@@ -81,6 +82,7 @@ class Message:
 
 def message_of(data: bytes) -> Message:
     """The message in a file's bytes, KVN or XML; raises ``InvalidInput`` for other bytes, ``Unavailable``."""
+    refuse_foreign(data)
     if data.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"<":
         tokens: Iterable[Token] = xml_form.tokens_of(data)
     else:

@@ -1,4 +1,4 @@
-"""Orbit Comprehensive Messages (502.0-B-3): trajectory and covariance as :class:`Ephemeris`, manoeuvres out."""
+"""Orbit Comprehensive Messages (502.0-B-3): trajectory and covariance as :class:`Ephemeris`, manoeuvres, and back."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from safestart.interchange.ephemeris import Ephemeris
 from safestart.interchange.epochs import SECOND, epochs_of, shortened, text_of
 
 _TRAJECTORIES = {"CARTPV": 6, "CARTPVA": 9}
+_MAN_UNITS = {"MAN_DURA": "s", "DV_X": "km/s", "DV_Y": "km/s", "DV_Z": "km/s"}
 _MAN_COLUMNS = "TIME_ABSOLUTE, MAN_DURA, DV_X, DV_Y, DV_Z"
 
 
@@ -52,6 +53,7 @@ def ephemeris_of(message: Message, sense: Sense | None = None) -> Ephemeris:
         elif one.name == "COV":
             _one_of(one, "COV_TYPE", {"CARTPV": 6})
             _one_of(one, "COV_ORDERING", {"LTM": 21})
+            _refuse_units(one, "COV_UNITS", "km**2")
             turned = covariance_frame(one.fields.get("COV_REF_FRAME"), sense)
             for at, row in zip(times_of(meta, one.rows), one.rows, strict=True):
                 columns = iter(_columns(row, 21))
@@ -68,6 +70,44 @@ def ephemeris_of(message: Message, sense: Sense | None = None) -> Ephemeris:
     )
 
 
+def manoeuvres_of(message: Message) -> tuple[Manoeuvre, ...]:
+    """All burns of the MAN blocks, in the order of the file.
+
+    MAN_COMPOSITION must hold a time and DV_X, DV_Y, DV_Z (km/s); MAN_DURA (s) is 0 where it is left out, and other
+    columns are passed over. Raises ``InvalidInput``, by name for duty cycles other than CONTINUOUS.
+    """
+    meta: Block | None = None
+    found: list[Manoeuvre] = []
+    for one in message.blocks():
+        if one.name == "META":
+            meta = one
+        if one.name != "MAN":
+            continue
+        if meta is None:
+            raise refused(one.fields.line, "META_START before data", one.name)
+        cycle = one.fields.get("DC_TYPE", "CONTINUOUS").upper()
+        if cycle != "CONTINUOUS":
+            raise refused(one.fields.line, "DC_TYPE CONTINUOUS", cycle)
+        names = [name.strip().upper() for name in one.fields.get("MAN_COMPOSITION").split(",")]
+        needed = [name for name in ("DV_X", "DV_Y", "DV_Z") if name not in names]
+        if needed or names[0] not in ("TIME_ABSOLUTE", "TIME_RELATIVE"):
+            asked = (
+                "MAN_COMPOSITION: TIME_ABSOLUTE or TIME_RELATIVE first, then DV_X, DV_Y, DV_Z among others"
+            )
+            raise refused(one.fields.line, asked, ", ".join(names))
+        for name, unit in zip(names, one.fields.columns_units("MAN_UNITS"), strict=False):
+            required = _MAN_UNITS.get(name, unit)
+            if unit.lower() != required.lower():
+                raise refused(one.fields.line, f"{name} in {required}", unit)
+        frame = one.fields.get("MAN_REF_FRAME")
+        for at, row in zip(times_of(meta, one.rows), one.rows, strict=True):
+            values = dict(zip(names[1:], _columns(row, len(names) - 1), strict=True))
+            dv = [number(values[name], row.line, name, 3) for name in ("DV_X", "DV_Y", "DV_Z")]
+            lasts = number(values["MAN_DURA"], row.line, "MAN_DURA") if "MAN_DURA" in values else 0.0
+            found.append(Manoeuvre(at, lasts, (dv[0], dv[1], dv[2]), frame))
+    return tuple(found)
+
+
 def _one_of(one: Block, name: str, known: dict[str, int]) -> int:
     value = one.fields.get(name).upper()
     if value not in known:
@@ -76,8 +116,8 @@ def _one_of(one: Block, name: str, known: dict[str, int]) -> int:
 
 
 def _refuse_units(one: Block, name: str, required: str) -> None:
-    given = one.fields.get(name, "")
-    if given and not given.strip("[]").replace(" ", "").startswith(required):
+    given = ",".join(one.fields.columns_units(name)).lower()
+    if given and not given.startswith(required):
         raise refused(one.fields.line, f"{name} [{required}]", given)
 
 

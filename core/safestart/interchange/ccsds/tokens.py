@@ -66,6 +66,14 @@ class Fields:
             raise refused(token.line, f"{name} in {units}", f"[{token.units}]")
         return number(text, token.line, name, power)
 
+    def columns_units(self, name: str) -> list[str]:
+        """The units that a keyword lists for its columns, in KVN or XML; empty without it."""
+        self.taken.add(name)
+        token = self.values.get(name)
+        # KVN takes a value in brackets for the units of the keyword.
+        told = "" if token is None else token.value.strip("[] ") or token.units
+        return [unit.strip() for unit in told.split(",")] if told else []
+
     def done(self, known: Iterable[str] = ()) -> None:
         """Raise ``InvalidInput`` for a keyword that is neither taken nor ``known`` nor user-defined."""
         known = set(known)

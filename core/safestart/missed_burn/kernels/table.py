@@ -23,25 +23,65 @@ from safestart.runtime.kernels import compiled
 
 _FIRST = 48
 Ends = NDArray[np.int64]
+Flags = NDArray[np.bool_]
 
 
 @compiled()
 def images_of(tables: Floats, centre: Floats, columns: Floats, ends: Ends) -> tuple[Floats, Floats]:
     """Positions (T, 1 + C, 3) of the centre and the columns at all times, and sizes (T, 1 + K) of centre and blocks."""
     count, many = len(tables), len(columns)
-    images, sizes = np.zeros((count, 1 + many, 3)), np.zeros((count, 1 + len(ends)))
+    images, sizes = np.empty((count, 1 + many, 3)), np.empty((count, 1 + len(ends)))
     for t in range(count):
-        for i in range(3):
-            for j in range(6):
-                images[t, 0, i] += tables[t, i, j] * centre[j]
-                for c in range(many):
-                    images[t, 1 + c, i] += tables[t, i, j] * columns[c, j]
-        sizes[t, 0] = math.sqrt((images[t, 0] ** 2).sum())
-        begin = 0
-        for k in range(len(ends)):
-            sizes[t, 1 + k] = math.sqrt((images[t, 1 + begin : 1 + ends[k]] ** 2).sum())
-            begin = ends[k]
+        image_at(tables[t], centre, columns, ends, images[t], sizes[t])
     return images, sizes
+
+
+@compiled()
+def image_at(rows: Floats, centre: Floats, columns: Floats, ends: Ends, image: Floats, sizes: Floats) -> None:
+    """The same at one time: ``rows`` (3, 6); writes ``image`` (1 + C, 3) and ``sizes`` (1 + K,)."""
+    for i in range(3):
+        value = 0.0
+        for j in range(6):
+            value += rows[i, j] * centre[j]
+        image[0, i] = value
+        for c in range(len(columns)):
+            value = 0.0
+            for j in range(6):
+                value += rows[i, j] * columns[c, j]
+            image[1 + c, i] = value
+    sizes[0] = math.sqrt(image[0, 0] ** 2 + image[0, 1] ** 2 + image[0, 2] ** 2)
+    begin = 0
+    for k in range(len(ends)):
+        square = 0.0
+        for c in range(begin, ends[k]):
+            for i in range(3):
+                square += image[1 + c, i] ** 2
+        sizes[1 + k] = math.sqrt(square)
+        begin = ends[k]
+
+
+@compiled()
+def _known(
+    t: int,
+    known: Flags,
+    path: Floats,
+    tables: Floats,
+    centre: Floats,
+    columns: Floats,
+    ends: Ends,
+    images: Floats,
+    sizes: Floats,
+) -> None:
+    """Images and sizes of a node, of which few are ever looked at; the first size is that of the path."""
+    if known[t]:
+        return
+    known[t] = True
+    image_at(tables[t], centre, columns, ends, images[t], sizes[t, 1:])
+    square = 0.0
+    for i in range(3):
+        square += path[t, i] ** 2
+        images[t, 0, i] += path[t, i]
+    sizes[t, 0] = math.sqrt(square)
 
 
 @compiled()
@@ -104,12 +144,8 @@ def least_between(
     nodes. Ends as :func:`safestart.missed_burn.kernels.drift.least_distance` does. Returns the lower bound, the least
     distance of a member, its node and coordinates, and the cells (N, 5): two nodes and a direction.
     """
-    images, off = images_of(tables, centre, columns, ends)
-    sizes = np.empty((len(tables), 2 + len(ends)))
-    sizes[:, 1:] = off
-    for t in range(len(tables)):
-        sizes[t, 0] = math.sqrt((path[t] ** 2).sum())
-        images[t, 0] += path[t]
+    images, sizes = np.empty((len(tables), 1 + len(columns), 3)), np.empty((len(tables), 2 + len(ends)))
+    known = np.zeros(len(tables), dtype=np.bool_)
     last = len(tables) - 1
     cells, bounds = np.empty((most, 5)), np.empty(most)
     sharp = np.zeros(most, dtype=np.bool_)
@@ -122,6 +158,8 @@ def least_between(
     while True:
         for k in range(fresh, count):
             middle = int(cells[k, 0] + cells[k, 1]) // 2
+            for t in (int(cells[k, 0]), middle, int(cells[k, 1])):
+                _known(t, known, path, tables, centre, columns, ends, images, sizes)
             size = math.sqrt((images[middle, 0] ** 2).sum())
             for i in range(3):
                 cells[k, 2 + i] = images[middle, 0, i] / size if size > 0.0 else 1.0 if i == 0 else 0.0
@@ -154,6 +192,7 @@ def least_between(
             break
         cells[count, 0], cells[count, 1] = middle, end
         cells[worst, 1] = middle
+        _known(middle, known, path, tables, centre, columns, ends, images, sizes)
         # The whole interval's direction serves both halves until they are the worst.
         cells[count, 2:] = cells[worst, 2:]
         for k in (worst, count):

@@ -42,13 +42,71 @@ def gradient(position: Floats, pull: Floats, slope: Floats) -> None:
 
 @compiled()
 def _rates(y: Floats, out: Floats, pull: Floats, slope: Floats) -> None:
-    """``y`` and ``out`` (14, 3): position and velocity, then the columns of Phi, positions and velocities."""
-    gradient(y[0], pull, slope)
-    out[0], out[1] = y[1], pull
+    """``y`` and ``out`` (42,): position and velocity, then the columns of Phi, positions and velocities."""
+    gradient(y[:3], pull, slope)
+    for i in range(3):
+        out[i], out[3 + i] = y[3 + i], pull[i]
     for j in range(6):
+        at, fast = 6 + 3 * j, 24 + 3 * j
         for i in range(3):
-            out[2 + j, i] = y[8 + j, i]
-            out[8 + j, i] = slope[i, 0] * y[2 + j, 0] + slope[i, 1] * y[2 + j, 1] + slope[i, 2] * y[2 + j, 2]
+            out[at + i] = y[fast + i]
+            out[fast + i] = slope[i, 0] * y[at] + slope[i, 1] * y[at + 1] + slope[i, 2] * y[at + 2]
+
+
+@compiled()
+def _stepped(
+    y: Floats,
+    step: float,
+    stages: Floats,
+    weights: Floats,
+    stage: Floats,
+    rates: Floats,
+    pull: Floats,
+    slope: Floats,
+) -> None:
+    """One step of ``y`` (42,), in place."""
+    for s in range(12):
+        for i in range(42):
+            stage[i] = y[i]
+        for j in range(s):
+            a = step * stages[s, j]
+            if a != 0.0:
+                for i in range(42):
+                    stage[i] += a * rates[j, i]
+        _rates(stage, rates[s], pull, slope)
+    for j in range(12):
+        a = step * weights[j]
+        for i in range(42):
+            y[i] += a * rates[j, i]
+
+
+@compiled()
+def course_of(start: Floats, step: float, count: int, every: int, stages: Floats, weights: Floats) -> Floats:
+    """The states alone (M, 6) of :func:`carried`, to the last bit."""
+    course = np.empty((count // every + 1, 6))
+    y, stage, rates = start.copy(), np.empty(6), np.empty((12, 6))
+    pull, slope = np.empty(3), np.empty((3, 3))
+    for k in range(count + 1):
+        if k % every == 0:
+            for i in range(6):
+                course[k // every, i] = y[i]
+        if k == count:
+            break
+        for s in range(12):
+            for i in range(6):
+                stage[i] = y[i]
+            for j in range(s):
+                a = stages[s, j]
+                if a != 0.0:
+                    for i in range(6):
+                        stage[i] += step * a * rates[j, i]
+            gradient(stage[:3], pull, slope)
+            for i in range(3):
+                rates[s, i], rates[s, 3 + i] = stage[3 + i], pull[i]
+        for j in range(12):
+            for i in range(6):
+                y[i] += step * weights[j] * rates[j, i]
+    return course
 
 
 @compiled()
@@ -59,26 +117,19 @@ def carried(
     every ``every`` steps."""
     size = count // every + 1
     course, tables = np.empty((size, 6)), np.empty((size, 6, 6))
-    y, stage, rates = np.zeros((14, 3)), np.empty((14, 3)), np.empty((12, 14, 3))
+    y, stage, rates = np.zeros(42), np.empty(42), np.empty((12, 42))
     pull, slope = np.empty(3), np.empty((3, 3))
-    y[0], y[1] = target[:3], target[3:]
-    for j in range(3):
-        y[2 + j, j] = y[11 + j, j] = 1.0
+    for i in range(6):
+        y[i] = target[i]
+    for i in range(3):
+        y[6 + 4 * i] = y[33 + 4 * i] = 1.0
     for k in range(count + 1):
         if k % every == 0:
             at = k // every
-            course[at, :3], course[at, 3:] = y[0], y[1]
-            for j in range(6):
-                tables[at, :3, j], tables[at, 3:, j] = y[2 + j], y[8 + j]
-        if k == count:
-            break
-        for s in range(12):
-            stage[:] = y
-            for j in range(s):
-                a = stages[s, j]
-                if a != 0.0:
-                    stage += step * a * rates[j]
-            _rates(stage, rates[s], pull, slope)
-        for j in range(12):
-            y += step * weights[j] * rates[j]
+            for i in range(6):
+                course[at, i] = y[i]
+                for j in range(3):
+                    tables[at, j, i], tables[at, 3 + j, i] = y[6 + 3 * i + j], y[24 + 3 * i + j]
+        if k < count:
+            _stepped(y, step, stages, weights, stage, rates, pull, slope)
     return course, tables

@@ -14,9 +14,10 @@ from safestart.missed_burn.document import document_of
 from safestart.missed_burn.earth import Earth
 from safestart.missed_burn.plan import Burn, Errors, Failures, Plan, Question
 from safestart.missed_burn.prove import Proof, Verdict, greatest_scale, prove
-from safestart.missed_burn.replay import Flown
+from safestart.missed_burn.replay import MemberFlight
 from safestart.missed_burn.zone import POINT, Zone
 from safestart.processes.base import Artifact, ProcessOutput
+from safestart.processes.passive_abort.filed import left_out, resolved
 from safestart.processes.passive_abort.plots import picture
 from safestart.processes.passive_abort.spec import PassiveAbortInputs
 from safestart.processes.passive_abort.wire import ErrorsInput, FailuresInput, ZoneInput, radians
@@ -36,6 +37,7 @@ NOTES = {
 
 def run(inputs: PassiveAbortInputs, context: Context) -> ProcessOutput:
     """Verdict, cases, document or counter-example, picture."""
+    inputs, filed = resolved(inputs)
     question = question_of(inputs)
     proof = prove(question, tick=lambda k, of: context.step(0.6 * k / of, 1.0, "cases"))
     level = greatest_scale(question) if inputs.error_level else None
@@ -51,9 +53,10 @@ def run(inputs: PassiveAbortInputs, context: Context) -> ProcessOutput:
             "least_distance_m": proof.least,
             "gap_m": proof.gap,
             "error_level": level,
+            "read": filed,
             "cases": cases_of(proof),
             "counter_example": None if flown is None else flown_document(flown, question),
-            "notes": [NOTES[inputs.model]],
+            "notes": [NOTES[inputs.model], *left_out(inputs, filed)],
         },
         tuple(artifacts),
     )
@@ -61,6 +64,8 @@ def run(inputs: PassiveAbortInputs, context: Context) -> ProcessOutput:
 
 def question_of(inputs: PassiveAbortInputs) -> Question:
     """The question in SI."""
+    assert inputs.start is not None
+    assert inputs.burns is not None
     n = mean_motion_of(inputs.semi_major_axis_m)
     burns = tuple(
         Burn(b.time_s, (b.impulse_m_s[0], b.impulse_m_s[1], b.impulse_m_s[2]), b.duration_s)
@@ -175,7 +180,7 @@ def _failure(kind: str) -> str:
     return {"start": "missed", "made": "missed", "cut": "cut short"}.get(kind, kind)
 
 
-def flown_document(flown: Flown, question: Question) -> dict[str, Any]:
+def flown_document(flown: MemberFlight, question: Question) -> dict[str, Any]:
     """A counter-example on the wire."""
     missed = flown.kind in ("start", "made")
     return {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Literal
 
 from pydantic import Field, model_validator
@@ -22,6 +23,7 @@ from safestart.processes.views import Column, Facts, Findings, Rows
 
 VerdictName = Literal["PROVED", "VIOLATED", "UNKNOWN"]
 ModelName = Literal["linear", "nonlinear", "earth"]
+MOST_TEXT = 6_000_000
 
 
 class PassiveAbortInputs(WireModel):
@@ -41,8 +43,24 @@ class PassiveAbortInputs(WireModel):
         le=360,
         description="Where the target is at the first burn, from perigee, deg (model earth).",
     )
-    start: AbortStartInput = Field(description="State right before the first burn, LVLH.")
-    burns: list[BurnInput] = Field(min_length=1, max_length=200, description="The plan, in order.")
+    start: AbortStartInput | None = Field(
+        None, description="State right before the first burn, LVLH; a plan from a message brings it along."
+    )
+    burns: list[BurnInput] | None = Field(
+        None, min_length=1, max_length=200, description="The plan, in order; or give plan."
+    )
+    plan: str | None = Field(
+        None,
+        max_length=MOST_TEXT,
+        description="Instead of burns: CSV with time_s, dv_x_m_s, dv_y_m_s, dv_z_m_s (LVLH) and, if burns last, "
+        "duration_s, as text; or the chaser's OPM or OCM with its manoeuvres, KVN or XML, as text.",
+    )
+    target: str | None = Field(
+        None,
+        max_length=MOST_TEXT,
+        description="With a plan from a message: the target's OEM, OPM or OCM, as text. Its osculating orbit at the "
+        "first burn is the orbit asked about.",
+    )
     keep_out_m: KeepOut = Field(
         50.0, gt=0, le=1e5, description="Distance to keep from the target, or from each of the zones, m."
     )
@@ -73,10 +91,11 @@ class PassiveAbortInputs(WireModel):
 
     @model_validator(mode="after")
     def _ordered(self) -> PassiveAbortInputs:
-        for before, after in zip(self.burns, self.burns[1:], strict=False):
+        self._one_plan()
+        for before, after in pairwise(self.burns or []):
             if not before.time_s < after.time_s:
                 raise ValueError("burns: in the order of their times, no two at once")
-        if any(not any(burn.impulse_m_s) for burn in self.burns):
+        if any(not any(burn.impulse_m_s) for burn in self.burns or []):
             raise ValueError("burns: impulses that are not zero")
         if self.model != "linear" and not self.errors.at_each_burn:
             raise ValueError(f"errors.at_each_burn: true where model is {self.model}")
@@ -84,14 +103,28 @@ class PassiveAbortInputs(WireModel):
         self._lasting()
         return self
 
+    def _one_plan(self) -> None:
+        if (self.burns is None) == (self.plan is None):
+            raise ValueError("burns: required, or plan, not both")
+        if self.target is None:
+            if self.start is None:
+                raise ValueError("start: required, but for a plan from a message, which comes with target")
+            return
+        if self.plan is None or self.start is not None:
+            raise ValueError("target: goes with a plan from a message, without start")
+        ours = {"semi_major_axis_m", "eccentricity", "inclination_deg", "argument_of_perigee_deg"}
+        given = sorted(self.model_fields_set & (ours | {"true_anomaly_deg"}))
+        if given:
+            raise ValueError(f"{given[0]}: not beside target, whose file says it")
+
     def _lasting(self) -> None:
-        impulses = any(burn.duration_s == 0.0 for burn in self.burns)
+        impulses = any(burn.duration_s == 0.0 for burn in self.burns or [])
         if impulses and self.failures.stuck_s > 0.0 and self.failures.acceleration_m_s2 == 0.0:
             raise ValueError("failures.acceleration_m_s2: more than 0 where an impulse may be stuck on")
-        for before, after in zip(self.burns, self.burns[1:], strict=False):
+        for before, after in pairwise(self.burns or []):
             if before.time_s + before.duration_s > after.time_s:
                 raise ValueError(f"burns: each ends before the next, the one at {before.time_s:g} s does not")
-        if self.model == "earth" and (self.zones or any(burn.duration_s for burn in self.burns)):
+        if self.model == "earth" and (self.zones or any(burn.duration_s for burn in self.burns or [])):
             raise ValueError("model: linear or nonlinear where burns have a duration or zones are given")
 
     def _orbit(self) -> None:
@@ -102,7 +135,7 @@ class PassiveAbortInputs(WireModel):
             return
         if self.semi_major_axis_m * (1.0 - self.eccentricity) <= EARTH_RADIUS:
             raise ValueError(f"eccentricity: a perigee above the Earth's surface, {EARTH_RADIUS:g} m")
-        if self.states is not None and len(self.states) != len(self.burns):
+        if self.states is not None and self.burns is not None and len(self.states) != len(self.burns):
             raise ValueError(f"states: one before each of the {len(self.burns)} burns")
 
 
@@ -131,6 +164,18 @@ class FlownAbortOutput(WireModel):
     distance_m: float
 
 
+class ReadOutput(WireModel):
+    """A plan as it was read from a file: the same fields as inputs ask the same question."""
+
+    start: AbortStartInput
+    burns: list[BurnInput]
+    semi_major_axis_m: float
+    eccentricity: float | None = Field(description="Of the target's osculating orbit; null: not from a file.")
+    inclination_deg: float | None
+    argument_of_perigee_deg: float | None
+    true_anomaly_deg: float | None
+
+
 class PassiveAbortOutputs(WireModel):
     """The verdict on the plan, what every case keeps, and the evidence."""
 
@@ -141,6 +186,7 @@ class PassiveAbortOutputs(WireModel):
     error_level: float | None = Field(
         description="lambda: the greatest multiple of all errors for which every case is proved; null: not asked for."
     )
+    read: ReadOutput | None = Field(description="What plan and target say; null where burns are given.")
     cases: list[CaseOutput]
     counter_example: FlownAbortOutput | None
     notes: list[str]

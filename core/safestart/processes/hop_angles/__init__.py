@@ -1,0 +1,1 @@
+"""At which angles an approach takes a wanted time or fuel."""

@@ -1,0 +1,69 @@
+"""The command line loads what the asked command needs: its start is counted in modules, not in seconds."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from importlib.metadata import entry_points
+
+import pytest
+from typer.main import get_command
+
+from safestart.cli import COMMAND_GROUP, COMMANDS, build
+
+OURS = [name for names in COMMANDS.values() for name in names]
+# Modules loaded after a command, counted on the day the budget was made and rounded up. NumPy and pydantic are two
+# thirds of them.
+VERDICT = ["go-no-go", "--omega-t-deg-s", "3", "--a-max-m-s2", "0.1", "--x-m", "5", "--y-m", "40", "--json"]
+BUDGETS = [(VERDICT, 520), (["keys", "--help"], 350), (["--help"], 620)]
+NOT_FOR_A_VERDICT = {
+    "asyncio",
+    "ssl",
+    "scipy",
+    "numba",
+    "matplotlib",
+    "sqlalchemy",
+    "pydantic_settings",
+    "distributed",
+}
+
+
+def _commands(asked: str = "") -> dict[str, str]:
+    group = get_command(build(asked))
+    return {name: one.get_short_help_str(200) for name, one in group.commands.items()}  # type: ignore[attr-defined]
+
+
+def test_the_help_lists_every_command_of_ours_and_of_the_other_packages() -> None:
+    others = {point.name for point in entry_points(group=COMMAND_GROUP)}
+    assert {"service", "worker"} <= others
+    assert set(_commands()) == {*OURS, "serve", "worker"}
+
+
+@pytest.mark.parametrize("name", OURS)
+def test_a_command_alone_is_what_it_is_among_all(name: str) -> None:
+    alone = _commands(name)
+    assert alone.items() <= _commands().items()
+    assert name in alone
+
+
+@pytest.mark.parametrize("asked", ["serve", "worker", "nonsense", "--help", ""])
+def test_everything_else_has_all_commands(asked: str) -> None:
+    assert set(_commands(asked)) == set(_commands())
+
+
+@pytest.mark.parametrize(("command", "most"), BUDGETS, ids=[" ".join(words[:2]) for words, _ in BUDGETS])
+def test_modules_that_a_command_loads(command: list[str], most: int) -> None:
+    code = (
+        "import json, sys; from safestart.cli import build\n"
+        f"sys.argv = ['safestart', *{command!r}]\n"
+        "try: build(sys.argv[1])()\n"
+        "except SystemExit: pass\n"
+        "print(); print(json.dumps(sorted(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    loaded = json.loads(done.stdout.splitlines()[-1])
+    assert len(loaded) <= most
+    if command is VERDICT:
+        assert NOT_FOR_A_VERDICT.isdisjoint(loaded)
+        assert '"verdict": "GO"' in done.stdout
