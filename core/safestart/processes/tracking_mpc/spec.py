@@ -18,6 +18,7 @@ from safestart.processes.wire import Seed
 ENVISAT = [[17023.3, 397.1, -2171.4], [397.1, 124825.7, 344.2], [-2171.4, 344.2, 129112.2]]
 MAX_RUNS = 100_000
 MAX_PERIOD_S = 60.0
+MAX_RATE_DEG_S = 60.0
 Triple = list[float]
 
 
@@ -149,6 +150,13 @@ class TrackingMpcInputs(WireModel):
     def _square(cls, value: list[Triple]) -> list[Triple]:
         if any(len(row) != 3 for row in value):
             raise ValueError("three rows of three numbers")
+        return value
+
+    @field_validator("body_rate_deg_s")
+    @classmethod
+    def _slow(cls, value: Triple) -> Triple:
+        if math.hypot(*value) > MAX_RATE_DEG_S:
+            raise ValueError(f"three numbers, together at most {MAX_RATE_DEG_S:g} deg/s")
         return value
 
     @model_validator(mode="after")
