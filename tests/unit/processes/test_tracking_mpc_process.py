@@ -123,7 +123,11 @@ def test_the_study_is_the_same_for_any_shards(variant):
 def test_errors_of_some_kinds_only(exact):
     """Without noise the steady filter had no solution: the study ended in an error that named nothing."""
     names = {"position": "position_sigma_m", "velocity": "velocity_sigma_m_s", "input": "input_sigma"}
-    study = {name: 0.0 for kind, name in names.items() if exact in ("all", kind)} | {"runs": 2}
+    study = {name: 0.0 for kind, name in names.items() if exact in ("all", kind)} | {
+        "runs": 2,
+        "spin_sigma": 0,
+        "inertia_sigma": 0,
+    }
     outputs = execute("tracking-mpc", {"steps": 30, "study": study}).document["outputs"]
     assert outputs["study"]["requirements"]["inside"]["count"] == 2
 

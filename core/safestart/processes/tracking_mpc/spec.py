@@ -162,7 +162,7 @@ class TrackingMpcInputs(WireModel):
     @model_validator(mode="after")
     def _horizons(self) -> TrackingMpcInputs:
         if self.n_c > self.n_lqr:
-            raise ValueError(f"n_c: at most n_lqr, {self.n_lqr}, received {self.n_c}")
+            raise ValueError(f"n_c: at most n_lqr, {self.n_lqr}")
         return self
 
     @property
