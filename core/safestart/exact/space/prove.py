@@ -91,7 +91,7 @@ def question_of(question: SpaceQuestion) -> dict[str, Any]:
 
 
 def _demands(demands: Demands) -> dict[str, Any]:
-    """Those that are asked, as they are: not the convex parts by which they were answered."""
+    """The demands as they are asked, not the convex parts by which they were answered."""
     out: dict[str, Any] = {}
     if demands.keep_outs:
         out["keep_outs"] = [

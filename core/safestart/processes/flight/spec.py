@@ -64,6 +64,7 @@ SPEC = ProcessSpec(
     outputs=FlightOutputs,
     kernels=("exact answers",),
     run="safestart.processes.flight.run:run",
+    courses="safestart.processes.flight.files:kept_courses",
     light=True,
     cost=_cost,
     tables=(Table("flight", ("time_s", "body_m", "lvlh_m", "lvlh_m_s", "thrust_m_s2", "distance_m")),),

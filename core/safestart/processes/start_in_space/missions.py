@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-_ENVISAT = [[17023.3, 397.1, -2171.4], [397.1, 124825.7, 344.2], [-2171.4, 344.2, 129112.2]]
-"""kg m^2; Envisat's orbit is nearly circular at about 770 km."""
+from safestart.papers.envisat import INERTIA_KG_M2 as _ENVISAT
+
 _ENVISAT_ORBIT = {"semi_major_axis_m": 7143500.0, "eccentricity": 0.00012, "true_anomaly_deg": 90.0}
+"""Nearly circular at about 770 km."""
 _PAPER_ORBIT = {"semi_major_axis_m": 7144800.0, "eccentricity": 0.0, "true_anomaly_deg": 0.0}
 _TRANSFER = {"semi_major_axis_m": 24396000.0, "eccentricity": 0.7283}
 _MOLNIYA = {"semi_major_axis_m": 26600000.0, "eccentricity": 0.74}

@@ -7,6 +7,7 @@ from typing import Any, Literal
 from pydantic import Field, model_validator
 
 from safestart.engines.tracking_options import TrackingSettings
+from safestart.papers.envisat import TUMBLING
 from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.costs import FIRST_S, program_s
 from safestart.processes.go_no_go.question_fields import QuestionKind
@@ -258,11 +259,7 @@ SPEC = ProcessSpec(
     extensions={"safestart:examples": MISSIONS},
     example={
         "starts": [{"position_m": [2, 25, 1], "velocity_m_s": [0, 0, 0], "frame": "body"}],
-        "attitude": {
-            "kind": "torque_free",
-            "inertia_kg_m2": [[17023, 0, 0], [0, 124826, 0], [0, 0, 129112]],
-            "body_rate_deg_s": [0.3, 0.5, -2.0],
-        },
+        "attitude": TUMBLING,
         "orbit": {"mean_motion_rad_s": 0.00105},
         "thrust": {"kind": "ball", "a_max_m_s2": 0.1},
     },
