@@ -44,6 +44,8 @@ class OneStart(Protocol):
 _START = "position_m"
 _WIDER = ("omega_t_deg_s",)
 """Names of both questions whose range is wider in space."""
+_OTHER = {"omega_t_deg_s": "of either sign", "disturbance_m_s2": "one thrust history, without a feedback"}
+"""What is different with ``position_m``."""
 
 
 def _parameters() -> dict[str, Parameter]:
@@ -52,8 +54,8 @@ def _parameters() -> dict[str, Parameter]:
     for name, one in ONE_START.parameters.items():
         field = in_space.PARAMETERS[name].field if name in _WIDER else one.field
         needed = f" Needed without {_START}." if one.required and name not in in_space.PARAMETERS else ""
-        wider = f" With {_START} of either sign." if name in _WIDER else ""
-        out[name] = replace(one, field=field, text=one.text + needed + wider, required=False)
+        other = f" With {_START} {_OTHER[name]}." if name in _OTHER else ""
+        out[name] = replace(one, field=field, text=one.text + needed + other, required=False)
     for name, one in in_space.PARAMETERS.items():
         if name not in out:
             out[name] = replace(one, text=f"In space (with {_START}): {one.text}", required=False)

@@ -12,14 +12,13 @@ from safestart.processes.base import WireModel
 from safestart.processes.flat import Flat, Parameter
 from safestart.processes.go_no_go.question_fields import QuestionKind
 from safestart.processes.sharding import load
+from safestart.processes.start_in_space.flight_output import SpaceFlight, Turning
 from safestart.processes.start_in_space.parts import FiveFaces, SpaceStart
 from safestart.processes.start_in_space.spec import (
     SPEC,
     Method,
-    SpaceFlight,
     SpaceInputs,
     SpaceOutputs,
-    Turning,
 )
 from safestart.processes.tracking_mpc.controller_input import TrackingAnswer
 from safestart.runtime.progress import Context
