@@ -10,11 +10,11 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 from statistics import median
 
+from benchmarks.peers.reach_audit import drift_excess, powered_excess
 from benchmarks.timing import median_seconds, once
 from safestart.passive_safety.cases import CASES, HORIZON
 from safestart.passive_safety.competition import PAPER_JOB, competition_rows
 from safestart.passive_safety.critical import critical_abort
-from safestart.passive_safety.flights.audit import drift_excess, powered_excess
 from safestart.passive_safety.gains import PUBLISHED_DESIGN
 from safestart.passive_safety.model import PUBLISHED, Dynamics, System
 from safestart.passive_safety.question import Question

@@ -1,14 +1,19 @@
-"""Property tests are the same on every machine: no example has a time limit, and the examples are always the same.
+"""Property tests are the same on every machine, and what takes long comes first.
 
-Others are drawn with ``pytest --hypothesis-profile=default``.
+Property tests have no time limit for an example, and always the same examples; others are drawn with
+``pytest --hypothesis-profile=default``.
 
 Hundreds of tests start processes of ours. They keep their compiled modules even where the environment says not to:
 without them each of those processes compiles the text of all modules again, two thirds of its start.
 """
 
+from __future__ import annotations
+
 import os
 import sys
+from pathlib import Path
 
+import pytest
 from hypothesis import HealthCheck, settings
 
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
@@ -18,3 +23,18 @@ settings.register_profile(
     "steady", deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow]
 )
 settings.load_profile("steady")
+
+HERE = Path(__file__).parent
+FIRST = ("acceptance", "chaos", "browser", "fuzzing", "contract", "reference")
+"""Folders from whole platforms down to single functions; the others follow them."""
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Files that may take minutes begin first: with ``-n`` no core has nothing left to do while one of them runs."""
+    ranks = {folder: rank for rank, folder in enumerate(FIRST)}
+    items.sort(key=lambda item: ranks.get(_folder(item), len(FIRST)))
+
+
+def _folder(item: pytest.Item) -> str:
+    return item.path.relative_to(HERE).parts[0] if item.path.is_relative_to(HERE) else ""

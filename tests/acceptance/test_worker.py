@@ -103,7 +103,7 @@ def test_a_job_is_picked_up_and_ends_with_its_result(farm: Farm) -> None:
     until(lambda: "all kernels are there" in farm.said(), "the kernels")
     assert all(f"kernels of {part} are there" in farm.said() for part in PARTS)
     assert "warming up failed" not in farm.said()
-    assert farm.jobs.workers_alive() == 1
+    assert farm.jobs.crew().workers == 1
     heard = [
         c.laddr for p in (psutil.Process(farm.worker.pid), *farm.processes()) for c in p.net_connections()
     ]
@@ -329,7 +329,7 @@ def test_a_stopped_worker_gives_its_job_back(farm: Farm) -> None:
     assert (waiting.status, waiting.attempts, waiting.owner) == (JobStatus.ACCEPTED, 0, None)
     assert "its worker stopped" in waiting.message
     until(lambda: over(children), "the end of the task processes")
-    assert farm.jobs.workers_alive() == 0
+    assert farm.jobs.crew().workers == 0
     assert farm.jobs.dismiss(job).status is JobStatus.DISMISSED
 
 

@@ -39,6 +39,9 @@ def jobs(up: Running) -> dict[str, str]:
         "benchmark": SMALL,
         "sweep": SWEEP,
         "collision-avoidance": AVOIDANCE,
+        "hopping": process("hopping").example | {"runs": 10},
+        "tracking-mpc": {"steps": 25, "region": {"rows": 6}},
+        "sweep-in-space": process("sweep-in-space").example | {"cases": 6},
     }
     examples = {name: quick.get(name, process(name).example) for name in PROCESS_IDS}
     headers = {"Prefer": "respond-async"}

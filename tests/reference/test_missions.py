@@ -148,6 +148,7 @@ FIGURES = {
     "envisat": 20.078,
     "envisat-tumbling": 1.000,
     "envisat-tracked": 0.697,
+    "envisat-estimated": 18.453,
     "rocket-body": 12.374,
     "r-bar": 3.000,
     "v-bar": 17.265,

@@ -10,6 +10,7 @@ from typing import Literal
 
 import numpy as np
 
+from safestart.attitude.body_frame import into_body
 from safestart.attitude.quaternion import matrix_of, unit_quaternion
 from safestart.attitude.torque_free import Inertia, TorqueFree
 from safestart.attitude.turning import Bounds, SmoothAttitude, of_rates, product
@@ -30,11 +31,9 @@ class InLvlh:
         """(..., 3, 3): LVLH coordinates to body coordinates."""
         # Times last, the memory order.
         seen, angle = np.moveaxis(self.inertial.rotation(times), (-2, -1), (0, 1)), self.orbit.turned(times)
-        cosine, sine = np.cos(angle), np.sin(angle)
         out = np.empty(seen.shape)
         # The columns of C R^T: R turns about z.
-        out[:, 0] = seen[:, 0] * cosine + seen[:, 1] * sine
-        out[:, 1] = seen[:, 1] * cosine - seen[:, 0] * sine
+        out[:, 0], out[:, 1] = into_body(np.cos(angle), np.sin(angle), seen[:, 0], seen[:, 1])
         out[:, 2] = seen[:, 2]
         return np.moveaxis(out, (0, 1), (-2, -1))
 
@@ -52,11 +51,11 @@ class InLvlh:
 
     @property
     def knots(self) -> Floats:
-        """Those of the inertial attitude."""
+        """The knots of the inertial attitude, s."""
         return self.inertial.knots
 
     def turn_bounds(self) -> Bounds:
-        """Those of the body and of LVLH together."""
+        """Bounds on the derivatives of the product of both turns, the body's and LVLH's."""
         return product(of_rates(*self.orbit.turn_bounds()), self.inertial.turn_bounds())
 
 

@@ -68,11 +68,11 @@ class Spin:
 
     @property
     def knots(self) -> Floats:
-        """None."""
+        """A spin has no knots."""
         return np.empty(0)
 
     def turn_bounds(self) -> Bounds:
-        """Powers of the rate."""
+        """Bound the derivatives of the rotation by powers of the rate."""
         return of_rates(abs(self.rate), 0.0, 0.0, 0.0)
 
 

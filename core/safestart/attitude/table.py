@@ -67,7 +67,7 @@ class Table:
         return self._at
 
     def turn_bounds(self) -> Bounds:
-        """Powers of the largest rate: between two entries the body turns steadily."""
+        """Bound the derivatives by powers of the largest rate: between two entries the body turns steadily."""
         return of_rates(self.rate_bounds()[0], 0.0, 0.0, 0.0)
 
     def reaches(self, end: float) -> None:

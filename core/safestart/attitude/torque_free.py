@@ -89,7 +89,7 @@ class TorqueFree:
 
     @property
     def knots(self) -> Floats:
-        """None."""
+        """The motion is smooth: it has no knots."""
         return np.empty(0)
 
     def turn_bounds(self) -> Bounds:

@@ -12,20 +12,10 @@ from safestart.cli.console import Json, out, print_json
 from safestart.cli.files import read_json, target
 from safestart.cli.options import takes
 from safestart.errors import invalid
-from safestart.processes.door import PARAMETERS, document_of_one, parse
+from safestart.processes.door import PARAMETERS, parse
 from safestart.processes.execute import execute
 from safestart.processes.registry import process
-from safestart.processes.start_in_space.spec import SpaceInputs
 from safestart.runtime.progress import Context
-
-_BY = {
-    "certified": "the certificate in closed form (docs/theory/certified.md)",
-    "exact": "a cone program",
-    "atlas": "an atlas of cone programs",
-    "families": "cone programs for all members",
-    "tube": "a cone program in the tightened corridor",
-    "paper": "the paper's conditions; this proves nothing",
-}
 
 
 def register(app: typer.Typer) -> None:
@@ -59,17 +49,17 @@ def register(app: typer.Typer) -> None:
             if name in given:
                 _many(process_id, given, proof, as_json=as_json)
                 return
-        inputs = parse(given | ({"proofs": True} if proof is not None else {}))
+        asked_for = parse(given | ({"proofs": True} if proof is not None else {}))
         with target("--proof", proof) as file:
-            document = document_of_one(inputs, Context())
+            document = asked_for.document(Context())
             if file is not None:
                 file.write_json(_proved(document["proof"]))
         if as_json:
             print_json(document)
-        elif isinstance(inputs, SpaceInputs):
-            _say(document["verdict"], document["reason"])
-        else:
-            _show(document)
+            return
+        _say(document["verdict"], document["reason"])
+        for line in asked_for.remarks(document):
+            out.print(f"  {escape(line)}", soft_wrap=True)
 
 
 def _read(source: str) -> dict[str, Any]:
@@ -97,31 +87,6 @@ def _many(process_id: str, given: dict[str, Any], proof: Path | None, *, as_json
 
 def _say(verdict: str, reason: str) -> None:
     out.print(f"[bold {'green' if verdict == 'GO' else 'red'}]{verdict}[/]: {escape(reason)}", soft_wrap=True)
-
-
-def _show(document: dict[str, Any]) -> None:
-    """Print the verdict on the one start, why, what decided, and what the paper's conditions say of it."""
-    _say(document["verdict"], document["reason"])
-    for member in document["examples"] or ():
-        out.print(f"  {_told(member)}", soft_wrap=True)
-    if document["decided_by"] is not None:
-        out.print(f"  decided by: {_BY.get(document['decided_by'], document['decided_by'])}")
-    r_sync = document["r_sync_m"]
-    shown = f"{r_sync:.2f} m" if r_sync is not None else f"none ({document['r_sync_reason']})"
-    out.print("  beside it the paper's conditions, which are not sound:")
-    out.print(f"  synchronization range limit: {shown}")
-    for face, margin in document["face_margins_m"].items():
-        out.print(f"  margin after erosion {face:<11} {margin:9.2f} m")
-
-
-def _told(member: dict[str, Any]) -> str:
-    """One line for one member of the sets."""
-    margin = member["margin_m"]
-    return (
-        f"{member['verdict']} for {member['omega_t_deg_s']:.6g} deg/s, {member['a_max_m_s2']:g} m/s^2, "
-        f"{member['mean_motion_rad_s']:g} rad/s, start (LVLH) {member['position_m']} m, {member['velocity_m_s']} m/s: "
-        f"margin {'-' if margin is None else format(margin, '.3g')} m"
-    )
 
 
 def _proved(document: object) -> object:

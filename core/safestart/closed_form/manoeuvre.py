@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from safestart.attitude.body_frame import out_of_body
 from safestart.closed_form.certified import certify
 from safestart.closed_form.family import SMOOTH_STEP, SPANS
 from safestart.closed_form.members import BRAKE, stopping_angle
@@ -61,12 +62,11 @@ class Manoeuvre:
         return np.asarray(acceleration + turning - gravity)
 
     def thrust_lvlh(self, times: Floats) -> Floats:
-        """The same thrust in LVLH axes."""
+        """The thrust of :meth:`thrust` (T, 3), m/s^2, in LVLH axes."""
         angle = self.omega * np.asarray(times, dtype=np.float64)
-        c, s, body = np.cos(angle), np.sin(angle), self.thrust(times)
-        return np.stack(
-            [c * body[:, 0] - s * body[:, 1], s * body[:, 0] + c * body[:, 1], body[:, 2]], axis=-1
-        )
+        body = self.thrust(times)
+        x, y = out_of_body(np.cos(angle), np.sin(angle), body[:, 0], body[:, 1])
+        return np.stack([x, y, body[:, 2]], axis=-1)
 
 
 def manoeuvre_of(scenario: Scenario, point: Floats, rest: Rest = Rest.LVLH) -> Manoeuvre | None:

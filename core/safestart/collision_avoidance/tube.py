@@ -111,7 +111,7 @@ class Tube:
         return axes, self.value(states)
 
     def read(self, states: Floats, time_to_go: float | None) -> tuple[Floats, Floats]:
-        """Both at once; raises as :meth:`value`."""
+        """Interpolate value and gradient at once; raises as :meth:`value`."""
         time = self.horizon_s if time_to_go is None else time_to_go
         if not 0.0 <= time <= self.horizon_s:
             raise invalid("time_to_go", f"0 to {self.horizon_s:g} s", time)

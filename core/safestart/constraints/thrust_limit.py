@@ -81,5 +81,5 @@ class ThrustLimit:
 
 
 def ball(a_max: float) -> ThrustLimit:
-    """The same limit in every direction, ``a_max`` m/s^2."""
+    """Limit thrust in every direction to ``a_max`` m/s^2."""
     return ThrustLimit("ball", (a_max,))

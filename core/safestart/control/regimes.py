@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from safestart.attitude.turn_kernel import into_body, out_of_body
 from safestart.control.gains import Gains
 from safestart.model.scenario import Scenario
 from safestart.runtime.kernels import compiled
@@ -97,10 +98,9 @@ def nominal_command(x, y, z, vx, vy, vz, time, cos, sin, r0, v_max, law):  # typ
         kd = law.kd_far
         return kd * (scale * wx - vx) + fx, kd * (scale * wy - vy) + fy, kd * (scale * wz - vz) + fz, FAR
     # Body frame: p_B = R(-theta) p, v_B = R(-theta) v - omega x p_B.
-    bx = cos * x + sin * y
-    by = cos * y - sin * x
-    ux = cos * vx + sin * vy + omega * by
-    uy = cos * vy - sin * vx - omega * bx
+    bx, by = into_body(cos, sin, x, y)
+    ux, uy = into_body(cos, sin, vx, vy)
+    ux, uy = ux + omega * by, uy - omega * bx
     ex, ey, ez = -bx, law.hold_range - by, -z
     regime = CLOSE
     if abs(radius - law.hold_range) <= law.hold_band and ux * ux + uy * uy + vz * vz < law.switch_speed**2:
@@ -121,4 +121,5 @@ def nominal_command(x, y, z, vx, vy, vz, time, cos, sin, r0, v_max, law):  # typ
     # a = R(theta) (a_B + 2 omega x v_B + omega x (omega x p_B))
     dx -= 2.0 * omega * uy + omega * omega * bx
     dy += 2.0 * omega * ux - omega * omega * by
-    return cos * dx - sin * dy + fx, sin * dx + cos * dy + fy, dz + fz, regime
+    ax, ay = out_of_body(cos, sin, dx, dy)
+    return ax + fx, ay + fy, dz + fz, regime

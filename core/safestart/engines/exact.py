@@ -45,7 +45,7 @@ class Exact:
         compile_s = 0.0 if warm.cache_info().currsize else warm()
         start = time.perf_counter()
         points = problem.points().reshape(-1, 2)
-        reach = _reach(problem.scenario, problem.horizon, problem.rest)
+        reach = reach_of(problem.scenario, problem.horizon, problem.rest)
         margin, when = np.empty(len(points)), np.empty(len(points))
         for first in range(0, len(points), CHUNK):
             part = slice(first, first + CHUNK)
@@ -69,26 +69,6 @@ class Exact:
         return EngineResult(code, mask, restricted, run, compile_s, detail=detail, arrays=arrays)
 
 
-def reach_margin(
-    scenario: Scenario,
-    points: Floats,
-    horizon: float,
-    rest: Rest = Rest.LVLH,
-    kind: SetKind = SetKind.TUBE,
-) -> Floats:
-    """Margin (...) in metres of body-frame starts (..., 2), anywhere: not restricted to the corridor.
-
-    Positive: the start reaches the corridor (at some time up to ``horizon`` s, or at it). NaN when the
-    computation failed. Raises ``InvalidInput`` for points that are not finite or not planar.
-    """
-    horizon = number("horizon", horizon, 0.0, MAX_HORIZON, open_low=True)
-    points = _planar(points)
-    reach = _reach(scenario, horizon, rest)
-    flat = points.reshape(-1, 2)
-    margin = reach.within(flat)[0] if kind is SetKind.TUBE else reach.at(flat, horizon)
-    return margin.reshape(points.shape[:-1])
-
-
 def containment_horizon(
     scenario: Scenario,
     points: Floats,
@@ -107,7 +87,7 @@ def containment_horizon(
     dt = number("dt", dt, 0.0, bound, open_low=True)
     start = number("start", start, 0.0, bound)
     flat = _planar(points).reshape(-1, 2)
-    reach = _reach(scenario, bound, rest)
+    reach = reach_of(scenario, bound, rest)
     first = max(1, math.ceil(start / dt * (1.0 - 1e-12)))
     for k in range(first, int(bound / dt * (1.0 + 1e-12)) + 1):
         # Try the start that failed last first: it usually fails again and saves the other starts.
@@ -131,7 +111,8 @@ def _planar(points: Floats) -> Floats:
     return points
 
 
-def _reach(scenario: Scenario, horizon: float, rest: Rest) -> RotatingReach:
+def reach_of(scenario: Scenario, horizon: float, rest: Rest) -> RotatingReach:
+    """The reachable positions of starts at ``rest`` up to ``horizon`` s, seen from the turning corridor."""
     target = scenario.target
     return RotatingReach.of(
         partial(planar_transition, target.mean_motion),

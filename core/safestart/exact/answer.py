@@ -106,7 +106,7 @@ class Evidence:
     weights: Floats
 
     def until(self, latest: float) -> Evidence:
-        """The same with no time after ``latest`` (s): rounding may have put one there."""
+        """Move every time after ``latest`` (s) to it: rounding may have put one there."""
         blocks = replace(self.blocks, times=np.minimum(self.blocks.times, latest))
         return replace(self, times=np.minimum(self.times, latest), blocks=blocks)
 

@@ -31,7 +31,7 @@ class Blocks:
     thrust: Floats
 
     def and_more(self, other: Blocks) -> Blocks:
-        """These and others of the same question."""
+        """Append the rows of ``other``, which are of the same question."""
         return Blocks(
             np.concatenate([self.times, other.times]),
             self.names + other.names,
@@ -48,7 +48,7 @@ def blocks(question: Question, prediction: Prediction, names: Sequence[str], tim
 
 
 def stacked(limits: Sequence[Limit], prediction: Prediction, names: Sequence[str], times: Floats) -> Blocks:
-    """The same for ``limits`` (B)."""
+    """The rows of ``limits`` (B), called ``names``, at ``times`` (B,) in seconds."""
     d, count = prediction.dimensions, prediction.steps
     offset = np.zeros((len(times), d + 1))
     start, thrust = np.zeros((len(times), d + 1, 2 * d)), np.zeros((len(times), d + 1, count * d))

@@ -88,7 +88,7 @@ class Family:
         return replace(self.question, scenario=scenario)
 
     def at_known_start(self) -> Family:
-        """The same parameters with a known start."""
+        """Copy the parameters with a start that is known exactly."""
         return replace(self, start=())
 
 

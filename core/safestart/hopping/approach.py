@@ -39,7 +39,7 @@ class Hop:
 
     @property
     def orbits(self) -> float:
-        """Its length in orbits."""
+        """Length of the approach, in orbits of the target."""
         return self.phase / math.tau
 
 

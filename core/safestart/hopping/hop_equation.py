@@ -33,13 +33,3 @@ def residual(phi: Floats, terms: tuple[Floats, Floats, Floats, Floats]) -> tuple
     value = secular * phi * left - weight * sine - turning * (lever - 2.0 + 2.0 * cosine)
     slope = secular * (left + rho * lever) - weight * cosine - turning * (phi * cosine - sine)
     return value, slope
-
-
-def fraction_left(phi: Floats, theta: Floats) -> Floats:
-    """rho that a hop of phase ``phi`` (rad) along ``theta`` (rad) leaves; infinite or NaN where D = 0."""
-    zero, one = np.zeros(()), np.ones(())
-    numerator, _ = residual(phi, weights(theta, zero))
-    denominator = numerator - residual(phi, weights(theta, one))[0]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        result: Floats = numerator / denominator
-    return result

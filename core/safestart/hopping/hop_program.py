@@ -8,12 +8,12 @@ hard ones have no solution. What differs from the printed program: docs/theory/h
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from safestart.dynamics.cwh import transition_matrix
 from safestart.model.scenario import Floats
+from safestart.optim.cone_program import ConeProgram, Each
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,61 +116,46 @@ class HopProgram:
         self, barrier: tuple[Floats, Floats] | None = None, near: tuple[Floats, float] | None = None
     ) -> Solved:
         """Solve. ``barrier``: (G (B, 3), g (B,)), soft rows G u_0 + g >= 0, m; ``near``: u_0 in a box about a point."""
-        from clarabel import DefaultSettings, DefaultSolver, NonnegativeConeT
-        from scipy.sparse import csc_matrix
-
-        w, count, soft = self.weights, self.count, len(self.soft)
-        rows = 0 if barrier is None else 1
-        unknowns = 2 * count + soft + rows
+        w, count, barriers = self.weights, self.count, 0 if barrier is None else 1
+        sizes = {"plus": count, "minus": count, "soft": len(self.soft), "barrier": barriers}
+        program = ConeProgram(**{name: size for name, size in sizes.items() if size})
         # Cost: |u|_1 + soft slack + 1000 barrier slack + tracking.
-        cost = np.concatenate([np.ones(2 * count), self.scales, np.full(rows, 100.0 * w.soft)])
-        square = np.zeros((unknowns, unknowns))
         gram = (self.tracked * self.costs[:, None]).T @ self.tracked
         pull = self.tracked.T @ (self.costs * self.targets)
-        for a, sign_a in ((0, 1.0), (count, -1.0)):
-            cost[a : a + count] -= 2.0 * sign_a * pull
-            for b, sign_b in ((0, 1.0), (count, -1.0)):
-                square[a : a + count, b : b + count] = 2.0 * sign_a * sign_b * gram
-        blocks, bounds = [], []
+        program.minimise(plus=1.0 - 2.0 * pull, minus=1.0 + 2.0 * pull, soft=self.scales)
+        program.curve("plus", "plus", 2.0 * gram)
+        program.curve("plus", "minus", -2.0 * gram)
+        program.curve("minus", "minus", 2.0 * gram)
 
-        def add(by_impulse: Floats, by_soft: Floats, by_barrier: Floats, bound: Floats) -> None:
-            """by_impulse u + by_soft s + by_barrier t <= bound."""
-            blocks.append(np.hstack([by_impulse, -by_impulse, by_soft, by_barrier.reshape(len(bound), rows)]))
-            bounds.append(bound)
+        def by(rows: Floats) -> dict[str, Floats]:
+            """Rows (R, C) over the impulses u = plus - minus."""
+            return {"plus": rows, "minus": -rows}
 
-        none = np.zeros((soft, rows))
-        two_sided = np.isfinite(self.tolerance)
-        slack = -np.eye(soft)
+        slack, two_sided = np.eye(len(self.soft)), np.isfinite(self.tolerance)
         edge = np.where(two_sided, self.tolerance, 0.0)
-        add(-self.soft, slack, none, edge + self.level)
-        add(self.soft[two_sided], slack[two_sided], none[two_sided], (edge - self.level)[two_sided])
+        program.rows("above", edge + self.level, **by(self.soft), soft=slack)
+        program.rows(
+            "below", (edge - self.level)[two_sided], **by(-self.soft[two_sided]), soft=slack[two_sided]
+        )
         if barrier is not None:
             lean, level = barrier
             wide = np.zeros((len(level), count))
-            wide[:, :3] = -lean
-            add(wide, np.zeros((len(level), soft)), -np.ones((len(level), 1)), level)
+            wide[:, :3] = lean
+            program.minimise(barrier=100.0 * w.soft)
+            program.rows("barrier", level, **by(wide), barrier=1.0)
         if near is not None:
             centre, size = near
             box = np.zeros((6, count))
-            box[:3, :3], box[3:, :3] = np.eye(3), -np.eye(3)
-            add(box, np.zeros((6, soft)), np.zeros((6, rows)), np.concatenate([size + centre, size - centre]))
-        split = np.hstack([np.eye(2 * count), np.zeros((2 * count, soft + rows))])
-        total = np.zeros((1, unknowns))
-        total[0, : 2 * count] = 1.0
-        blocks += [-np.eye(unknowns), split, total]
-        bounds += [np.zeros(unknowns), np.full(2 * count, w.most), np.array([w.budget])]
-        matrix, right = np.vstack(blocks), np.concatenate(bounds)
-        settings: Any = DefaultSettings()
-        settings.verbose = False
-        solution = DefaultSolver(
-            csc_matrix(np.triu(square)),
-            cost,
-            csc_matrix(matrix),
-            right,
-            [NonnegativeConeT(len(right))],
-            settings,
-        ).solve()
-        x = np.array(solution.x)
-        good = str(solution.status) in ("Solved", "AlmostSolved") and bool(np.isfinite(x).all())
-        impulses: Floats = (x[:count] - x[count : 2 * count]).reshape(-1, 3)
-        return Solved(impulses, good)
+            box[:3, :3], box[3:, :3] = -np.eye(3), np.eye(3)
+            program.rows("near", np.concatenate([size + centre, size - centre]), **by(box))
+        for name, size in sizes.items():
+            if size:
+                program.rows(f"{name} >= 0", np.zeros(size), **{name: Each(np.arange(size)[:, None])})
+        for name in ("plus", "minus"):
+            most = Each(np.arange(count)[:, None], -1.0)
+            program.rows(f"{name} <= most", np.full(count, w.most), **{name: most})
+        total = -np.ones((1, count))
+        program.rows("budget", np.array([w.budget]), plus=total, minus=total)
+        found = program.solve(plain=True)
+        impulses = found.value("plus") - found.value("minus")
+        return Solved(impulses.reshape(-1, 3), found.solved and bool(np.isfinite(impulses).all()))

@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from safestart.control.hopping import Hopping
+from safestart.dynamics.burn_kernel import scattered
 from safestart.dynamics.two_body_kernel import STAGES, WEIGHTS, drifted, placed, pushed, seen, target_at
 from safestart.hopping.approach import distances, line, mean_motion_of
 from safestart.hopping.barrier import Barrier, Noise
 from safestart.hopping.hop_program import Weights
 from safestart.model.scenario import Floats
-from safestart.runtime.kernels import compiled
 
 OFF, NOMINAL, TIGHTENED = "off", "nominal", "tightened"
 DISPERSION = 0.1
@@ -66,7 +66,7 @@ class World:
 
 
 @dataclass(frozen=True, slots=True)
-class Flown:
+class HoppingFlight:
     """One approach: ``impulses`` (hops + 1, 3) as given, m/s, ``times`` (hops + 1,), s; ``closest`` (hops + 1,), m: the
     least distance when the thrusters die right after each; ``states`` (hops + 1, 6) LVLH after each impulse; ``hold``:
     distance at the end, m; ``feasible``: whether every true row of the barrier held."""
@@ -91,7 +91,7 @@ class Flown:
 
 def fly(
     world: World, rng: np.random.Generator, controller: Hopping | None = None, *, aborts: bool = True
-) -> Flown:
+) -> HoppingFlight:
     """Fly one approach; every number drawn comes from ``rng``."""
     steer = controller or world.controller()
     count, noise = world.hops + 1, world.noise
@@ -110,14 +110,14 @@ def fly(
         feasible = feasible and command.feasible
         given = np.zeros(3) if command.impulse is None else command.impulse
         impulses[k], times[k] = given, now
-        pushed(flight, made(given, noise.share, noise.angle, draws[k, 6:]))
+        pushed(flight, scattered(given, noise.share, noise.angle, draws[k, 6:]))
         states[k] = seen(flight)
         if aborts:
             _, closest[k] = drifted(flight, horizon, STAGES, WEIGHTS, world.drag)
         if k + 1 < count:
             flight, _ = drifted(flight, steer.wait(), STAGES, WEIGHTS, world.drag)
             now += steer.wait()
-    return Flown(impulses, closest, states, times, float(np.linalg.norm(seen(flight)[:3])), feasible)
+    return HoppingFlight(impulses, closest, states, times, float(np.linalg.norm(seen(flight)[:3])), feasible)
 
 
 def _start(world: World, rng: np.random.Generator) -> Floats:
@@ -128,31 +128,3 @@ def _start(world: World, rng: np.random.Generator) -> Floats:
     least = np.repeat([LEAST_POSITION, LEAST_VELOCITY], 3)
     off: Floats = state + np.maximum(DISPERSION * np.abs(state), least) * rng.uniform(-1.0, 1.0, 6)
     return off
-
-
-@compiled()
-def made(given: Floats, share: float, angle: float, draw: Floats) -> Floats:
-    """The impulse (3,) as it comes out: its size is off by ``share`` and its direction by ``angle`` rad, one standard
-    deviation each; ``draw`` (3,): of the size, and of the direction about two axes."""
-    out = given.copy()
-    size = math.sqrt(given[0] ** 2 + given[1] ** 2 + given[2] ** 2)
-    if size == 0.0:
-        return out
-    along, one, two = given / size, np.zeros(3), np.empty(3)
-    # Of the axes, the one that is furthest from the impulse's direction: one = along x axis.
-    k = 0
-    for i in range(1, 3):
-        if abs(along[i]) < abs(along[k]):
-            k = i
-    b, c = (k + 1) % 3, (k + 2) % 3
-    one[b], one[c] = along[c], -along[b]
-    one /= math.sqrt(one[b] ** 2 + one[c] ** 2)
-    for i in range(3):
-        b, c = (i + 1) % 3, (i + 2) % 3
-        two[i] = along[b] * one[c] - along[c] * one[b]
-    off = math.hypot(angle * draw[1], angle * draw[2])
-    aside = math.sin(off) / off * angle if off > 0.0 else 0.0
-    for i in range(3):
-        turned = math.cos(off) * along[i] + aside * (draw[1] * one[i] + draw[2] * two[i])
-        out[i] = size * (1.0 + share * draw[0]) * turned
-    return out

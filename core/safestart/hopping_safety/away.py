@@ -61,7 +61,7 @@ class _Leg:
         return np.concatenate([self.begin, velocity])
 
     def drift(self, factor: float) -> float:
-        """Its drift, m per orbit."""
+        """Drift along the track, m per orbit, after the impulse of :meth:`left_with`."""
         return drift_per_orbit(self.mean_motion, self.left_with(factor))
 
     def proved(self, factor: float, keep_out: float, horizon: float, errors: Errors) -> bool:

@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 
+from safestart.dynamics.burn import frame, misdirected
 from safestart.dynamics.cwh import transition_matrix
 from safestart.hopping.approach import Approach
 from safestart.hopping_safety.quick_proof import position_rows
 from safestart.missed_burn.plan import Errors
-from safestart.missed_burn.sets import frame
 from safestart.model.scenario import Floats
 
 _SIGNS = ((1, 1, 1, 1), (-1, -1, -1, -1), (1, -1, -1, 1), (-1, 1, 1, -1))
@@ -76,6 +76,4 @@ def _turned(impulse: Floats, side: Floats, angle: float) -> Floats:
     along, other, _ = frame(impulse)
     across = side - (side @ along) * along
     size = float(np.linalg.norm(across))
-    across = across / size if size > 1e-12 * float(np.linalg.norm(side)) else other
-    turned: Floats = np.linalg.norm(impulse) * (math.cos(angle) * along + math.sin(angle) * across)
-    return turned
+    return misdirected(impulse, angle, across / size if size > 1e-12 * float(np.linalg.norm(side)) else other)

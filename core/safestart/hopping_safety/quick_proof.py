@@ -63,7 +63,7 @@ def hop_bounds(plan: Approach, keep_out: float, horizon: float, errors: Errors) 
 
 
 def start_bounds(plan: Approach, keep_out: float, horizon: float, errors: Errors) -> Bounds:
-    """The same of the drift without any impulse."""
+    """Bound the drift from the start, without any impulse, as :func:`hop_bounds` does after each."""
     return _bounds(plan.mean_motion, _at_start(plan, errors), horizon, keep_out, math.inf)
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from safestart.errors import InvalidInput
-from safestart.hopping_flights.fly import TIGHTENED, Flown, World, fly
+from safestart.hopping_flights.fly import TIGHTENED, HoppingFlight, World, fly
 from safestart.model.metrics import most_successes, wilson
 
 Draws = Callable[[int], np.random.Generator]
@@ -45,7 +45,7 @@ def flown(
     """Fly ``runs`` approaches; None as soon as there are more than ``most`` breaches, lost runs among them."""
     steer = world.controller()
     breaches, lost = 0, 0
-    kept: list[Flown] = []
+    kept: list[HoppingFlight] = []
     for k in range(runs):
         if tick is not None:
             tick(k, f"approach {k + 1} of {runs}")

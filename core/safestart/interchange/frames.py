@@ -13,6 +13,7 @@ import numpy as np
 
 from safestart.errors import Unavailable, invalid
 from safestart.interchange.epochs import SECOND, Nanoseconds, leap_seconds
+from safestart.model.orbit import about_z
 from safestart.model.scenario import Floats
 
 INERTIAL = ("GCRF", "ICRF", "EME2000", "TEME")
@@ -75,18 +76,9 @@ def rotation_to_gcrf(frame: str, epochs: Nanoseconds) -> Floats:
         equinoxes = np.asarray(longitude * np.cos(erfa.obl80(first, day)))
         tod = np.asarray(erfa.pnm80(first, day))
         # TEME to TOD turns by the equation of the equinoxes; the transposes lead on to EME2000 and GCRF.
-        out: Floats = np.einsum("ji,kmj,kmn->kin", bias, tod, _rz(-equinoxes))
+        out: Floats = np.einsum("ji,kmj,kmn->kin", bias, tod, about_z(-equinoxes))
         return out
     days = np.asarray(epochs) // (86_400 * SECOND)
     utc = day - (_TT_LESS_TAI + leap_seconds(days)) / 86_400.0
     celestial = np.asarray(erfa.c2t06a(first, day, first, utc, 0.0, 0.0))
     return celestial.swapaxes(1, 2)
-
-
-def _rz(angles: Floats) -> Floats:
-    """(K, 3, 3): coordinates in axes turned about z by ``angles`` (K,)."""
-    out = np.zeros((len(angles), 3, 3))
-    cosine, sine = np.cos(angles), np.sin(angles)
-    out[:, 0, 0] = out[:, 1, 1] = cosine
-    out[:, 0, 1], out[:, 1, 0], out[:, 2, 2] = sine, -sine, 1.0
-    return out

@@ -22,7 +22,7 @@ def ephemeris_of(path: Path | str, sense: Sense | None = None) -> Ephemeris:
 
 
 def ephemeris_from(data: bytes, name: str = "", sense: Sense | None = None) -> Ephemeris:
-    """The same of a file's bytes; its ``name`` tells tables apart."""
+    """Read an ephemeris from a file's bytes; its ``name`` tells tables apart."""
     if tables.is_table(data, name):
         return tables.ephemeris_of(data, name)
     message = message_of(data)
@@ -41,7 +41,7 @@ def attitude_of(path: Path | str) -> AttitudeCourse:
 
 
 def attitude_from(data: bytes, name: str = "") -> AttitudeCourse:
-    """The same of a file's bytes."""
+    """Read an attitude from a file's bytes."""
     if tables.is_table(data, name):
         return tables.attitude_of(data, name)
     message = message_of(data)

@@ -36,7 +36,7 @@ class Relative:
     known: Bools
 
     def where(self, chosen: Bools) -> Relative:
-        """The same at the epochs where ``chosen`` (K,) is True."""
+        """Keep the epochs where ``chosen`` (K,) is True."""
         return Relative(
             self.epochs[chosen],
             self.states[chosen],

@@ -12,10 +12,11 @@ import math
 
 import numpy as np
 
+from safestart.dynamics.burn import frame
 from safestart.dynamics.two_body_kernel import frame_of
 from safestart.missed_burn.earth import Drift, drift_after, inverse, moved
 from safestart.missed_burn.plan import Question, duration_of
-from safestart.missed_burn.sets import Case, StateSet, frame, pieces, shell
+from safestart.missed_burn.sets import Case, StateSet, pieces, shell
 from safestart.model.scenario import Floats
 
 _LOOSE = 12.0

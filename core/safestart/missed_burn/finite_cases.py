@@ -16,9 +16,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from safestart.dynamics.burn import frame
 from safestart.dynamics.cwh import input_matrix, transition_matrix
 from safestart.missed_burn.plan import Burn, Question, duration_of
-from safestart.missed_burn.sets import Case, StateSet, Thrust, frame, pieces, shell
+from safestart.missed_burn.sets import Case, StateSet, Thrust, pieces, shell
 from safestart.model.scenario import Floats
 
 Piece = tuple[float, float]

@@ -134,7 +134,7 @@ class Errors:
             raise invalid("errors.covariance", "6 columns of 6 finite numbers", self.ellipsoid)
 
     def scaled(self, scale: float) -> Errors:
-        """All of them ``scale`` times as large."""
+        """Multiply all errors by ``scale``."""
         x, y, z = (scale * size for size in self.position)
         u, v, w = (scale * size for size in self.velocity)
         share, angle = scale * self.thrust_share, scale * self.thrust_angle

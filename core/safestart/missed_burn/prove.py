@@ -12,7 +12,7 @@ from safestart.missed_burn.cases import cases_of
 from safestart.missed_burn.earth_bound import earth_bound
 from safestart.missed_burn.kernels.drift import FIRST, least_distance
 from safestart.missed_burn.plan import Question
-from safestart.missed_burn.replay import Flown, flown_of
+from safestart.missed_burn.replay import MemberFlight, flown_of
 from safestart.missed_burn.sets import Case
 from safestart.missed_burn.strays import strays_of
 from safestart.model.scenario import Floats
@@ -62,7 +62,7 @@ class Proof:
     verdict: Verdict
     least: float
     findings: tuple[Finding, ...]
-    counter_example: Flown | None
+    counter_example: MemberFlight | None
 
     @property
     def gap(self) -> float:

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from safestart.dynamics.burn import frame, misdirected
 from safestart.dynamics.cwh import input_matrix, transition_matrix
 from safestart.dynamics.two_body_kernel import STAGES, WEIGHTS, drifted, placed, pushed, seen
 from safestart.missed_burn.earth import target_before
 from safestart.missed_burn.plan import Question
-from safestart.missed_burn.sets import Case, frame, shell
+from safestart.missed_burn.sets import Case, shell
 from safestart.missed_burn.zone import POINT, Zone
 from safestart.model.scenario import Floats
 
@@ -20,7 +21,7 @@ _PULSES = 256
 
 
 @dataclass(frozen=True, slots=True)
-class Flown:
+class MemberFlight:
     """From ``start`` (6,) at ``begin`` s: the ``impulses`` (K, 3) at ``times`` (K,), each spread evenly over its
     ``durations`` (K,), s, then the ``push`` (3,), m/s^2, held for ``push_for`` s after the last of them, then drift;
     looked at ``look`` s. LVLH, times of the plan. ``target`` (6,): its inertial state at ``begin``, for a flight about
@@ -132,7 +133,7 @@ class Flown:
         return reached
 
 
-def flown_of(question: Question, case: Case, member: Floats, when: float) -> Flown:
+def flown_of(question: Question, case: Case, member: Floats, when: float) -> MemberFlight:
     """The flight of a member (C,) of a case, ``when`` s after the case's time.
 
     Its burns are clipped to the allowed errors and failures, so its distance must be measured, not taken from the set.
@@ -172,7 +173,7 @@ def flown_of(question: Question, case: Case, member: Floats, when: float) -> Flo
     if case.kind == "stuck" and plan.burns[case.burn].duration == 0.0:
         push_for = event
         push = failures.acceleration / plan.burns[case.burn].size * impulses[-1]
-    return Flown(
+    return MemberFlight(
         mean_motion=plan.mean_motion,
         kind=case.kind,
         burn=case.burn,
@@ -197,8 +198,7 @@ def _made(
     impulse: Floats, chosen: list[tuple[str, float]], least: float, greatest: float, angle: float
 ) -> Floats:
     """The burn of a member, its size and direction within what is allowed."""
-    size = float(np.linalg.norm(impulse))
-    along, one, two = frame(impulse)
+    _, one, two = frame(impulse)
     middle, half, across = shell(least, greatest, angle)
     ahead = middle + half * sum(value for label, value in chosen if label == "along")
     aside = [value for label, value in chosen if label == "across"]
@@ -206,6 +206,4 @@ def _made(
     off = float(np.linalg.norm(sideways))
     turned = min(math.atan2(off, ahead), angle)
     share = min(max(math.hypot(ahead, off), least), greatest)
-    away = sideways / off if off > 0.0 else sideways
-    made: Floats = size * share * (math.cos(turned) * along + math.sin(turned) * away)
-    return made
+    return misdirected(impulse, turned, sideways / off if off > 0.0 else sideways, share)

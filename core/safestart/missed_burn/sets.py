@@ -13,6 +13,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from safestart.dynamics.burn import frame
 from safestart.missed_burn.plan import Burn, Errors
 from safestart.model.scenario import Floats
 
@@ -131,15 +132,6 @@ def shell(least: float, greatest: float, angle: float) -> tuple[float, float, fl
     nearest = (least if cosine > 0.0 else greatest) * cosine
     across = greatest * math.sin(min(angle, 0.5 * math.pi))
     return 0.5 * (nearest + greatest), 0.5 * (greatest - nearest), across
-
-
-def frame(vector: Floats) -> tuple[Floats, Floats, Floats]:
-    """Unit vectors: along a vector, and two across it."""
-    along = vector / np.linalg.norm(vector)
-    other = np.eye(3)[int(np.argmin(np.abs(along)))]
-    one = np.cross(along, other)
-    one /= np.linalg.norm(one)
-    return along, one, np.cross(along, one)
 
 
 def add_burn(

@@ -166,12 +166,16 @@ class KeplerOrbit:
 
     def rotation(self, times: Floats) -> Floats:
         """(..., 3, 3): inertial coordinates to LVLH coordinates."""
-        angle = self.turned(times)
-        out = np.zeros((*angle.shape, 3, 3))
-        cosine, sine = np.cos(angle), np.sin(angle)
-        out[..., 0, 0] = out[..., 1, 1] = cosine
-        out[..., 0, 1], out[..., 1, 0], out[..., 2, 2] = sine, -sine, 1.0
-        return out
+        return about_z(self.turned(times))
+
+
+def about_z(angles: Floats) -> Floats:
+    """(..., 3, 3): coordinates to those in axes turned about z by ``angles`` (...), rad."""
+    out = np.zeros((*np.shape(angles), 3, 3))
+    cosine, sine = np.cos(angles), np.sin(angles)
+    out[..., 0, 0] = out[..., 1, 1] = cosine
+    out[..., 0, 1], out[..., 1, 0], out[..., 2, 2] = sine, -sine, 1.0
+    return out
 
 
 def _eccentric(true_anomaly: float, e: float) -> float:

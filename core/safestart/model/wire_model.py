@@ -21,9 +21,14 @@ def _stop_early(schema: Any) -> None:
 
 
 class WireModel(BaseModel):
-    """Base of every model that crosses the wire: it refuses unknown fields, NaN and infinity."""
+    """Base of every model that crosses the wire: it refuses unknown fields, NaN and infinity.
 
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, strict=False)
+    Its validator is built with its first use, as no process uses them all.
+    """
+
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, allow_inf_nan=False, strict=False, defer_build=True
+    )
 
     @classmethod
     def __get_pydantic_core_schema__(cls, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:

@@ -1,8 +1,9 @@
 """Cone programs, built from named blocks and solved by Clarabel.
 
-Minimise sum_v cost_v . v over variables v, subject to constant + sum_v G_v v in K for every block: nonnegative numbers
-(``rows``) or second-order cones, |y| <= head, heads first (``norms``). Clarabel reads b - A x in K: the columns stand
-in the order of the variables, all rows before all norms, both in the order in which they were added.
+Minimise sum_v cost_v . v + 1/2 sum_vw v' P_vw w over variables v, subject to constant + sum_v G_v v in K for every
+block: nonnegative numbers (``rows``) or second-order cones, |y| <= head, heads first (``norms``). Clarabel reads
+b - A x in K: the columns stand in the order of the variables, all rows before all norms, both in the order in which
+they were added.
 """
 
 from __future__ import annotations
@@ -106,6 +107,7 @@ class ConeProgram:
         self._rows: dict[str, Block] = {}
         self._norms: dict[str, Block] = {}
         self._cost = [0.0] * self._count
+        self._squares: Floats | None = None
 
     def rows(self, name: str, constant: Floats, **coefficients: Floats | Each | float) -> None:
         """Add R rows, ``constant`` (R,) + ... >= 0."""
@@ -126,19 +128,28 @@ class ConeProgram:
                 raise invalid(variable, f"{size} costs", given.shape)
             self._cost[columns] = given.tolist() if isinstance(given, np.ndarray) else [given] * size
 
-    def solve(self, *, fine: bool = True) -> Found:
-        """Solve; without ``fine`` the solver stops some iterations earlier, some 1e-5 from the optimum."""
-        # Imported with the first program, so that importing this module stays light.
-        import clarabel
+    def curve(self, variable: str, other: str, matrix: Floats) -> None:
+        """Set P_vw (n, m) of two variables, the earlier one first; P is symmetric, so P_wv follows."""
+        rows, columns = self._of(variable), self._of(other)
+        shape = rows.stop - rows.start, columns.stop - columns.start
+        if matrix.shape != shape or columns.start < rows.start:
+            raise invalid(
+                f"{variable}.{other}", f"a matrix {shape}, the earlier variable first", matrix.shape
+            )
+        if self._squares is None:
+            self._squares = np.zeros((self._count, self._count))
+        self._squares[rows, columns] = matrix
 
+    def solve(self, *, fine: bool = True, plain: bool = False) -> Found:
+        """Solve; without ``fine`` the solver stops some iterations earlier, some 1e-5 from the optimum.
+
+        ``plain``: with Clarabel's own settings, for programs that its presolving and refinement help.
+        """
         cost, matrix, constant, cones = self.standard_form()
-        (_, rows), *norms = cones
-        kinds: list[Any] = [clarabel.NonnegativeConeT(rows)]
-        for length, count in norms:
-            kinds += [clarabel.SecondOrderConeT(length)] * count
-        none = Columns([], [], [0] * (len(cost) + 1), (len(cost), len(cost)))
-        solver = clarabel.DefaultSolver(none, cost, matrix, constant, kinds, _settings(fine))
-        return Found(solver.solve(), self._columns, self._rows | self._norms)
+        settings = plain_settings() if plain else _settings(fine)
+        squares = None if self._squares is None else _upper(self._squares)
+        solution = solved(cost, matrix, constant, cones, settings, squares)
+        return Found(solution, self._columns, self._rows | self._norms)
 
     def standard_form(self) -> tuple[list[float], Columns, list[float], list[tuple[int, int]]]:
         """Cost (n,), A (m, n), b (m,) and cones: minimise cost . x with b - A x in K.
@@ -196,6 +207,45 @@ class ConeProgram:
         if variable not in self._columns:
             raise invalid(variable, f"one of the variables {', '.join(self._columns)}", variable)
         return self._columns[variable]
+
+
+def solved(
+    cost: Any, matrix: Any, constant: Any, cones: list[tuple[int, int]], settings: Any, squares: Any = None
+) -> Any:
+    """Clarabel's solution of a program in standard form; see :meth:`ConeProgram.standard_form`.
+
+    ``matrix``: :class:`Columns` or SciPy's ``csc_matrix``; ``squares``: the same, P on and above its diagonal.
+    """
+    # Imported with the first program, so that importing this module stays light.
+    import clarabel
+
+    kinds: list[Any] = []
+    for length, count in cones:
+        kinds += [clarabel.SecondOrderConeT(length)] * count if length else [clarabel.NonnegativeConeT(count)]
+    if squares is None:
+        squares = Columns([], [], [0] * (len(cost) + 1), (len(cost), len(cost)))
+    return clarabel.DefaultSolver(squares, cost, matrix, constant, kinds, settings).solve()
+
+
+def _upper(square: Floats) -> Columns:
+    """The upper triangle of a dense matrix (n, n), by columns, without zeros."""
+    by_column, size = np.triu(square).T, len(square)
+    kept = (by_column != 0.0).ravel().nonzero()[0]
+    starts = kept.searchsorted(size * np.arange(size + 1))
+    return Columns(
+        by_column.ravel().take(kept).tolist(), (kept % size).tolist(), starts.tolist(), (size, size)
+    )
+
+
+@cache
+def plain_settings() -> Any:
+    """Clarabel's own settings, silent and in one thread."""
+    import clarabel
+
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    settings.max_threads = 1
+    return settings
 
 
 @cache

@@ -80,7 +80,7 @@ def solve(
 def _compiled(
     constant: Floats, thrust: Floats, a_max: float, dimensions: int, tolerance: float
 ) -> Solved | None:
-    """None where the compiled method does not settle."""
+    """Solve by the compiled method; None where it does not settle."""
     # Imported with the first program, because Numba takes a second to load.
     from safestart.optim.ball_margin import SOLVED, largest_margin
 
@@ -105,7 +105,7 @@ def solve_by_cones(
     within: UnitSet = BALL,
     components: int = 0,
 ) -> Solved:
-    """The same by Clarabel, whatever the program."""
+    """Solve by Clarabel, whatever the program."""
     rows, columns = thrust.shape
     count, cone = columns // dimensions, (components or dimensions) + 1
     plain = rows - blocks * cone

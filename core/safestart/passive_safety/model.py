@@ -124,7 +124,7 @@ def exact_matrix(motion: Motion) -> tuple[tuple[Fraction, ...], ...]:
 
 @cache
 def matrix(motion: Motion) -> Floats:
-    """The same matrix (4, 4) in doubles, each entry correctly rounded."""
+    """The dynamics' matrix (4, 4) in doubles, each entry correctly rounded."""
     return np.array([[float(entry) for entry in row] for row in exact_matrix(motion)])
 
 

@@ -47,7 +47,9 @@ class ProcessSpec:
     (``max_states``). ``kernels`` names the parts of :mod:`safestart.runtime.warmup` that its jobs need: a worker that
     has just started compiles those of waiting jobs first. ``tables`` declares tables over plain lists among the
     outputs; lists of objects are tables without a declaration. ``views`` say how a page shows the outputs, the most
-    important first. ``extensions`` are further members of its description, named ``safestart:...``.
+    important first. ``courses`` names a function (inputs, outputs) -> ``FlightCourses`` or None where the outputs are a
+    flight: the service then offers it as CCSDS messages and CZML. ``extensions`` are further members of its
+    description, named ``safestart:...``.
     """
 
     id: str
@@ -60,6 +62,7 @@ class ProcessSpec:
     light: bool = False
     cost: Callable[[Any], float] = lambda _: 0.0
     instant: str | None = None
+    courses: str | None = None
     version: str = "1.0.0"
     replay_tolerance: float = 1e-9
     keywords: tuple[str, ...] = ()

@@ -16,6 +16,7 @@ _SPECS = {
     "safe-region": "safestart.processes.safe_region.spec",
     "thrust-map": "safestart.processes.thrust_map.spec",
     "flight": "safestart.processes.flight.spec",
+    "flight-in-space": "safestart.processes.flight_in_space.spec",
     "atlas": "safestart.processes.atlas.spec",
     "atlas-in-space": "safestart.processes.atlas_in_space.spec",
     "region-in-space": "safestart.processes.region_in_space.spec",

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from safestart.closed_form.certified import ROUNDING
 from safestart.closed_form.certified import certify as certify_starts
+from safestart.closed_form.manoeuvre import Manoeuvre, manoeuvre_of
+from safestart.errors import invalid
 from safestart.model.scenario import Bools, Floats, Rest, Scenario
 from safestart.public.shown import COLOURS, Shown
 from safestart.public.starts import points_of
@@ -31,6 +33,7 @@ class Certificates(Shown):
 
     scenario: Scenario
     points_m: Floats
+    rest: Rest
     verdict: NDArray[np.str_]
     margin_m: Floats
 
@@ -38,6 +41,18 @@ class Certificates(Shown):
     def go(self) -> Bools:
         """Where the verdict is GO, (...)."""
         return np.asarray(self.verdict == "GO")
+
+    def manoeuvre(self, *index: int) -> Manoeuvre | None:
+        """The manoeuvre behind the GO of one start, by its index in (...); None for another verdict.
+
+        ``motion(times)`` and ``thrust(times)`` in the body frame, ``thrust_lvlh(times)``; arrays (T, 3) at ``times``
+        (T,), s, from the start on for ever. Raises ``InvalidInput`` for an index that names no one start.
+        """
+        if len(index) != self.verdict.ndim or any(
+            not -n <= k < n for k, n in zip(index, self.verdict.shape, strict=True)
+        ):
+            raise invalid("index", f"an index of one start of shape {self.verdict.shape}", index)
+        return manoeuvre_of(self.scenario, self.points_m[index], self.rest) if self.go[index] else None
 
     def facts(self) -> Mapping[str, object]:
         """Number of starts by verdict."""
@@ -78,7 +93,7 @@ def certify(scenario: Scenario, points: ArrayLike, rest: Rest | str = Rest.LVLH)
     outside &= _outside(scenario, given)
     verdict = np.where(found.go, "GO", np.where(outside, "NO_GO", "UNDECIDED"))
     margin = np.where(verdict == "UNDECIDED", np.nan, found.margin)
-    return Certificates(scenario, given, verdict, margin)
+    return Certificates(scenario, given, rest, verdict, margin)
 
 
 def _outside(scenario: Scenario, points: Floats) -> Bools:

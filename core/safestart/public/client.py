@@ -80,6 +80,7 @@ class Client:
         return Certificates(
             scenario,
             given,
+            rest,
             np.array(verdicts, dtype=np.str_).reshape(shape),
             np.array(margins, dtype=np.float64).reshape(shape),
         )

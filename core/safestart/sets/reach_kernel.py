@@ -15,6 +15,7 @@ import math
 
 import numpy as np
 
+from safestart.attitude.turn_kernel import into_body
 from safestart.model.scenario import Floats
 from safestart.runtime.kernels import compiled
 
@@ -135,7 +136,7 @@ def _margin_at(
     _collapse(value, z, raw)
     _turn(raw, omega * t, waves)
     lx, ly = raw[0] * px + raw[1] * py, raw[2] * px + raw[3] * py
-    qx, qy = c * lx + s * ly, c * ly - s * lx
+    qx, qy = into_body(c, s, lx, ly)
     for j in range(nodes.shape[0]):
         total = waves[0] + qx * trig[j, 0] + (qy - hold) * trig[j, 1] + half * abs(trig[j, 0])
         for k in range(1, waves.shape[0]):
@@ -146,7 +147,8 @@ def _margin_at(
     _collapse(slope, z, raw)
     _turn(raw, omega * t, waves)
     lx, ly = raw[0] * px + raw[1] * py, raw[2] * px + raw[3] * py
-    dx, dy = c * lx + s * ly + omega * qy, c * ly - s * lx - omega * qx
+    dx, dy = into_body(c, s, lx, ly)
+    dx, dy = dx + omega * qy, dy - omega * qx
     growing = _f(a, 0.0, 0.0, waves)[3]
     return best, dx * math.sin(a) + dy * math.cos(a) + growing - omega * turning
 
@@ -236,8 +238,8 @@ def reach_margins(
         c, s = math.cos(omega * times[m]), math.sin(omega * times[m])
         _collapse(value, 2.0 * times[m] / horizon - 1.0, raw)
         _turn(raw, omega * times[m], waves)
-        drift[m, 0], drift[m, 1] = c * raw[0] + s * raw[2], c * raw[1] + s * raw[3]
-        drift[m, 2], drift[m, 3] = c * raw[2] - s * raw[0], c * raw[3] - s * raw[1]
+        drift[m, 0], drift[m, 2] = into_body(c, s, raw[0], raw[2])
+        drift[m, 1], drift[m, 3] = into_body(c, s, raw[1], raw[3])
         for j in range(angles):
             total = waves[0] + half * abs(trig[j, 0]) - hold * trig[j, 1]
             for k in range(1, waves.shape[0]):

@@ -7,6 +7,8 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from safestart.attitude.turn_kernel import out_of_body
+from safestart.dynamics.burn import scattered
 from safestart.model.scenario import Floats, number
 from safestart.runtime.kernels import compiled
 
@@ -96,7 +98,7 @@ class Exact:
     """No errors: known state, exact thrust, no external acceleration; the base of all other kinds."""
 
     def seen(self, k: int, state: Floats) -> Floats:  # noqa: ARG002
-        """The state itself."""
+        """Navigation sees the state itself."""
         return state
 
     def delivered(self, k: int, asked: Floats, held_s: float) -> Floats:  # noqa: ARG002
@@ -104,7 +106,7 @@ class Exact:
         return asked
 
     def push(self, k: int, state: Floats, thrust: Floats) -> Floats | None:  # noqa: ARG002
-        """Nothing."""
+        """No acceleration acts from outside."""
         return None
 
 
@@ -142,7 +144,7 @@ class Drawn(Exact):
             if self._planar:
                 thrust = np.array([*delivered(self._truth, asked[0], asked[1], drawn[4], drawn[5]), asked[2]])
             else:
-                thrust = scattered(self._truth, asked, drawn[6:])
+                thrust = scattered(asked, self._truth.magnitude_sigma, self._truth.direction_sigma, drawn[6:])
         if math.sqrt(float(thrust @ thrust)) * held_s < self._truth.minimum_impulse:
             return np.zeros(3)
         return thrust
@@ -153,22 +155,5 @@ def delivered(truth, ux, uy, magnitude, direction):  # type: ignore[no-untyped-d
     """In-plane thrust as the thrusters deliver it: scaled and turned."""
     scale = 1.0 + truth.magnitude_sigma * magnitude
     cos, sin = math.cos(truth.direction_sigma * direction), math.sin(truth.direction_sigma * direction)
-    return scale * (cos * ux - sin * uy), scale * (sin * ux + cos * uy)
-
-
-def scattered(truth: Truth, thrust: Floats, drawn: Floats) -> Floats:
-    """Thrust (3,) in space as the thrusters deliver it: scaled, and turned about two axes across it.
-
-    ``drawn`` (3,): magnitude and the two turns, standard normals.
-    """
-    size = math.sqrt(float(thrust @ thrust))
-    if size == 0.0:
-        return thrust
-    along = thrust / size
-    across = np.cross(along, np.eye(3)[int(np.abs(along).argmin())])
-    across /= math.sqrt(float(across @ across))
-    tilt = truth.direction_sigma * (drawn[1] * across + drawn[2] * np.cross(along, across))
-    angle = math.sqrt(float(tilt @ tilt))
-    turned = along if angle == 0.0 else math.cos(angle) * along + math.sin(angle) / angle * tilt
-    scaled: Floats = (1.0 + truth.magnitude_sigma * drawn[0]) * size * turned
-    return scaled
+    turned_x, turned_y = out_of_body(cos, sin, ux, uy)
+    return scale * turned_x, scale * turned_y

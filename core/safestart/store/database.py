@@ -8,7 +8,7 @@ from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from threading import Lock
 
-from sqlalchemy import Connection, Engine, create_engine, text
+from sqlalchemy import Connection, Engine, create_engine
 from sqlalchemy.engine import URL
 from sqlalchemy.exc import ArgumentError, DBAPIError, OperationalError, SQLAlchemyError
 from sqlalchemy.exc import TimeoutError as NoConnection
@@ -89,11 +89,6 @@ class Database:
         """Migrate the schema to this version's; safe when several processes do it at once."""
         with self._translated():
             schema.migrate(self._writer)
-
-    def ping(self) -> None:
-        """Query the database; raises ``Unavailable`` when no answer comes."""
-        with self.session() as session:
-            session.execute(text("SELECT 1"))
 
     def close(self) -> None:
         """Close every pooled connection."""

@@ -37,7 +37,7 @@ class Transfer:
         self._database = database
 
     def read(self, job_id: str) -> Bundle:
-        """All of an ended job; raises ``NotFound``, and ``Conflict`` before its end.
+        """Read all that is kept of an ended job; raises ``NotFound``, and ``Conflict`` before its end.
 
         It raises ``Altered`` when the stored result was altered, so that no altered result leaves the store.
         The names of the submitter and the worker are not exported.

@@ -9,7 +9,6 @@ be variables too: the set of all starts is convex, and its extent along a line t
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -19,6 +18,7 @@ from scipy.sparse import eye as identity
 from safestart.control.tracking_mpc.sampled import Sampled
 from safestart.control.tracking_mpc.tuning import DockingCorridor
 from safestart.model.scenario import Floats
+from safestart.optim.cone_program import plain_settings, solved
 
 FEASIBLE = 1e-7
 """A smaller violation of the corridor, m, counts as none: the solver's own tolerance."""
@@ -71,11 +71,11 @@ class AnyHistory:
             heads = np.zeros(4 * count)
             heads[order[:, 0]] = u_max
             matrix, self._bound = vstack([corridor, -spread @ inputs]), np.concatenate([room, heads])
-            self._cones = [("rows", len(room)), ("norms", count)]
+            self._cones = [(0, len(room)), (4, count)]
         else:
             matrix = vstack([corridor, inputs, -inputs])
             self._bound = np.concatenate([room, limit, limit])
-            self._cones = [("rows", matrix.shape[0])]
+            self._cones = [(0, matrix.shape[0])]
         whole = csc_matrix(matrix)
         # s(0) and s(1) from the start; with impulses they are the positions at nodes 0 and 1.
         if motion.held:
@@ -120,19 +120,12 @@ class AnyHistory:
     def _solve(self, column: Floats, bound: Floats, sign: float) -> tuple[Any, Any]:
         """Minimise sign times the last variable, whose column is given.
 
-        Not an ``optim.cone_program``, whose blocks are dense: here thousands of starts share one banded matrix.
+        Not a ``ConeProgram``, whose blocks are dense: here thousands of starts share one banded matrix.
         """
-        import clarabel
-
-        kinds: list[Any] = []
-        for kind, size in self._cones:
-            rows = kind == "rows"
-            kinds += [clarabel.NonnegativeConeT(size)] if rows else [clarabel.SecondOrderConeT(4)] * size
         matrix = csc_matrix(hstack([self._free, csc_matrix(column[:, None])]))
         cost = np.zeros(matrix.shape[1])
         cost[-1] = sign
-        none = csc_matrix((len(cost), len(cost)))
-        return clarabel.DefaultSolver(none, cost, matrix, bound, kinds, _settings()).solve(), matrix
+        return solved(cost, matrix, bound, self._cones, plain_settings()), matrix
 
     def _proves(self, dual: Floats, matrix: Any, bound: Floats) -> bool:
         """Whether -y'b > |A'y| at the farthest positions, for y in the dual cone: then every history has t > 0."""
@@ -152,13 +145,3 @@ def _banded(blocks: Floats, shift: int, nodes: int) -> Any:
     column = 3 * (np.arange(count) + shift)[:, None, None] + np.arange(3)[None, None, :]
     place = (np.broadcast_to(row, blocks.shape).ravel(), np.broadcast_to(column, blocks.shape).ravel())
     return csc_matrix((blocks.ravel(), place), shape=(3 * count, 3 * nodes))
-
-
-@cache
-def _settings() -> Any:
-    import clarabel
-
-    settings = clarabel.DefaultSettings()
-    settings.verbose = False
-    settings.max_threads = 1
-    return settings

@@ -20,7 +20,7 @@ from safestart.control.tracking_mpc import equilibrium
 from safestart.control.tracking_mpc.controller import Plan, Program
 from safestart.control.tracking_mpc.tumble import Tumble
 from safestart.model.scenario import Floats
-from safestart.tracking.flight import Flight
+from safestart.tracking.flight import TrackedFlight
 
 TOLERANCE = 1e-9
 """Rows may be overstepped by so much, m or m/s: the port lies on two of them."""
@@ -102,7 +102,7 @@ def _beyond(program: Program, deviation: Floats, last: Floats) -> float:
     return size * max(float(np.linalg.norm(gain, 2)) for gain in gains)
 
 
-def cost_decrease(program: Program, attitudes: Floats, flight: Flight) -> float:
+def cost_decrease(program: Program, attitudes: Floats, flight: TrackedFlight) -> float:
     """Largest (V(k+1) - V(k) + stage cost) / V(k) over the steps; at most 0 where the cost falls as promised."""
     worst = -np.inf
     for k, (plan, after) in enumerate(itertools.pairwise(flight.plans)):
@@ -117,7 +117,7 @@ def cost_decrease(program: Program, attitudes: Floats, flight: Flight) -> float:
 
 
 def holds_until(
-    program: Program, tumble: Tumble, flight: Flight, inertia_error: float, spin_error: float
+    program: Program, tumble: Tumble, flight: TrackedFlight, inertia_error: float, spin_error: float
 ) -> float:
     """Seconds for which the flown path stays within 1 cm of the corridor of every body of an ensemble.
 

@@ -13,9 +13,10 @@ import numpy as np
 
 from safestart.control.tracking_mpc.controller import Plan, Program
 from safestart.control.tracking_mpc.tumble import Tumble
-from safestart.dynamics.cwh import input_matrix, transition_matrix
+from safestart.dynamics.cwh import Cwh
 from safestart.dynamics.two_body import Orbit, TwoBody
 from safestart.model.scenario import Floats
+from safestart.optim.prediction import held_through
 from safestart.runtime.progress import Context
 
 Truth = Literal["hcw", "two_body_j2"]
@@ -24,7 +25,7 @@ _BETWEEN = 10
 
 
 @dataclass(frozen=True)
-class Flight:
+class TrackedFlight:
     """K steps: ``states`` (K + 1, 6) LVLH and ``body`` (K + 1, 3) at the nodes, ``plans`` (K).
 
     ``least_slack``, m: least distance to the corridor's faces at the nodes; ``least_between``, m: at ten instants in
@@ -64,7 +65,7 @@ def fly(
     steps: int,
     truth: Truth = "hcw",
     context: Context | None = None,
-) -> Flight:
+) -> TrackedFlight:
     """Fly up to ``steps`` steps from an LVLH ``start`` (6,) under ``attitudes`` (>= steps + ``ahead``, 3, 3)."""
     period, motion = program.motion.period, program.motion
     state = np.array(start, dtype=np.float64)
@@ -92,18 +93,19 @@ def fly(
     slack = float(program.faces.slack(body).min())
     given = np.array([frame.T @ plan.inputs[0] for frame, plan in zip(attitudes, plans, strict=False)])
     between = _between(program, tumble, path, given.reshape(-1, 3))
-    return Flight(path, body, tuple(plans), slack, between, len(plans) == steps)
+    return TrackedFlight(path, body, tuple(plans), slack, between, len(plans) == steps)
 
 
 def _between(program: Program, tumble: Tumble, path: Floats, given: Floats) -> float:
     """Least slack between the nodes (HCW) with the LVLH inputs ``given`` (K, 3), m."""
     motion, least = program.motion, np.inf
     nodes = motion.period * np.arange(float(len(path) - 1))
-    for part in range(_BETWEEN):
-        time = motion.period * (part + 1) / (_BETWEEN + 1)
-        places = path[:-1] @ transition_matrix(motion.mean_motion, time)[:3].T
+    times = motion.period * np.arange(1.0, _BETWEEN + 1.0) / (_BETWEEN + 1)
+    transition, push = held_through(Cwh(motion.mean_motion), 0.0, times)
+    for phi, effect, time in zip(transition, push, times.tolist(), strict=True):
+        places = path[:-1] @ phi[:3].T
         if motion.held:
-            places += given @ input_matrix(motion.mean_motion, time)[:3].T / motion.period
+            places += given @ effect[:3].T / motion.period
         turned = tumble.attitude.rotation(nodes + time)
         body = np.einsum("kij,kj->ki", turned, places)
         least = min(least, float(np.min(program.faces.slack(body), initial=np.inf)))

@@ -30,7 +30,7 @@ class Belief:
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class NoisyOutcome:
     """``least_slack`` m at the nodes, ``largest_input`` m/s (per axis, or in length in a ball), ``impulse`` m/s.
 
     ``last_range``, m; ``unplanned``: steps without a plan that keeps every row.
@@ -70,9 +70,9 @@ class NoisyFlights:
 
     def fly(
         self, start: Floats, attitudes: Floats, rates: Floats, navigation: Floats, sizes: Floats
-    ) -> Outcome:
+    ) -> NoisyOutcome:
         """One flight from an LVLH ``start`` (6,); see :func:`fly_noisy` for the arrays."""
         least, largest, impulse, last, unplanned = fly_noisy(
             np.asarray(start, dtype=np.float64), attitudes, rates, *self._head, navigation, sizes, *self._tail
         )
-        return Outcome(float(least), float(largest), float(impulse), float(last), int(unplanned))
+        return NoisyOutcome(float(least), float(largest), float(impulse), float(last), int(unplanned))

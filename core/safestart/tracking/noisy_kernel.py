@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from safestart.attitude.turn_kernel import into_body
 from safestart.control.tracking_mpc.assemble import assemble
 from safestart.control.tracking_mpc.step_kernel import INFEASIBLE, SOLVED, soften, solve_from
 from safestart.runtime.kernels import compiled
@@ -62,11 +63,10 @@ def predict(first, rate, inertia, inverse, orbit, period, out):  # type: ignore[
                 w[i] += h / 6.0 * (dw[0, i] + 2.0 * dw[1, i] + 2.0 * dw[2, i] + dw[3, i])
                 for j in range(3):
                     c[i, j] += h / 6.0 * (dc[0, i, j] + 2.0 * dc[1, i, j] + 2.0 * dc[2, i, j] + dc[3, i, j])
-        # C R', R the turn of LVLH about z meanwhile.
+        # C R', R the turn of LVLH about z meanwhile: each row of C is turned.
         cosine, sine = math.cos(orbit * period * k), math.sin(orbit * period * k)
         for i in range(3):
-            out[k, i, 0] = c[i, 0] * cosine + c[i, 1] * sine
-            out[k, i, 1] = c[i, 1] * cosine - c[i, 0] * sine
+            out[k, i, 0], out[k, i, 1] = into_body(cosine, sine, c[i, 0], c[i, 1])
             out[k, i, 2] = c[i, 2]
 
 

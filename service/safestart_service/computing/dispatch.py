@@ -11,7 +11,7 @@ from fastapi import Request
 from fastapi.responses import Response, StreamingResponse
 from starlette.types import Receive, Scope, Send
 
-from safestart.processes.door import OneStart, cost
+from safestart.processes.door import OneStart
 from safestart.runtime.progress import Context
 from safestart_service.access.gate import caller
 from safestart_service.computing.light import Left
@@ -77,9 +77,9 @@ async def _pieces(file: BinaryIO) -> AsyncIterator[bytes]:
         yield piece
 
 
-async def one_document(request: Request, inputs: OneStart) -> dict[str, Any]:
+async def one_document(request: Request, asked: OneStart) -> dict[str, Any]:
     """The document of one start whose method takes its time."""
-    return await services(request).helpers(request, cost(inputs), one_start, inputs)
+    return await services(request).helpers(request, asked.cost(), one_start, asked)
 
 
 def _response(made: Made) -> Response:

@@ -12,7 +12,7 @@ from uuid import uuid4
 import orjson
 
 from safestart.processes.base import ProcessSpec
-from safestart.processes.door import OneStart, document_of_one
+from safestart.processes.door import OneStart
 from safestart.processes.registry import process
 from safestart.runtime.access import Caller, Role
 from safestart.runtime.progress import Context
@@ -70,10 +70,10 @@ class Made:
     """Where the body is instead."""
 
 
-def one_start(store: Store, context: Context, inputs: OneStart) -> dict[str, Any]:
+def one_start(store: Store, context: Context, asked: OneStart) -> dict[str, Any]:
     """The document of one start."""
     del store
-    return document_of_one(inputs, context)
+    return asked.document(context)
 
 
 def at_once(store: Store, context: Context, asked: Asked) -> Made | float:

@@ -35,27 +35,27 @@ else:
 _SILENT = Context()
 
 
-def _instant(inputs: OneStart, scope: Scope) -> dict[str, Any] | None:
+def _instant(asked: OneStart, scope: Scope) -> dict[str, Any] | None:
     """The document of a question that takes microseconds, else None: a cone program would block other requests."""
-    document = door.at_once(inputs, _SILENT)
-    return None if document is None else _linked(document, inputs, scope)
+    document = asked.at_once(_SILENT)
+    return None if document is None else _linked(document, asked, scope)
 
 
-async def _answer(request: Request, inputs: OneStart) -> Response:
-    document = await one_document(request, inputs)
-    return Json(_linked(document, inputs, request.scope))
+async def _answer(request: Request, asked: OneStart) -> Response:
+    document = await one_document(request, asked)
+    return Json(_linked(document, asked, request.scope))
 
 
-def _linked(document: dict[str, Any], inputs: OneStart, scope: Scope) -> dict[str, Any]:
+def _linked(document: dict[str, Any], asked: OneStart, scope: Scope) -> dict[str, Any]:
     """The answer with the address of a proof of the same question; none for what is undecided or not sound."""
-    if document["verdict"] != "UNDECIDED" and door.sound(inputs):
+    if document["verdict"] != "UNDECIDED" and asked.sound():
         query = scope["query_string"].decode("latin-1")
         document["proof_url"] = f"{scope.get('root_path', '')}/go-no-go/proof?{query}"
     return document
 
 
-async def _proof(request: Request, inputs: OneStart) -> Response:
-    document = await one_document(request, door.with_proof(inputs))
+async def _proof(request: Request, asked: OneStart) -> Response:
+    document = await one_document(request, asked.with_proof())
     if document["proof"] is None:
         verdict, by = document["verdict"], document.get("decided_by")
         raise NotFound(

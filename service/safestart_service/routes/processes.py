@@ -26,6 +26,12 @@ from safestart_service.http.once import OnceRoute
 from safestart_service.state import services
 
 router = APIRouter(tags=["processes"], route_class=OnceRoute)
+_REQUEST = json_body(
+    {name: execute_model(name) for name in PROCESS_IDS},
+    {name: {"inputs": process(name).example} for name in PROCESS_IDS},
+    "ExecuteRequest",
+)
+"""The body of an execution and of an estimate."""
 ProcessId = Annotated[str, Path(description="Id of a process.")]
 
 
@@ -76,11 +82,7 @@ async def describe(request: Request, processID: ProcessId) -> Response:
     "/processes/{processID}/execution",
     operation_id="execute",
     summary="Execute a process",
-    openapi_extra=json_body(
-        {name: execute_model(name) for name in PROCESS_IDS},
-        {name: {"inputs": process(name).example} for name in PROCESS_IDS},
-        "ExecuteRequest",
-    ),
+    openapi_extra=_REQUEST,
     responses={
         200: content("application/json", {}, "Outputs of a process that ran at once, by name."),
         201: answer(
@@ -118,11 +120,7 @@ async def execute(
     "/processes/{processID}/estimate",
     operation_id="estimate",
     summary="How long a run would take",
-    openapi_extra=json_body(
-        {name: execute_model(name) for name in PROCESS_IDS},
-        {name: {"inputs": process(name).example} for name in PROCESS_IDS},
-        "ExecuteRequest",
-    ),
+    openapi_extra=_REQUEST,
     responses={
         200: answer(Estimate, "The estimate, and what it is known from."),
         **refusals(400, 404, 413, 415, 422, 429, 503),

@@ -1,4 +1,4 @@
-"""The command line as a user runs it: real processes, JSON alone on stdout; further refusals in this process."""
+"""The command line as a user runs it: real processes, JSON alone on stdout; further questions in this process."""
 
 import io
 import json
@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
-from safestart.cli import main
+from safestart.cli import build, main
 
 POINT = ["--omega-t-deg-s", "3", "--a-max-m-s2", "0.1"]
 
@@ -24,6 +25,13 @@ def document(*arguments: str, stdin: str = "") -> Any:
     done = safestart(*arguments, stdin=stdin)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
+
+
+def printed(*arguments: str) -> str:
+    """The standard output of a command in this process: starting another takes seconds."""
+    done = CliRunner().invoke(build(), arguments)
+    assert done.exit_code == 0, done.stderr
+    return done.stdout
 
 
 def test_go_no_go_json() -> None:
@@ -41,9 +49,8 @@ def test_go_no_go_for_people() -> None:
 
 
 def test_no_tumble_is_null_with_a_reason() -> None:
-    answer = document(
-        "go-no-go", "--omega-t-deg-s", "0", "--a-max-m-s2", "0.1", "--x-m", "0", "--y-m", "100", "--json"
-    )
+    still = ["--omega-t-deg-s", "0", "--a-max-m-s2", "0.1", "--x-m", "0", "--y-m", "100"]
+    answer = json.loads(printed("go-no-go", *still, "--json"))
     assert answer["verdict"] == "GO"
     assert answer["r_sync_m"] is None
     assert "does not tumble" in answer["r_sync_reason"]
@@ -81,7 +88,7 @@ def test_bad_input_ends_the_process_with_code_two() -> None:
 def refusal(
     arguments: list[str], stdin: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> str:
-    """The one line that the command line ends with, in this process: starting another takes seconds."""
+    """The one line that the command line ends with, in this process."""
     monkeypatch.setattr(sys, "argv", ["safestart", *arguments])
     monkeypatch.setattr(sys, "stdin", io.StringIO(stdin))
     with pytest.raises(SystemExit) as ended:
@@ -106,9 +113,7 @@ def test_run_writes_document_picture_and_arrays(tmp_path: Path) -> None:
         json.dumps({"omega_t_deg_s": [1, 3], "a_max_m_s2": [0.1], "grid": {"nx": 41, "ny": 41}})
     )
     output = tmp_path / "out" / "coverage.json"
-    done = safestart("run", "coverage", "--input", str(inputs), "--output", str(output))
-    assert done.returncode == 0, done.stderr
-    assert done.stdout == ""
+    assert printed("run", "coverage", "--input", str(inputs), "--output", str(output)) == ""
     written = json.loads(output.read_text())
     assert set(written) >= {"inputs", "outputs", "provenance"}
     assert written["inputs"]["corridor"]["c_x"] == 1.5
@@ -127,13 +132,13 @@ def test_run_reads_stdin_and_prints_json() -> None:
 
 
 def test_reproduce_table1() -> None:
-    cells = document("reproduce", "table1", "--json")["cells"]
+    cells = json.loads(printed("reproduce", "table1", "--json"))["cells"]
     assert len(cells) == 20
     assert all(abs(cell["ours"] - cell["paper"]) <= 0.3 for cell in cells)
 
 
 def test_reproduce_chain() -> None:
-    shown = safestart("reproduce", "chain", "--rate", "5", "--no-level-sets").stdout
+    shown = printed("reproduce", "chain", "--rate", "5", "--no-level-sets")
     assert "tube in analytical" in shown
     assert "analytical in synchronize" in shown
     assert "Violation fractions at 5 deg/s" in shown
@@ -150,7 +155,7 @@ def test_go_no_go_starts_without_the_engines() -> None:
 
 
 def test_reproduce_passive_safety() -> None:
-    answer = document("reproduce", "passive-safety", "--json")
+    answer = json.loads(printed("reproduce", "passive-safety", "--json"))
     rows = answer["rows"]
     assert len(rows) == 22
     for row in rows:

@@ -22,7 +22,10 @@ Address = tuple[str, int]
 
 @contextmanager
 def small_server(folder: Path, streams: int = STREAMS) -> Iterator[Address]:
-    """A server with few places and little patience for heads and readers, but much for bodies."""
+    """A server with few places and little patience for heads and readers, but much for bodies.
+
+    Its helper process starts with the first heavy answer, which most of its tests never ask for.
+    """
     chosen = {
         "port": 0,
         "database_url": url_of(folder),
@@ -32,6 +35,8 @@ def small_server(folder: Path, streams: int = STREAMS) -> Iterator[Address]:
     }
     code = (
         "import safestart_service.http.wire as wire, safestart_service.http.unread as unread;"
+        "import safestart_service.app as app; make = app.create_app;"
+        "app.create_app = lambda *given, warm: make(*given);"
         "wire.HEAD_S = 5.0; unread.UNREAD_S = 1.0;"
         f"import safestart_service.commands as c; c._serve({chosen!r})"
     )

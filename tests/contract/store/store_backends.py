@@ -38,6 +38,12 @@ def fresh_url(backend: str, folder: Path) -> str:
     return server.set(database=name).render_as_string(hide_password=False)
 
 
+def ask(database: Database) -> None:
+    """Query the database; raises ``Unavailable`` when no answer comes."""
+    with database.session() as session:
+        session.execute(text("SELECT 1"))
+
+
 def pass_time(database: Database, seconds: float) -> None:
     """As if ``seconds`` had passed, or the clock been set: every time that is written moves back by as much."""
     with database.session(write=True) as session:

@@ -14,7 +14,7 @@ from sqlalchemy import make_url, text
 from safestart.errors import Away, Unavailable
 from safestart.store.database import Database
 from safestart.store.patient import PatientConnection
-from tests.contract.store.store_backends import NO_SERVER, POSTGRESQL, fresh_url
+from tests.contract.store.store_backends import NO_SERVER, POSTGRESQL, ask, fresh_url
 
 pytestmark = pytest.mark.skipif(not POSTGRESQL, reason=NO_SERVER)
 
@@ -65,15 +65,15 @@ def frozen_server(url: str) -> Iterator[tuple[Frozen, Database]]:
 
 def test_a_server_that_stands_still_is_left(tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
     with frozen_server(fresh_url("postgresql", tmp_path)) as (server, database):
-        database.ping()
+        ask(database)
         monkeypatch.setattr(PatientConnection, "patience_s", 0.5)
         server.moves.clear()
         start = monotonic()
         with pytest.raises(Away, match=r"did not answer within 0\.5 s"):
-            database.ping()
+            ask(database)
         assert monotonic() - start < 5.0
         server.moves.set()
-        database.ping()  # on a new connection
+        ask(database)  # on a new connection
 
 
 def test_a_statement_that_takes_too_long_is_ended_by_the_server(tmp_path) -> None:

@@ -20,7 +20,7 @@ from safestart.store import dialect, schema
 from safestart.store.database import Database
 from safestart.store.jobs.repository import JobRepository
 from safestart.store.models import Base
-from tests.contract.store.store_backends import NO_SERVER, POSTGRESQL
+from tests.contract.store.store_backends import NO_SERVER, POSTGRESQL, ask
 from tests.contract.store.store_jobs import submit
 from tests.waiting import PATIENCE_S
 
@@ -52,8 +52,8 @@ def test_a_newer_schema_is_refused(database: Database) -> None:
         database.migrate()
 
 
-def test_ping_answers(database: Database) -> None:
-    database.ping()
+def test_a_query_is_answered(database: Database) -> None:
+    ask(database)
 
 
 @pytest.mark.parametrize(
@@ -101,13 +101,13 @@ def test_a_server_that_refuses_us_is_not_waited_for(change: dict, said: str) -> 
 
 def test_a_server_that_does_not_answer_is_waited_for() -> None:
     with pytest.raises(Away):
-        Database("postgresql://user@127.0.0.1:9/name").ping()
+        ask(Database("postgresql://user@127.0.0.1:9/name"))
 
 
 def test_a_file_that_is_no_database_is_unavailable(tmp_path: Path) -> None:
     (tmp_path / "x").write_text("not a database, but long enough to have a header to look at " * 20)
     with pytest.raises(Unavailable, match="file is not a database"):
-        Database(f"sqlite:///{tmp_path / 'x'}").ping()
+        ask(Database(f"sqlite:///{tmp_path / 'x'}"))
 
 
 def test_another_error_rolls_back_and_passes_through(database: Database, jobs: JobRepository) -> None:

@@ -46,14 +46,14 @@ def test_progress_is_in_the_row(jobs: JobRepository) -> None:
 
 
 def test_workers_count_while_they_beat(database: Database, jobs: JobRepository) -> None:
-    assert jobs.workers_alive() == 0
+    assert jobs.crew().workers == 0
     jobs.heartbeat("one", 2, 0)
     jobs.heartbeat("one", 2, 1)
     jobs.heartbeat("two", 4, 0)
-    assert jobs.workers_alive() == 2
+    assert jobs.crew().workers == 2
     pass_time(database, PATIENCE_S)
     jobs.heartbeat("two", 4, 0)
-    assert jobs.workers_alive(within_s=PATIENCE_S) == 1
+    assert jobs.crew(within_s=PATIENCE_S).workers == 1
     assert jobs.crew(within_s=2 * PATIENCE_S) == Crew(2, 6, 1)
     jobs.farewell("two")
     assert jobs.owners_alive(within_s=2 * PATIENCE_S) == ("one",)

@@ -13,7 +13,6 @@ from safestart.dynamics.cwh import planar_input, planar_transition
 from safestart.engines.backward import Backward
 from safestart.engines.backward_options import BackwardInput
 from safestart.engines.base import Problem, ResultCode
-from safestart.engines.exact import reach_margin
 from safestart.engines.sampled import steps, to_body
 from safestart.errors import InvalidInput
 from safestart.model.scenario import (
@@ -29,6 +28,7 @@ from safestart.model.scenario import (
 )
 from safestart.runtime.progress import Context
 from safestart.sets import zonotope
+from tests.unit.engines.exact_margin import reach_margin
 from tests.unit.sets.support_twin import disk_support
 
 NARROW = Scenario(Target(math.radians(4.0)), Chaser(0.05), CorridorShape(c_x=0.4, x0=0.0, hold_radius=3.0))

@@ -14,7 +14,6 @@ from safestart.attitude.spin import Spin
 from safestart.constraints.thrust_limit import ThrustLimit, ball
 from safestart.engines.backward import Backward as PlanarBackward
 from safestart.engines.base import EngineResult, Problem, ResultCode
-from safestart.engines.exact import reach_margin
 from safestart.engines.registry import ENGINES, why_not_in_space
 from safestart.engines.space.forward import template
 from safestart.engines.space.problem import PlaneProblem, engine_in_space
@@ -28,6 +27,7 @@ from safestart.exact.space.watch import space_watch_of
 from safestart.model.orbit import KeplerOrbit
 from safestart.model.scenario import CorridorShape, Grid, Rest, Scenario, SetKind
 from safestart.runtime.progress import Context
+from tests.unit.engines.exact_margin import reach_margin
 
 CORRIDOR = five_faces(CorridorShape())
 BODY = ((120.0, 2.0, -1.0), (2.0, 100.0, 3.0), (-1.0, 3.0, 60.0))

@@ -13,13 +13,14 @@ from safestart.dynamics.cwh import planar_input, planar_transition
 from safestart.engines import exact
 from safestart.engines.backward import Backward
 from safestart.engines.base import Engine, Problem, ResultCode
-from safestart.engines.exact import Exact, reach_margin
+from safestart.engines.exact import Exact
 from safestart.engines.forward import Forward
 from safestart.engines.region import restrict
 from safestart.model.scenario import Chaser, CorridorShape, Floats, Grid, Rest, Scenario, SetKind, Target
 from safestart.runtime.progress import Context
 from safestart.sets import series
 from tests.unit.engines import exact_twin
+from tests.unit.engines.exact_margin import reach_margin
 
 NARROW = CorridorShape(c_x=0.3, x0=0.0, hold_radius=3.0)
 CASES = {

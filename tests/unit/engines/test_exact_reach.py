@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 from safestart.dynamics.cwh import planar_transition
-from safestart.engines.exact import containment_horizon, reach_margin
+from safestart.engines.exact import containment_horizon
 from safestart.errors import InvalidInput
 from safestart.model.scenario import Floats, Rest, Scenario, SetKind
 from safestart.sets import series
+from tests.unit.engines.exact_margin import reach_margin
 from tests.unit.sets.support_twin import disk_support
 
 
@@ -42,12 +43,12 @@ class TestReachMargin:
     @pytest.mark.parametrize("points", [np.zeros((3, 3)), np.array([[math.nan, 0.0]]), np.float64(1.0)])
     def test_bad_points(self, points: Floats) -> None:
         with pytest.raises(InvalidInput, match="points"):
-            reach_margin(Scenario.of(1.0, 0.1), points, 40.0)
+            containment_horizon(Scenario.of(1.0, 0.1), points)
 
     @pytest.mark.parametrize("horizon", [0.0, -1.0, math.inf, math.nan, 1e9])
     def test_bad_horizon(self, horizon: float) -> None:
-        with pytest.raises(InvalidInput, match="horizon"):
-            reach_margin(Scenario.of(1.0, 0.1), np.zeros((1, 2)), horizon)
+        with pytest.raises(InvalidInput, match="bound"):
+            containment_horizon(Scenario.of(1.0, 0.1), np.zeros((1, 2)), bound=horizon)
 
 
 class TestContainmentHorizon:

@@ -8,7 +8,6 @@ import pytest
 
 from safestart.engines import hamilton_jacobi
 from safestart.engines.base import EngineResult, Problem, ResultCode
-from safestart.engines.exact import reach_margin
 from safestart.engines.hamilton_jacobi import HamiltonJacobi
 from safestart.engines.hj import domain as hj_domain
 from safestart.engines.hj import fused, peer
@@ -19,6 +18,7 @@ from safestart.errors import Cancelled, InvalidInput
 from safestart.model.scenario import Grid, Rest, Scenario, SetKind
 from safestart.processes.registry import process
 from safestart.runtime.progress import Context
+from tests.unit.engines.exact_margin import reach_margin
 
 SMALL = {"nodes_xy": 21, "nodes_v": 9}
 GRID = Grid(21, 21, 40.0)

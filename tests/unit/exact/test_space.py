@@ -21,6 +21,14 @@ from safestart.model.orbit import KeplerOrbit
 from safestart.model.scenario import CorridorShape, Scenario
 
 CORRIDOR = five_faces(CorridorShape())
+PARTS = {"orbit": KeplerOrbit(1.1e-3), "attitude": Spin(0.04), "faces": CORRIDOR, "thrust": ball(0.05)}
+
+
+def assert_refused(changes: dict[str, object], field: str) -> None:
+    """A question with these changes is refused under the name of the field."""
+    with pytest.raises(InvalidInput) as refused:
+        SpaceQuestion(**(PARTS | changes))
+    assert refused.value.field == field
 
 
 @pytest.mark.parametrize("seed", range(24))
@@ -168,15 +176,7 @@ def test_a_start_outside_is_refused_a_go_at_once() -> None:
     ],
 )
 def test_what_is_no_question_is_refused(changes: dict, field: str) -> None:
-    parts = {
-        "orbit": KeplerOrbit(1.1e-3),
-        "attitude": Spin(0.04),
-        "faces": CORRIDOR,
-        "thrust": ball(0.05),
-    }
-    with pytest.raises(InvalidInput) as refused:
-        SpaceQuestion(**(parts | changes))
-    assert refused.value.field == field
+    assert_refused(changes, field)
 
 
 @pytest.mark.parametrize(

@@ -20,6 +20,7 @@ from safestart.exact.space.question import Face, SpaceQuestion, five_faces
 from safestart.exact.space.start_box import decide_from_box
 from safestart.model.orbit import KeplerOrbit
 from safestart.model.scenario import CorridorShape, Scenario
+from tests.unit.exact.test_space import PARTS, assert_refused
 
 CORRIDOR = five_faces(CorridorShape())
 HOLD = (0.0, 0.5, 0.0)
@@ -138,18 +139,10 @@ def test_a_wider_box_is_harder_both_ways() -> None:
     ],
 )
 def test_what_is_no_question_is_refused(changes: dict, field: str) -> None:
-    parts = {
-        "orbit": KeplerOrbit(1.1e-3),
-        "attitude": Spin(0.04),
-        "faces": CORRIDOR,
-        "thrust": ball(0.05),
-    }
-    with pytest.raises(InvalidInput) as refused:
-        SpaceQuestion(**(parts | changes))
-    assert refused.value.field == field
+    assert_refused(changes, field)
     if "goal" not in changes:
         return
     with pytest.raises(InvalidInput):
         decide_from_box(
-            SpaceQuestion(**parts, goal=Goal(hold=HOLD)), np.array([0.0, 9.0, 0, 0, 0, 0]), np.ones(6)
+            SpaceQuestion(**PARTS, goal=Goal(hold=HOLD)), np.array([0.0, 9.0, 0, 0, 0, 0]), np.ones(6)
         )

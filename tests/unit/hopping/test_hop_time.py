@@ -11,7 +11,7 @@ from safestart.dynamics.cwh import transition_matrix
 from safestart.errors import InvalidInput
 from safestart.hopping.approach import departure, line
 from safestart.hopping.fold import CUSP
-from safestart.hopping.hop_equation import fraction_left, residual, weights
+from safestart.hopping.hop_equation import residual, weights
 from safestart.hopping.hop_time import fold_deg, hop_phases, hop_time
 from safestart.hopping.hop_time_kernel import compiled_hop_phases
 
@@ -40,12 +40,18 @@ def test_the_v_bar_takes_half_an_orbit_for_every_share() -> None:
     assert hop_time(1e-5, 0.5)[0] == pytest.approx(0.5, abs=1e-3)
 
 
+def _share_left(phi: np.ndarray, theta: float) -> np.ndarray:
+    """rho that a hop of phase ``phi`` (rad) along ``theta`` (rad) leaves: g = N - rho D vanishes."""
+    numerator, _ = residual(phi, weights(np.array(theta), np.zeros(())))
+    return numerator / (numerator - residual(phi, weights(np.array(theta), np.ones(())))[0])
+
+
 def test_the_r_bar_limit_and_its_closed_form() -> None:
     assert _phase(90.0, 0.0) == pytest.approx(1.2757, abs=5e-5)
     phi = np.linspace(0.05, 1.2, 40)
     printed = (3 * phi - 4 * np.sin(phi)) / (3 * phi * np.cos(phi) - 4 * np.sin(phi))
-    assert np.allclose(fraction_left(phi, np.array(0.5 * math.pi)), printed, rtol=1e-12)
-    assert float(fraction_left(np.array(0.6), np.array(0.5 * math.pi))) == pytest.approx(0.593, abs=5e-4)
+    assert np.allclose(_share_left(phi, 0.5 * math.pi), printed, rtol=1e-12)
+    assert float(_share_left(np.array(0.6), 0.5 * math.pi)) == pytest.approx(0.593, abs=5e-4)
 
 
 def test_folds() -> None:

@@ -5,7 +5,7 @@ import pytest
 
 import safestart.hopping_safety.tightening as tightening
 from safestart.errors import InvalidInput
-from safestart.hopping_flights.fly import Flown, World
+from safestart.hopping_flights.fly import HoppingFlight, World
 from safestart.hopping_safety.tightening import flown, least_tightening
 
 
@@ -14,14 +14,14 @@ def made_up(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     """Flights that breach where a number drawn is above kappa; the list holds the kappas flown."""
     kappas: list[float] = []
 
-    def fly(world: World, rng: np.random.Generator, steer: object) -> Flown:
+    def fly(world: World, rng: np.random.Generator, steer: object) -> HoppingFlight:
         kappas.append(world.kappa)
         drawn = rng.uniform(0.0, 3.0)
         if drawn > 2.99:
             raise InvalidInput("past the fold")
         near = 10.0 if drawn > world.kappa else 90.0
         closest = np.array([90.0, near, 5.0])
-        return Flown(np.ones((3, 3)), closest, np.zeros((3, 6)), np.zeros(3), 100.0, True)
+        return HoppingFlight(np.ones((3, 3)), closest, np.zeros((3, 6)), np.zeros(3), 100.0, True)
 
     monkeypatch.setattr(tightening, "fly", fly)
     return kappas

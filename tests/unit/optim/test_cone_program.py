@@ -184,3 +184,27 @@ def test_what_does_not_fit_is_refused(k: int) -> None:
     program.rows("there", np.ones(1), t=1.0)
     with pytest.raises(InvalidInput):
         BAD[k](program)
+
+
+def test_a_quadratic_cost_is_minimised() -> None:
+    # |x - a|^2 / 2 + |y - b|^2 / 2 + x . C y: the gradient vanishes at the solution of a linear system.
+    a, b, cross = np.array([1.0, -2.0]), np.array([0.5, 3.0]), np.array([[0.3, 0.1], [-0.2, 0.4]])
+    program = ConeProgram(x=2, y=2)
+    program.minimise(x=-a, y=-b)
+    program.curve("x", "x", np.eye(2))
+    program.curve("x", "y", cross)
+    program.curve("y", "y", np.eye(2))
+    program.rows("far", np.full(2, 100.0), x=np.eye(2))
+    for plain in (False, True):
+        found = program.solve(plain=plain)
+        assert found.solved
+        best = np.linalg.solve(np.block([[np.eye(2), cross], [cross.T, np.eye(2)]]), np.concatenate([a, b]))
+        np.testing.assert_allclose(np.concatenate([found.value("x"), found.value("y")]), best, atol=1e-6)
+
+
+def test_a_quadratic_cost_of_another_shape_is_refused() -> None:
+    program = ConeProgram(x=2, y=1)
+    with pytest.raises(InvalidInput, match=r"x\.y"):
+        program.curve("x", "y", np.eye(2))
+    with pytest.raises(InvalidInput, match=r"y\.x"):
+        program.curve("y", "x", np.ones((1, 2)))

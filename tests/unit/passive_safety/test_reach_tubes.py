@@ -10,7 +10,7 @@ import pytest
 from scipy.linalg import expm
 from scipy.optimize import linprog
 
-from safestart.passive_safety.flights.audit import drift_excess, powered_excess, random_starts
+from benchmarks.peers.reach_audit import drift_excess, powered_excess, random_starts
 from safestart.passive_safety.flights.independent_flight import replay
 from safestart.passive_safety.flights.simulate import active, crossing_times, drifted, flown
 from safestart.passive_safety.model import PUBLISHED, Dynamics, Mode, Motion, matrix

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from benchmarks.peers.reach_audit import powered_excess, random_starts
 from safestart.errors import InvalidInput
-from safestart.passive_safety.flights.audit import powered_excess, random_starts
 from safestart.passive_safety.flights.falsify import approaches, closest, powered_extremes
 from safestart.passive_safety.flights.independent_flight import replay
 from safestart.passive_safety.flights.simulate import crossing_times

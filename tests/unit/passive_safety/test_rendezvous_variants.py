@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from benchmarks.peers.reach_audit import drift_excess, powered_excess, random_starts
 from safestart.errors import InvalidInput
-from safestart.passive_safety.flights.audit import drift_excess, powered_excess, random_starts
 from safestart.passive_safety.flights.independent_flight import kepler, replay
 from safestart.passive_safety.flights.rk8_flights import simulate
 from safestart.passive_safety.flights.simulate import active, crossing_times, flown

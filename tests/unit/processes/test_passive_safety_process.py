@@ -9,7 +9,7 @@ from PIL import Image
 from safestart.errors import Cancelled, InvalidInput
 from safestart.passive_safety.flights.independent_flight import replay
 from safestart.passive_safety.model import PUBLISHED
-from safestart.processes.execute import execute
+from safestart.processes.execute import Execution, execute
 from safestart.processes.passive_safety.outlines import outlines
 from safestart.processes.registry import process
 from safestart.records.comparable import comparable
@@ -20,9 +20,13 @@ pytestmark = pytest.mark.slow
 QUICK = {"abort_windows_min": [[120, 125], [260, 260]], "box_half_width_m": 0.2, "critical_abort": False}
 
 
-def test_document_fits_its_schema_and_its_counter_example_replays() -> None:
-    result = execute("passive-safety", QUICK)
-    outputs = result.document["outputs"]
+@pytest.fixture(scope="module")
+def done() -> Execution:
+    return execute("passive-safety", QUICK)
+
+
+def test_document_fits_its_schema_and_its_counter_example_replays(done: Execution) -> None:
+    outputs = done.document["outputs"]
     process("passive-safety").outputs.model_validate(outputs)
     assert outputs["crossed_faces"] == ["x=-100"]
     assert outputs["crossing_first_min"] < outputs["crossing_last_min"]
@@ -57,8 +61,8 @@ def test_variants_are_chosen_on_the_wire() -> None:
     assert outputs["gains"]["mode1"][0][0] == pytest.approx(28.828677676943, abs=1e-4)
 
 
-def test_artifacts_open() -> None:
-    files = {a.name: a.data for a in execute("passive-safety", QUICK).artifacts}
+def test_artifacts_open(done: Execution) -> None:
+    files = {a.name: a.data for a in done.artifacts}
     assert set(files) == {"tubes.png", "after_abort.png", "tubes.npz"}
     for name in ("tubes.png", "after_abort.png"):
         with Image.open(io.BytesIO(files[name])) as picture:
@@ -69,10 +73,10 @@ def test_artifacts_open() -> None:
         assert arrays["mode1_thrust_n"].max() <= 10.0
 
 
-def test_same_inputs_same_result() -> None:
-    one, two = execute("passive-safety", QUICK), execute("passive-safety", QUICK)
-    assert comparable(one.document["outputs"]) == comparable(two.document["outputs"])
-    assert [a.sha256 for a in one.artifacts] == [a.sha256 for a in two.artifacts]
+def test_same_inputs_same_result(done: Execution) -> None:
+    again = execute("passive-safety", QUICK)
+    assert comparable(again.document["outputs"]) == comparable(done.document["outputs"])
+    assert [a.sha256 for a in again.artifacts] == [a.sha256 for a in done.artifacts]
 
 
 def test_dismissal_and_progress() -> None:

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from benchmarks.peers.reach_audit import random_starts
 from safestart.errors import InvalidInput
 from safestart.passive_safety.abort_map import safe_until
-from safestart.passive_safety.flights.audit import random_starts
 from safestart.passive_safety.flights.falsify import approaches
 from safestart.passive_safety.flights.simulate import crossing_times
 from safestart.passive_safety.model import PUBLISHED

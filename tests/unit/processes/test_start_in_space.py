@@ -217,3 +217,59 @@ def test_demands_are_named_with_the_part_that_answered_them() -> None:
         assert set(demands) <= set(proof["question"])
         check(json.loads(json.dumps(proof)))
     assert answered(horizon_s=40)["restriction"] is None
+
+
+def test_what_else_is_not_known_counts_and_is_proved() -> None:
+    free = {"kind": "torque_free", "inertia_kg_m2": BODY, "body_rate_deg_s": [0.2, -0.3, 1]}
+    known = {
+        "starts": [{"position_m": [1, 30, 0.5]}, {"position_m": [1, 9, 20]}],
+        "omega_t_deg_s": None,
+        "attitude": free,
+        "proofs": True,
+    }
+    sure = answered(**known)
+    half = {
+        "attitude_half_angle_deg": 1,
+        "body_rate_half_width_deg_s": 0.01,
+        "inertia_half_width": 0.01,
+        "disturbance_m_s2": 1e-4,
+        "position_half_width_m": 0.2,
+    }
+    found = answered(**known, **half)
+    assert found["verdict"] == sure["verdict"] == ["GO", "NO_GO"]
+    assert 0.0 < found["margin_m"][0] < sure["margin_m"][0] - 0.5
+    assert "for every member of what is not known" in found["reason"][0]
+    assert "even where all is as given" in found["reason"][1]
+    for document in found["proof"]:
+        assert document["question"]["unknowns"]["inertia_share"] == 0.01
+        check(json.loads(json.dumps(document)))
+    wide = answered(**known | {"proofs": False, "starts": known["starts"][:1]}, body_rate_half_width_deg_s=5)
+    assert wide["verdict"] == ["UNDECIDED"]
+    assert "may turn the body any way" in wide["reason"][0]
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"inertia_half_width": 0.1}, "inertia_half_width: required 0 unless the attitude is torque_free"),
+        ({"disturbance_m_s2": 1e-3, "question": "synchronize"}, "question: required stay"),
+        ({"attitude_half_angle_deg": 1, "speed_limit_m_s": 1}, "question: required stay"),
+        (
+            {"attitude_half_angle_deg": 1, "plume": {"half_angle_deg": 20, "range_m": 40}},
+            "question: required stay",
+        ),
+        (
+            {
+                "attitude_half_angle_deg": 1,
+                "a_max_m_s2": None,
+                "thrust": {"kind": "box", "a_max_m_s2": [1, 1, 1], "frame": "body"},
+            },
+            "thrust.frame: required axes of LVLH",
+        ),
+        ({"method": "tracking", "disturbance_m_s2": 1e-3, "mean_motion_rad_s": 1e-3}, "disturbance_m_s2"),
+    ],
+)
+def test_what_is_not_asked_together_is_refused(changes: dict[str, Any], said: str) -> None:
+    with pytest.raises(InvalidInput) as caught:
+        answered(**changes)
+    assert said in str(caught.value)

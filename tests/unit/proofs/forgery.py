@@ -78,6 +78,19 @@ def put(made: Document, path: tuple[Any, ...], value: Any) -> None:
     inside[path[-1]] = value
 
 
+def refused(check: Check, made: Document, path: tuple[Any, ...], factor: float) -> bool:
+    """Whether the document is refused with another number, or all numbers of a list, at a place."""
+    forged, inside = copy.deepcopy(made), made
+    for key in path:
+        inside = inside[key]
+    put(forged, path, [e * factor for e in inside] if isinstance(inside, list) else inside * factor)
+    try:
+        check(sealed(forged))
+    except ProofRejected:
+        return True
+    return False
+
+
 def assert_all_is_read(check: Check, document: Document, without: tuple[str, ...] = ()) -> None:
     """A field of another type, one that is missing, one too many: refused at every place of the document.
 

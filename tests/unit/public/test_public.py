@@ -13,6 +13,7 @@ import pytest
 
 import safestart as ss
 from safestart.closed_form.certified_point import certify_point, prepare
+from safestart.constraints.corridor import corridor_of
 from safestart.errors import InvalidInput, NotFound, Unavailable
 from safestart.proofs.strict import ProofRejected
 from safestart.public.results import Result
@@ -69,6 +70,23 @@ def test_certify_is_the_certificate_of_single_starts():
     # No start that the exact answer calls GO is called NO_GO here.
     some = points.reshape(-1, 2)[found.verdict.ravel() == "NO_GO"][:20]
     assert {ss.decide(POINT, start).verdict for start in some} == {"NO_GO"}
+
+
+def test_the_manoeuvre_of_a_certified_start_stays_in_the_corridor():
+    found = ss.certify(POINT, [[START, (0.0, 149.0)]], rest="body")
+    assert found.verdict.tolist() == [["GO", "UNDECIDED"]]
+    plan = found.manoeuvre(0, 0)
+    assert plan is not None
+    assert found.manoeuvre(0, 1) is None
+    times = np.linspace(0.0, 200.0, 2001)
+    place, velocity, _ = plan.motion(times)
+    np.testing.assert_allclose([place[0], velocity[0]], [[*START, 0.0], [0.0, 0.0, 0.0]], atol=1e-12)
+    assert np.linalg.norm(plan.thrust_lvlh(times), axis=1).max() <= POINT.chaser.max_acceleration
+    room = corridor_of(POINT.corridor, 3)
+    assert (room.slack(place) / room.lengths).min() >= found.margin_m[0, 0] - 1e-9
+    for index in ((0,), (0, 2), (0, 0, 0)):
+        with pytest.raises(ss.SafestartError, match="index"):
+            found.manoeuvre(*index)
 
 
 def test_decide_is_proved_either_way():

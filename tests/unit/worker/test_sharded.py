@@ -13,7 +13,7 @@ from safestart.records.provenance import source
 from safestart.store.database import Database
 from safestart.store.jobs.repository import JobRepository
 from safestart.store.records import Claim
-from safestart_worker.cluster.task import Outcome, ShardOutcome, run_shard
+from safestart_worker.cluster.task import JobEnd, ShardEnd, run_shard
 from safestart_worker.jobs.shards import Sharded
 from safestart_worker.jobs.work import Journal
 from tests.unit.processes.test_sharding import SHARDING, SPEC
@@ -47,10 +47,10 @@ class Cluster:
         if function is run_shard:
             _, part, number = arguments
             self.ran.append(number)
-            return Done(ShardOutcome(Part({"square": part["n"] ** 2}), self.by))
+            return Done(ShardEnd(Part({"square": part["n"] ** 2}), self.by))
         documents = [part.document for part in arguments[2]]
         document = SHARDING.so_far(SPEC.parse({"count": COUNT}), documents)
-        return Done(Outcome(document, (), {"source_sha256": self.merged_by}))
+        return Done(JobEnd(document, (), {"source_sha256": self.merged_by}))
 
 
 @pytest.fixture
@@ -68,7 +68,7 @@ def claim(jobs: JobRepository) -> Claim:
     return claim
 
 
-def run(jobs: JobRepository, claim: Claim, cluster: Cluster) -> Outcome:
+def run(jobs: JobRepository, claim: Claim, cluster: Cluster) -> JobEnd:
     sharded = Sharded(claim, "key", cluster, Journal(claim.job_id), jobs, SPEC, 3)  # type: ignore[arg-type]
     return asyncio.run(sharded.run())
 

@@ -31,7 +31,7 @@ _lock = threading.Lock()
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class JobEnd:
     """How a task ended: a document with artifacts, or a problem; ``trace`` is for the log only."""
 
     document: dict[str, Any] | None
@@ -42,7 +42,7 @@ class Outcome:
 
 
 @dataclass(frozen=True, slots=True)
-class ShardOutcome:
+class ShardEnd:
     """How a shard ended: its result, or a problem; ``by`` is the source that computed it."""
 
     part: Part | None
@@ -64,19 +64,19 @@ def load() -> None:
     versions()
 
 
-def run_job(process_id: str, inputs: dict[str, Any], key: str, topic: str) -> Outcome:
+def run_job(process_id: str, inputs: dict[str, Any], key: str, topic: str) -> JobEnd:
     """Run one job to its outcome."""
     return _whole(lambda context: execute(process_id, inputs, context), key, topic)
 
 
 def run_merge(
     process_id: str, inputs: dict[str, Any], parts: list[Part], started: datetime, key: str, topic: str
-) -> Outcome:
+) -> JobEnd:
     """Run the merge of a sharded job to its outcome."""
     return _whole(lambda context: merge(process_id, inputs, parts, started, context), key, topic)
 
 
-def run_shard(process_id: str, part: dict[str, Any], number: int, key: str, topic: str) -> ShardOutcome:
+def run_shard(process_id: str, part: dict[str, Any], number: int, key: str, topic: str) -> ShardEnd:
     """Run shard ``number`` of the job ``key``."""
     reporter = Reporter(key, topic, get_worker(), number)
     reporter.started()
@@ -85,25 +85,25 @@ def run_shard(process_id: str, part: dict[str, Any], number: int, key: str, topi
     assert sharding is not None
     try:
         context.step(0.0, 1.0)  # asked to stop before it began
-        return ShardOutcome(sharding.run_part(part, context), source())
+        return ShardEnd(sharding.run_part(part, context), source())
     except SafestartError as error:
-        return ShardOutcome(None, source(), of_error(error))
+        return ShardEnd(None, source(), of_error(error))
     except Exception as error:
-        return ShardOutcome(None, source(), of_unexpected(error, uuid4().hex), traceback.format_exc())
+        return ShardEnd(None, source(), of_unexpected(error, uuid4().hex), traceback.format_exc())
 
 
-def _whole(run: Callable[[Context], Execution], key: str, topic: str) -> Outcome:
+def _whole(run: Callable[[Context], Execution], key: str, topic: str) -> JobEnd:
     reporter = Reporter(key, topic, get_worker())
     reporter.started()
     context = Context(reporter.report, lambda: key in _stopping)
     try:
         execution = run(context)
     except SafestartError as error:
-        return Outcome(None, (), versions(), of_error(error))
+        return JobEnd(None, (), versions(), of_error(error))
     except Exception as error:
         incident = uuid4().hex
-        return Outcome(None, (), versions(), of_unexpected(error, incident), traceback.format_exc())
+        return JobEnd(None, (), versions(), of_unexpected(error, incident), traceback.format_exc())
     finally:
         with _lock:
             _stopping.discard(key)
-    return Outcome(execution.document, execution.artifacts, versions())
+    return JobEnd(execution.document, execution.artifacts, versions())

@@ -25,7 +25,7 @@ from safestart.store.jobs.repository import JobRepository
 from safestart.store.records import Claim
 from safestart_worker import problems
 from safestart_worker.cluster.cluster import Cluster
-from safestart_worker.cluster.task import Outcome, ShardOutcome, run_merge, run_shard
+from safestart_worker.cluster.task import JobEnd, ShardEnd, run_merge, run_shard
 from safestart_worker.jobs.work import Journal, spared
 
 Answer = TypeVar("Answer")
@@ -63,7 +63,7 @@ class Sharded:
         self._processes: set[int] = set()
         self._done = self._total = 0
 
-    async def run(self) -> Outcome:
+    async def run(self) -> JobEnd:
         """Run the missing shards, then the merge."""
         try:
             parts = self._sharding.parts(self._spec.parse(self._claim.inputs))
@@ -80,10 +80,10 @@ class Sharded:
 
     async def _shards(
         self, parts: list[dict[str, Any]], contents: list[str], missing: deque[int]
-    ) -> Outcome | None:
+    ) -> JobEnd | None:
         """Run the missing shards; returns None when the store has all, or the job's outcome when one failed."""
         window = _AHEAD * max(1, await self._cluster.threads())
-        waiting: dict[asyncio.Future[ShardOutcome], int] = {}
+        waiting: dict[asyncio.Future[ShardEnd], int] = {}
         while waiting or (missing and not self._ending):
             while missing and len(waiting) < window and not self._ending:
                 number = missing.popleft()
@@ -112,7 +112,7 @@ class Sharded:
         self._done += 1
         self._show(f"{self._done} of {self._total} parts")
 
-    async def _merge(self) -> Outcome:
+    async def _merge(self) -> JobEnd:
         claim = self._claim
         if self._ending:
             return _failed(problems.of_error(Cancelled("the job was ended before its merge")))
@@ -175,12 +175,12 @@ class Sharded:
         done = self._done + sum(self._shares.values())
         self._journal.track.update(done, self._total + 1, time.monotonic() - self._begin, message)
 
-    async def stop(self, outcome: asyncio.Task[Outcome]) -> None:
+    async def stop(self, outcome: asyncio.Task[JobEnd]) -> None:
         """End every task."""
         self._ending = True
         await self._cluster.stop(self._key, list(self._futures.values()), outcome)
 
-    async def leave(self, outcome: asyncio.Task[Outcome]) -> None:
+    async def leave(self, outcome: asyncio.Task[JobEnd]) -> None:
         """End every task if the cluster stays; the store keeps the finished shards."""
         self._ending = True
         await self._cluster.leave(self._key, list(self._futures.values()), outcome)
@@ -192,5 +192,5 @@ class Sharded:
             future.release()
 
 
-def _failed(problem: dict[str, Any], trace: str | None = None) -> Outcome:
-    return Outcome(None, (), {}, problem, trace)
+def _failed(problem: dict[str, Any], trace: str | None = None) -> JobEnd:
+    return JobEnd(None, (), {}, problem, trace)

@@ -22,7 +22,7 @@ from safestart.store.jobs.repository import JobRepository
 from safestart.store.records import Claim
 from safestart_worker import problems
 from safestart_worker.cluster.cluster import Cluster
-from safestart_worker.cluster.task import Outcome
+from safestart_worker.cluster.task import JobEnd
 from safestart_worker.jobs.liveness import Finding, Signs
 from safestart_worker.jobs.shards import Sharded
 from safestart_worker.jobs.work import Journal, Whole, Work
@@ -97,7 +97,7 @@ class Shepherd:
         finally:
             work.forget()
 
-    def _over(self, _: asyncio.Task[Outcome]) -> None:
+    def _over(self, _: asyncio.Task[JobEnd]) -> None:
         self.computes = False
         self._on_over()
 
@@ -111,7 +111,7 @@ class Shepherd:
             return Sharded(self.claim, self.key, self._cluster, self._journal, self._jobs, spec, most)
         return Whole(self.claim, self.key, self._cluster, self._journal, most)
 
-    async def _watch(self, work: Work, outcome: asyncio.Task[Outcome], stopping: asyncio.Event) -> None:
+    async def _watch(self, work: Work, outcome: asyncio.Task[JobEnd], stopping: asyncio.Event) -> None:
         start = time.monotonic()
         written = renewed = looked = start
         stop = asyncio.ensure_future(stopping.wait())
@@ -158,7 +158,7 @@ class Shepherd:
         else:
             self._cluster.give_up()
 
-    async def _finish(self, work: Work, outcome: asyncio.Task[Outcome]) -> None:
+    async def _finish(self, work: Work, outcome: asyncio.Task[JobEnd]) -> None:
         try:
             end = outcome.result()
         except KilledWorker:

@@ -12,7 +12,7 @@ from distributed import Future, KilledWorker
 from safestart.runtime.logs import about
 from safestart.store.records import Claim
 from safestart_worker.cluster.cluster import Cluster
-from safestart_worker.cluster.task import Outcome, run_job
+from safestart_worker.cluster.task import JobEnd, run_job
 from safestart_worker.jobs.track import Track
 
 log = logging.getLogger("safestart.worker")
@@ -41,7 +41,7 @@ class Work(Protocol):
 
     whole: bool
 
-    async def run(self) -> Outcome:
+    async def run(self) -> JobEnd:
         """Run to the outcome; does not catch errors of Dask and of the store."""
         ...
 
@@ -53,11 +53,11 @@ class Work(Protocol):
         """The tasks that :meth:`run` waits for now; none while it waits for something else."""
         ...
 
-    async def stop(self, outcome: asyncio.Task[Outcome]) -> None:
+    async def stop(self, outcome: asyncio.Task[JobEnd]) -> None:
         """End the computation; returns when it no longer computes."""
         ...
 
-    async def leave(self, outcome: asyncio.Task[Outcome]) -> None:
+    async def leave(self, outcome: asyncio.Task[JobEnd]) -> None:
         """End it as far as a short time allows: another worker will run the job."""
         ...
 
@@ -100,13 +100,13 @@ class Whole:
         self._starts = 0
         self._future = self._submit(key)
 
-    async def run(self) -> Outcome:
+    async def run(self) -> JobEnd:
         """Wait for the task."""
         return await spared(
             self._future, lambda n: self._submit(f"{self._key}-again-{n}"), lambda: self._starts, self._most
         )
 
-    def _submit(self, key: str) -> Future[Outcome]:
+    def _submit(self, key: str) -> Future[JobEnd]:
         inputs = (self._claim.process_id, self._claim.inputs)
         self._future = self._cluster.submit(run_job, *inputs, key=key, job=self._key)
         return self._future
@@ -127,11 +127,11 @@ class Whole:
         """The task."""
         return [self._future]
 
-    async def stop(self, outcome: asyncio.Task[Outcome]) -> None:
+    async def stop(self, outcome: asyncio.Task[JobEnd]) -> None:
         """End the task."""
         await self._cluster.stop(self._key, [self._future], outcome)
 
-    async def leave(self, outcome: asyncio.Task[Outcome]) -> None:
+    async def leave(self, outcome: asyncio.Task[JobEnd]) -> None:
         """End the task if the cluster stays."""
         await self._cluster.leave(self._key, [self._future], outcome)
 

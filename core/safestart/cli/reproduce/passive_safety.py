@@ -47,7 +47,7 @@ def register(group: typer.Typer) -> None:
 
 
 def print_passive_safety(as_json: bool = False, model: str = "linear", guard: str = "octagon") -> None:
-    """What the command does."""
+    """Answer the question and print it beside the paper's figures."""
     document = passive_safety_document(model, guard)
     if as_json:
         print_json(document)

@@ -33,11 +33,11 @@ class Moment:
 
     @property
     def gradient(self) -> Floats:
-        """Its gradient (N, 2 m)."""
+        """Gradient (N, 2 m) of the value."""
         return self._reading[1]
 
     def only(self, chosen: Bools) -> Moment:
-        """The same of the chosen encounters."""
+        """What is observed in the chosen encounters alone."""
         some = Moment(self._observer, self.step, self.to_go, self.states[chosen])
         some.__dict__["_reading"] = self.value[chosen], self.gradient[chosen]
         return some

@@ -102,7 +102,7 @@ class Program:
         self.spots, self.held = np.empty((total, 3, 3)), np.empty((total, 3, 3))
 
     def apart(self) -> Program:
-        """The same program with arrays of its own: two threads must not fill the same ones."""
+        """Copy the program with arrays of its own: two threads must not fill the same ones."""
         other = copy(self)
         other._allocate()
         return other

@@ -93,7 +93,7 @@ def bracket(tumble: Tumble, motion: Sampled, u_max: float, limit: InputLimit = "
         if len(times) > 1
         else 0.0
     )
-    moved = [matrix @ _turn(tumble, j * period) for j, matrix in enumerate(constants)]
+    moved = [matrix @ tumble.frame_turn(j * period) for j, matrix in enumerate(constants)]
     left = [matrix - w * np.eye(3) for matrix, w in zip(moved, shares, strict=True)]
     # Taylor's formula about the middle of the three positions that impulses need.
     span = period * (steps - 1.0)
@@ -141,19 +141,11 @@ def _seen_rates(tumble: Tumble) -> tuple[float, float]:
     return omega + tumble.mean_motion, change + omega * tumble.mean_motion
 
 
-def _turn(tumble: Tumble, time: float) -> Floats:
-    """LVLH coordinates to those ``time`` s later, or the identity without LVLH's turn."""
-    if tumble.reference == "lvlh":
-        return np.eye(3)
-    angle = tumble.mean_motion * time
-    c, s = math.cos(angle), math.sin(angle)
-    return np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-
-
 def _attitudes() -> Floats:
     """(A, 3, 3): rotations spread over all attitudes, the same every time."""
     units = np.random.default_rng(2).normal(size=(_ATTITUDES, 4))
     w, x, y, z = (units / np.linalg.norm(units, axis=1, keepdims=True)).T
+    # Not quaternion.matrix_of, whose last bits differ: the bracket's upper end is a maximum over exactly these.
     return np.array(
         [
             [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],

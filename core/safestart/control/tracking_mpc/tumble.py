@@ -44,6 +44,12 @@ class Tumble:
         """Attitudes (count, 3, 3), LVLH to body, at 0, T, 2 T .. for T = ``period`` s."""
         return np.ascontiguousarray(self.attitude.rotation(period * np.arange(float(count))))
 
+    def frame_turn(self, time: float) -> Floats:
+        """LVLH coordinates to those ``time`` s later (3, 3); the identity where LVLH's own turn is left out."""
+        if self.reference == "lvlh":
+            return np.eye(3)
+        return KeplerOrbit(self.mean_motion).rotation(np.asarray(time))
+
     def slow_enough(self, period: float) -> None:
         """Raise ``InvalidInput`` if the body turns by more than a radian in one step."""
         turn = self.attitude.rate_bounds()[0] * period

@@ -19,6 +19,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from safestart.attitude.body_frame import into_body
 from safestart.engines.base import Problem
 from safestart.engines.hj.domain import Domain
 from safestart.engines.hj.frame import Frame, coefficients
@@ -86,7 +87,7 @@ def _distance(rows: Any, angle: Any, lattice: Any) -> Any:
     """l(R(-angle) p) on the nodes, shape (nx, ny, 1, 1), metres."""
     x, y = lattice.coordinate_vectors[0][:, None], lattice.coordinate_vectors[1][None, :]
     c, s = jnp.cos(angle), jnp.sin(angle)
-    points = jnp.stack([c * x + s * y, c * y - s * x, jnp.ones_like(x + y)], axis=-1)
+    points = jnp.stack([*into_body(c, s, x, y), jnp.ones_like(x + y)], axis=-1)
     return (points @ rows.T).max(axis=-1)[:, :, None, None]
 
 

@@ -41,16 +41,16 @@ class Later:
         return self.attitude.angular_velocity(np.asarray(times) + self.begin)
 
     def rate_bounds(self) -> tuple[float, float]:
-        """Those of the attitude: they hold at all times."""
+        """The attitude's bounds: they hold at all times."""
         return self.attitude.rate_bounds()
 
     @property
     def knots(self) -> Floats:
-        """Its knots, s after ``begin``."""
+        """The attitude's knots, s after ``begin``."""
         return self.attitude.knots - self.begin
 
     def turn_bounds(self) -> Bounds:
-        """Those of the attitude."""
+        """The attitude's bounds: they hold at all times."""
         return self.attitude.turn_bounds()
 
 

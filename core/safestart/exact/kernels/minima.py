@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from safestart.attitude.turn_kernel import into_body
 from safestart.constraints.dip import dip
 from safestart.runtime.kernels import compiled
 
@@ -96,8 +97,8 @@ def flight_minima(
             furthest, fastest = max(furthest, far), max(fastest, fast)
             c, sn = cosine[k, s], sine[k, s]
             vx, vy = flown[d] + rate * flown[1], flown[d + 1] - rate * flown[0]
-            x, y = c * flown[0] + sn * flown[1], c * flown[1] - sn * flown[0]
-            wx, wy = c * vx + sn * vy, c * vy - sn * vx
+            x, y = into_body(c, sn, flown[0], flown[1])
+            wx, wy = into_body(c, sn, vx, vy)
             for f in range(faces):
                 place = normals[f, 0] * x + normals[f, 1] * y
                 speed = normals[f, 0] * wx + normals[f, 1] * wy

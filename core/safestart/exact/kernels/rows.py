@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from safestart.attitude.turn_kernel import out_of_body
 from safestart.dynamics import cwh
 from safestart.runtime.kernels import compiled
 
@@ -61,8 +62,8 @@ def face_rows(
         _moves(mean_motion, times[row] - last * dt, phi, push)
         angle, face = phase + rate * times[row], faces[row]
         c, s = math.cos(angle), math.sin(angle)
-        normal[0] = -(c * normals[face, 0] - s * normals[face, 1])
-        normal[1] = -(s * normals[face, 0] + c * normals[face, 1])
+        x, y = out_of_body(c, s, normals[face, 0], normals[face, 1])
+        normal[0], normal[1] = -x, -y
         if d == 3:
             normal[2] = -normals[face, 2]
         for j in range(size):

@@ -10,6 +10,7 @@ from safestart.exact.decide import answer_of, outside
 from safestart.exact.search import Search
 from safestart.exact.space.demanded import decide_demanded
 from safestart.exact.space.question import SpaceQuestion
+from safestart.exact.space.start_box import decide_from_box
 from safestart.exact.space.watch import SpaceWatch, space_watch_of
 from safestart.exact.synchronize import ended
 from safestart.model.scenario import Floats, number
@@ -22,7 +23,8 @@ def decide_in_space(
 
     The answer's ``thrust`` is (N, channels): m/s^2 in LVLH axes for a ball, else points of the unit set (shares of the
     half-widths of a box in its own axes, throttles of thrusters). With demands see
-    :mod:`safestart.exact.space.demanded`. Raises ``InvalidInput`` for an invalid state.
+    :mod:`safestart.exact.space.demanded`, with unknowns :mod:`safestart.exact.space.start_box`. Raises
+    ``InvalidInput`` for an invalid state.
     """
     state = np.asarray(state, dtype=np.float64)
     if state.shape != (6,) or not np.isfinite(state).all() or float(np.abs(state).max()) > 1e6:
@@ -38,6 +40,8 @@ def decide_in_space(
             return outside(search), None
         return answer_of(search, search.narrow(tolerance, verdict_only=verdict_only)), search.thrust
 
+    if question.unknowns:
+        return decide_from_box(question, state, np.zeros(6), tolerance=tolerance)
     if question.demands:
         return decide_demanded(question, state, solve)
     return solve(space_watch_of(question))[0]

@@ -16,6 +16,7 @@ from safestart.exact.answer import Answer, Verdict
 from safestart.exact.prove import GO_STAND_BACK_M, NO_GO_STAND_BACK_M, limits_of, refuted_by
 from safestart.exact.space.demands import PLUME, VIEW, Demands
 from safestart.exact.space.question import SpaceQuestion
+from safestart.exact.space.unknowns import Unknowns
 from safestart.model.scenario import Floats
 from safestart.proofs.space.statement import SCHEMA
 from safestart.proofs.statement import digest_of
@@ -87,11 +88,25 @@ def question_of(question: SpaceQuestion) -> dict[str, Any]:
         "thrust": thrust,
         **limits_of(question.goal, (question.goal and question.goal.hold) or (), question.speed_limit),
         **_demands(question.demands),
+        **_unknowns(question.unknowns),
+    }
+
+
+def _unknowns(unknowns: Unknowns) -> dict[str, Any]:
+    if not unknowns:
+        return {}
+    return {
+        "unknowns": {
+            "attitude_rad": float(unknowns.angle),
+            "rate_rad_s": float(unknowns.rate),
+            "inertia_share": float(unknowns.inertia),
+            "disturbance_m_s2": float(unknowns.disturbance),
+        }
     }
 
 
 def _demands(demands: Demands) -> dict[str, Any]:
-    """Those that are asked, as they are: not the convex parts by which they were answered."""
+    """The demands as they are asked, not the convex parts by which they were answered."""
     out: dict[str, Any] = {}
     if demands.keep_outs:
         out["keep_outs"] = [

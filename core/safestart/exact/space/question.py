@@ -19,6 +19,7 @@ from scipy.optimize import linprog
 
 from safestart.attitude.in_lvlh import InLvlh
 from safestart.attitude.table import Table
+from safestart.attitude.torque_free import TorqueFree
 from safestart.attitude.turning import SmoothAttitude
 from safestart.constraints.thrust_limit import Frame, ThrustLimit, Vector
 from safestart.dynamics.cwh import Cwh
@@ -28,6 +29,7 @@ from safestart.errors import invalid
 from safestart.exact.limits import AT_END, SPEED
 from safestart.exact.question import Goal, Spanned, check_steps
 from safestart.exact.space.demands import NONE, Demands
+from safestart.exact.space.unknowns import KNOWN, Unknowns
 from safestart.model.orbit import KeplerOrbit
 from safestart.model.scenario import MAX_RANGE, CorridorShape, Floats, number
 from safestart.optim.thrust_shapes import BALL, CUBE, SIMPLEX, UnitSet
@@ -55,7 +57,8 @@ class SpaceQuestion(Spanned):
 
     ``goal`` makes it `synchronize`: at T, any number of intervals from ``goal.earliest`` to ``steps``, the chaser is at
     rest against the turning body in a ball around ``goal.hold`` (body frame, m). ``speed_limit`` (m/s) holds for the
-    LVLH velocity at all times. ``demands`` hold beside the faces; no linear program answers them.
+    LVLH velocity at all times. ``demands`` hold beside the faces; no linear program answers them. ``unknowns`` make it
+    a question about all members, for `stay` alone and thrusts whose set does not turn with the body.
     """
 
     orbit: KeplerOrbit
@@ -67,6 +70,7 @@ class SpaceQuestion(Spanned):
     goal: Goal | None = None
     speed_limit: float | None = None
     demands: Demands = NONE
+    unknowns: Unknowns = KNOWN
     dimensions: ClassVar[int] = 3
 
     def __post_init__(self) -> None:
@@ -87,6 +91,21 @@ class SpaceQuestion(Spanned):
             raise invalid("attitude", "one seen from LVLH on the question's orbit", "another orbit")
         if isinstance(inner, Table):
             inner.reaches(self.horizon)
+        if self.unknowns:
+            self._check_unknowns(inner)
+
+    def _check_unknowns(self, inner: SmoothAttitude) -> None:
+        if not self.plain:
+            asked = ", ".join(self.demands.names) or (SPEED if self.goal is None else self.kind)
+            required = (
+                "stay without a speed limit or demands where attitude, rate, inertia or forces are not known"
+            )
+            raise invalid("question", required, asked)
+        if self.thrust.kind != "ball" and self.thrust.frame == "body" and self.unknowns.turns:
+            required = "axes of LVLH where the attitude is not known: the set of thrusts would turn with it"
+            raise invalid("thrust.frame", required, "body")
+        if self.unknowns.inertia and not isinstance(inner, TorqueFree):
+            raise invalid("inertia", "0 unless the attitude is torque_free", self.unknowns.inertia)
 
     @property
     def plain(self) -> bool:

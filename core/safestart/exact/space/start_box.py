@@ -1,22 +1,26 @@
-"""`stay` from a box of starts: one thrust history for all of them, or none for any.
+"""`stay` for all members of a set: one thrust history for all of them, or none for any start.
 
 Every distance is affine in the start, so of a box c +- h the worst start takes sum_i |start_i| h_i from a row, and the
-best adds as much. GO: one history keeps every row less that. NO_GO: no history does with the start free in the box.
+best adds as much. What is unknown beside the start takes what :mod:`safestart.exact.space.tightened` says. GO: one
+history keeps every row less that. NO_GO: no history does, for what is stated, with the start free in the box.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
 
 from safestart.errors import invalid
-from safestart.exact.answer import GUARD, TOLERANCE, Answer, Verdict
+from safestart.exact.answer import BETWEEN, GUARD, TOLERANCE, Answer, Verdict
 from safestart.exact.norm_rows import Blocks
 from safestart.exact.search import Search
 from safestart.exact.space.question import SpaceQuestion
+from safestart.exact.space.tightened import TightenedWatch
+from safestart.exact.space.unknowns import KNOWN
 from safestart.exact.space.watch import SpaceWatch, space_watch_of
 from safestart.exact.watch import Cuts, Ints, Minima
 from safestart.model.scenario import Floats, number
@@ -97,11 +101,12 @@ class _Best(_Watched):
 def decide_from_box(
     question: SpaceQuestion, state: Floats, half: Floats, *, tolerance: float = TOLERANCE
 ) -> Answer:
-    """Answer `stay` for every start of ``state`` +- ``half`` (6,): LVLH position (m) and velocity (m/s).
+    """Answer `stay` for every start of ``state`` +- ``half`` (6,), LVLH position (m) and velocity (m/s), and unknowns.
 
-    GO: ``thrust`` keeps ``lower`` from every start. NO_GO: ``multipliers`` show that from no start any history keeps
-    more than ``upper``. UNDECIDED otherwise, mostly because the verdict depends on the start. Raises ``InvalidInput``
-    for another question and half-widths out of range.
+    GO: ``thrust`` keeps ``lower`` from every start, for every member of the question's unknowns. NO_GO: ``multipliers``
+    show that from no start any history keeps more than ``upper``, were the unknowns 0. UNDECIDED otherwise, mostly
+    because the verdict depends on the member. Raises ``InvalidInput`` for another question and half-widths out of
+    range.
     """
     state, half = np.asarray(state, dtype=np.float64), np.asarray(half, dtype=np.float64)
     if not question.plain:
@@ -112,12 +117,15 @@ def decide_from_box(
         raise invalid("half_width", "six numbers", half.shape)
     for value in half.tolist():
         number("half_width", value, 0.0, MAX_HALF_WIDTH)
-    watch = space_watch_of(question)
-    worst = Search(_Worst(watch, half), state)
-    if worst.distance_now >= -GUARD:
-        worst.narrow(tolerance)
-        if worst.lower > GUARD:
-            return Answer(Verdict.GO, worst.lower, worst.lower, worst.upper, worst.thrust, (), worst.rounds)
+    watch = space_watch_of(replace(question, unknowns=KNOWN))
+    tight = TightenedWatch(space_watch_of(question), state) if question.unknowns else watch
+    worst = Search(_Worst(tight, half), state)
+    bounded = not isinstance(tight, TightenedWatch) or math.isfinite(tight.widest)
+    if bounded and worst.distance_now >= -GUARD:
+        worst.narrow(max(tolerance, tight.reserve(half)) if isinstance(tight, TightenedWatch) else tolerance)
+        lower = worst.lower - (tight.reserve(half) if isinstance(tight, TightenedWatch) else 0.0)
+        if lower > GUARD:
+            return Answer(Verdict.GO, lower, lower, worst.upper, worst.thrust, (), worst.rounds)
     best = Search(_Best(watch, half), state)
     if best.distance_now < -GUARD:
         now = best.distance_now
@@ -127,8 +135,13 @@ def decide_from_box(
     if best.upper < -GUARD and best.evidence is not None:
         proof = best.evidence.multipliers(watch.names)
         return Answer(Verdict.NO_GO, best.upper, -math.inf, best.upper, None, proof, rounds)
-    reason = "no thrust history stays from every start of the box, and one stays from some of them"
-    if not (worst.distance_now < -GUARD or worst.upper < -GUARD) or best.lower <= GUARD:
-        reason = "0 lies between the bounds"
     upper = min(worst.upper, worst.distance_now)
+    if best.lower <= GUARD:
+        reason = BETWEEN
+    elif isinstance(tight, TightenedWatch):
+        reason = f"a thrust history keeps {best.lower:.2f} m where all is as stated; {tight.told}"
+    elif worst.distance_now < -GUARD or worst.upper < -GUARD:
+        reason = "no thrust history stays from every start of the box, and one stays from some of them"
+    else:
+        reason = BETWEEN
     return Answer(Verdict.UNDECIDED, math.nan, worst.lower, upper, None, (), rounds, reason)

@@ -19,7 +19,7 @@ from safestart.constraints.cubic import dips
 from safestart.exact import speed
 from safestart.exact.limits import AT_END, Limit
 from safestart.exact.norm_rows import Blocks, stacked
-from safestart.exact.space.bends import of_distance, of_speed, rates_of
+from safestart.exact.space.bends import Rates, of_distance, of_speed, rates_of
 from safestart.exact.space.limits import limit_at, speed_room
 from safestart.exact.space.question import SpaceQuestion
 from safestart.exact.watch import Cuts, Ints, Minima
@@ -177,6 +177,10 @@ class SpaceWatch:
         span, push = self._length[:, None, None], self.accelerations(thrust)
         value = np.stack([distance[self._first], distance[self._last]], axis=1)
         slope = -span * np.stack([begin, end], axis=1)
+        taken = self._taken(position)
+        if taken is not None:
+            value -= np.stack([taken[self._first], taken[self._last]], axis=1)
+            slope -= (taken[self._last] - taken[self._first])[:, None]
         limit = self.question.speed_limit
         if limit is not None:
             left, rate = speed_room(limit, self._pulls, flown, push[self._interval])
@@ -196,6 +200,7 @@ class SpaceWatch:
         rates = rates_of(self.question.orbit, 0.5 * self._longest, furthest, fastest, most)
         share = self._longest**4 / 384.0
         lowest = float(low[:, : len(self.names)].min()) - of_distance(rates, turning) * share
+        lowest -= self._taken_between(position, rates)
         if limit is not None:
             slowest = float(low[:, -1].min()) - of_speed(rates) * share
             lowest = min(lowest, float(speed.metres(limit, np.array(slowest))))
@@ -206,16 +211,29 @@ class SpaceWatch:
             )
         return Minima(lowest, np.minimum(times, self.question.horizon), face, low[index, face])
 
+    def _taken(self, position: Floats) -> Floats | None:  # noqa: ARG002
+        """What is taken from the distances (P, F) at the samples, m; a chord bounds it between them. None: nothing."""
+        return None
+
+    def _taken_between(self, position: Floats, rates: Rates) -> float:  # noqa: ARG002
+        """By how much more is taken between samples, m."""
+        return 0.0
+
     def cuts(self, times: Floats, faces: Ints) -> Cuts:
         """Rows of f_i(t) = offset + start . x0 + thrust . w for pairs of time (J,) in [0, T] and face (J,)."""
+        normals, offset = self._across(times, faces)
+        start, thrust = self.prediction.position_rows(times, -normals)
+        return Cuts(times, faces, offset, start, self._by_channels(thrust))
+
+    def _across(self, times: Floats, faces: Ints) -> tuple[Floats, Floats]:
+        """Unit normals (J, 3) in LVLH axes and offsets (J,) of faces (J,) at times (J,)."""
         own, offset = self._planes(times, faces)
-        directions = -own
+        normals = own.copy()
         body = np.nonzero(self._in_body[faces])[0]
         if len(body):
             turn = self.question.attitude.rotation(times[body])
-            directions[body] = (directions[body][:, None, :] @ turn)[:, 0]
-        start, thrust = self.prediction.position_rows(times, directions)
-        return Cuts(times, faces, offset, start, self._by_channels(thrust))
+            normals[body] = (own[body][:, None, :] @ turn)[:, 0]
+        return normals, offset
 
     def position_rows(self, time: float, directions: Floats) -> tuple[Floats, Floats]:
         """Of the position at a time (s) along directions (J, 3), LVLH: rows over start (J, 6) and points (J, N C)."""

@@ -47,7 +47,8 @@ def _pairs(count: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
 def timed_clearance(
     centre: Floats, gens: Floats, box: Floats, clock: Floats, clock_gens: Floats, window: tuple[float, float]
 ) -> Floats:
-    """The same for only those members whose clock ``clock`` (N,) + ``clock_gens`` (N, m) . w lies in ``window``.
+    """As :func:`clearance`, for those members alone whose clock ``clock`` (N,) + ``clock_gens`` (N, m) . w lies
+    in ``window``.
 
     Members of the third dimension: (x, y, clock). The window is exact, not an over-approximation by a box.
     """

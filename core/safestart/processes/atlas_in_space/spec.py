@@ -7,6 +7,7 @@ from typing import Any, Self
 from pydantic import Field, model_validator
 
 from safestart.model.scenario import Rest
+from safestart.papers.envisat import TUMBLING
 from safestart.processes.base import ProcessSpec, WireModel
 from safestart.processes.start_in_space.parts import Vector
 from safestart.processes.start_in_space.plane_input import PlaneInput, coordinate_planes
@@ -93,11 +94,7 @@ class AtlasInSpaceOutputs(WireModel):
 
 
 EXAMPLE: dict[str, Any] = {
-    "attitude": {
-        "kind": "torque_free",
-        "inertia_kg_m2": [[17023, 0, 0], [0, 124826, 0], [0, 0, 129112]],
-        "body_rate_deg_s": [0.3, 0.5, -2.0],
-    },
+    "attitude": TUMBLING,
     "a_max_m_s2": 0.1,
     "size_m": 200,
     "gap": 0.05,

@@ -13,7 +13,7 @@ from matplotlib.patches import Circle
 from safestart.collision_avoidance.encounters.adversary import TITLES as ADVERSARIES
 from safestart.collision_avoidance.encounters.pilots import TITLES as PILOTS
 from safestart.model.scenario import Floats
-from safestart.processes.collision_avoidance.flown import Flown
+from safestart.processes.collision_avoidance.flown import Encounters
 from safestart.processes.collision_avoidance.spec import CollisionAvoidanceInputs
 from safestart.processes.plotting import drawn_as, figure
 
@@ -59,7 +59,7 @@ def matrix_picture(rows: Sequence[dict[str, Any]]) -> Figure:
 
 
 @drawn_as("flights.png")
-def flights_picture(inputs: CollisionAvoidanceInputs, flown: Flown) -> Figure:
+def flights_picture(inputs: CollisionAvoidanceInputs, flown: Encounters) -> Figure:
     """The closest flights of some pilots from the same set of starts, and separation over time under supervision."""
     around = [name for name in flown.paths if name != "supervisor"]
     supervised = "supervisor" in flown.paths

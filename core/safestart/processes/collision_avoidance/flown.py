@@ -33,7 +33,7 @@ RANDOM_HOLD_S = 10.0
 
 
 @dataclass
-class Flown:
+class Encounters:
     """Rows for the wire, paths (K, n, 4) for the pictures by name, and what the supervisor did."""
 
     rows: list[dict[str, Any]] = field(default_factory=list)
@@ -73,9 +73,11 @@ class Flown:
         )
 
 
-def encounters(inputs: CollisionAvoidanceInputs, observer: Observer, slot: Slot, context: Context) -> Flown:
+def encounters(
+    inputs: CollisionAvoidanceInputs, observer: Observer, slot: Slot, context: Context
+) -> Encounters:
     """Fly all encounters of the inputs."""
-    flown = Flown()
+    flown = Encounters()
     quiet = Context(cancelled=context.cancelled)
     game, count, seed = observer.game, inputs.encounters, inputs.seed
     guards = Guards(observer.tube.grid_error_m, CLEARANCE * game.keep_out_m)
@@ -128,7 +130,7 @@ def _supervised(
     slot: Slot,
     guards: Guards,
     hold: int,
-    flown: Flown,
+    flown: Encounters,
     quiet: Context,
 ) -> None:
     """Flights towards a close pass: first Player 2 acts, then the chaser must return to its slot."""

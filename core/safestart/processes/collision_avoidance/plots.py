@@ -150,7 +150,7 @@ def capture_picture(inputs: CollisionAvoidanceInputs, taken: Captured) -> Figure
 
 @drawn_as("capture_space.png")
 def capture_space_picture(inputs: CollisionAvoidanceInputs, game: Game, slot: Slot) -> Figure:
-    """The same over positions and tangential speed (Fig. 4): outlines at some tangential speeds."""
+    """Draw the capture set over positions and tangential speed (Fig. 4): outlines at some tangential speeds."""
     count = len(inputs.capture_radial_m_s)
     drawing = figure(0.8 + 4.4 * count, 4.8)
     x, y = (slot.centre[k] + np.linspace(-HALF_WIDTH_M, HALF_WIDTH_M, 41) for k in range(2))

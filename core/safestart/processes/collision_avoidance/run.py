@@ -20,7 +20,7 @@ from safestart.model.metrics import wilson
 from safestart.processes.base import ProcessOutput
 from safestart.processes.collision_avoidance.captured import Captured, captured
 from safestart.processes.collision_avoidance.encounter_plots import flights_picture, matrix_picture
-from safestart.processes.collision_avoidance.flown import Flown, encounters
+from safestart.processes.collision_avoidance.flown import Encounters, encounters
 from safestart.processes.collision_avoidance.judged import judge
 from safestart.processes.collision_avoidance.plots import (
     capture_picture,
@@ -88,7 +88,7 @@ def run(inputs: CollisionAvoidanceInputs, context: Context) -> ProcessOutput:
     taken = captured(inputs, game, slot, context.part(0.4, 0.1, 1.0, "capture set"))
     orbit = 2.0 * math.pi / game.mean_motion if game.mean_motion > 0.0 else ORBIT_WITHOUT_ROTATION_S
     escapes = [escape(game, mode, np.zeros(6), inputs.burn_s, orbit) for mode in MODES]
-    flown = Flown()
+    flown = Encounters()
     if not tube.failure and inputs.players == "avoid":
         flown = encounters(inputs, Observer(game, tube), slot, context.part(0.5, 0.4, 1.0, "encounters"))
     judged = judge(inputs, tube, game_of(inputs, in_space=True), context.part(0.9, 0.05, 1.0, "states"))
@@ -143,7 +143,7 @@ def _arrays(tube: Tube) -> dict[str, Any]:
     return {**axes, "value_m": tube.values[-1], "level_set_value_m": tube.raw[-1]}
 
 
-def _requirements(inputs: CollisionAvoidanceInputs, flown: Flown) -> list[dict[str, Any]]:
+def _requirements(inputs: CollisionAvoidanceInputs, flown: Encounters) -> list[dict[str, Any]]:
     def rows(starts: str, pilot: str | None = None, other: str | None = None) -> list[dict[str, Any]]:
         return [
             row

@@ -11,6 +11,11 @@ from safestart.attitude.spin import Spin
 from safestart.interchange.flights import FlightCourses, courses_of
 
 
+def kept_courses(inputs: dict[str, Any], outputs: dict[str, Any]) -> FlightCourses | None:
+    """:func:`courses` of a stored result; None for one from before flights had velocities."""
+    return courses(inputs, outputs) if "lvlh_m_s" in outputs else None
+
+
 def courses(inputs: dict[str, Any], outputs: dict[str, Any]) -> FlightCourses:
     """The courses of both craft; raises ``InvalidInput`` for a flight without a mean motion."""
     times = np.array(outputs["time_s"])

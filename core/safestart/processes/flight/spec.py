@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from safestart.model.scenario import Rest
 from safestart.processes.base import ProcessSpec, Table, WireModel
@@ -13,6 +13,8 @@ from safestart.processes.go_no_go.question_fields import QuestionKind
 from safestart.processes.go_no_go.spec import StateInput
 from safestart.processes.views import Column, Findings, Layer, Picture
 from safestart.processes.wire import Horizon, PlanarOrSolid, ScenarioInput
+
+_IN_SPACE = {"starts", "position_m", "velocity_m_s", "attitude", "orbit", "thrust"}
 
 
 class FlightInputs(ScenarioInput):
@@ -27,6 +29,20 @@ class FlightInputs(ScenarioInput):
     )
     horizon_s: Horizon = Field(60.0, description="How long to stay in the corridor, s.")
     within_s: Horizon = Field(200.0, description="Latest end of synchronize, s.")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _in_the_plane_s_corridor(cls, values: Any) -> Any:
+        """A question in space is named with the process that flies it."""
+        if isinstance(values, dict):
+            start = values.get("start")
+            asked = sorted(_IN_SPACE & {*values, *(start if isinstance(start, dict) else ())})
+            if asked:
+                raise ValueError(
+                    "start: required x_m and y_m, at rest beside a steady spin about the orbit's normal (process "
+                    f"flight-in-space flies any other start, attitude, orbit and thrust), received {', '.join(asked)}"
+                )
+        return values
 
 
 class FlightOutputs(WireModel):
@@ -64,6 +80,7 @@ SPEC = ProcessSpec(
     outputs=FlightOutputs,
     kernels=("exact answers",),
     run="safestart.processes.flight.run:run",
+    courses="safestart.processes.flight.files:kept_courses",
     light=True,
     cost=_cost,
     tables=(Table("flight", ("time_s", "body_m", "lvlh_m", "lvlh_m_s", "thrust_m_s2", "distance_m")),),

@@ -13,7 +13,7 @@ from matplotlib.patches import Circle
 
 from safestart.dynamics.cwh import transition_matrix
 from safestart.hopping.approach import Approach, line
-from safestart.hopping_flights.fly import Flown, World
+from safestart.hopping_flights.fly import HoppingFlight, World
 from safestart.missed_burn.prove import Proof
 from safestart.model.scenario import Floats
 from safestart.processes.hopping.spec import HoppingInputs
@@ -70,7 +70,7 @@ def plan_picture(inputs: HoppingInputs, plan: Approach, proof: Proof) -> Figure:
 
 @drawn_as("flights.png")
 def flights_picture(
-    inputs: HoppingInputs, world: World, flights: Sequence[Flown], breach: dict[str, Any]
+    inputs: HoppingInputs, world: World, flights: Sequence[HoppingFlight], breach: dict[str, Any]
 ) -> Figure:
     """Left: approaches flown. Right: how near an abort after each hop would come."""
     drawing = figure(12.0, 5.2)

@@ -12,7 +12,7 @@ from safestart.campaign.records import MEDIA_TYPE
 from safestart.control.hopping import Hopping
 from safestart.hopping.approach import Approach
 from safestart.hopping.barrier import Noise
-from safestart.hopping_flights.fly import Flown, World, fly
+from safestart.hopping_flights.fly import HoppingFlight, World, fly
 from safestart.missed_burn.document import document_of
 from safestart.missed_burn.earth import Earth
 from safestart.missed_burn.plan import Errors, Plan, Question
@@ -62,12 +62,12 @@ def shard(part: dict[str, Any], context: Context) -> Part:
     return study_of(inputs).simulated(part, simulate, context, "approach")
 
 
-def flown(world: World, case: Case, steer: Hopping, *, aborts: bool = True) -> Flown:
+def flown(world: World, case: Case, steer: Hopping, *, aborts: bool = True) -> HoppingFlight:
     """One approach of the study; its numbers depend on seed and case alone."""
     return fly(world, case.generator(), steer, aborts=aborts)
 
 
-def outcome(world: World, flight: Flown) -> dict[str, Any]:
+def outcome(world: World, flight: HoppingFlight) -> dict[str, Any]:
     """What is kept of an approach."""
     entered = flight.closest < world.keep_out
     return {

@@ -14,7 +14,7 @@ from safestart.missed_burn.document import document_of
 from safestart.missed_burn.earth import Earth
 from safestart.missed_burn.plan import Burn, Errors, Failures, Plan, Question
 from safestart.missed_burn.prove import Proof, Verdict, greatest_scale, prove
-from safestart.missed_burn.replay import Flown
+from safestart.missed_burn.replay import MemberFlight
 from safestart.missed_burn.zone import POINT, Zone
 from safestart.processes.base import Artifact, ProcessOutput
 from safestart.processes.passive_abort.filed import left_out, resolved
@@ -180,7 +180,7 @@ def _failure(kind: str) -> str:
     return {"start": "missed", "made": "missed", "cut": "cut short"}.get(kind, kind)
 
 
-def flown_document(flown: Flown, question: Question) -> dict[str, Any]:
+def flown_document(flown: MemberFlight, question: Question) -> dict[str, Any]:
     """A counter-example on the wire."""
     missed = flown.kind in ("start", "made")
     return {

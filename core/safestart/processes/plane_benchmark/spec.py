@@ -7,6 +7,7 @@ from typing import Annotated, Any
 from pydantic import Field, model_validator
 
 from safestart.engines.registry import ENGINES, engine_spec, why_not_in_space
+from safestart.papers.envisat import TUMBLING
 from safestart.processes.base import ProcessSpec, WireModel
 from safestart.processes.start_in_space.plane_input import PlaneAxis, PlaneInput
 from safestart.processes.start_in_space.space_scenario import SpaceScenario
@@ -127,11 +128,7 @@ SPEC = ProcessSpec(
     ),
     extensions={"safestart:engines": [engine_spec(spec.name).document() for spec in IN_SPACE]},
     example={
-        "attitude": {
-            "kind": "torque_free",
-            "inertia_kg_m2": [[17023, 0, 0], [0, 124826, 0], [0, 0, 129112]],
-            "body_rate_deg_s": [0.3, 0.5, -2.0],
-        },
+        "attitude": TUMBLING,
         "a_max_m_s2": 0.1,
         "across": 11,
         "along": 11,

@@ -18,13 +18,17 @@ _PARTS = 4
 
 
 def curves(question: SpaceQuestion, state: Floats, history: Floats) -> dict[str, Any]:
-    """:class:`~safestart.processes.start_in_space.spec.SpaceFlight` from ``state`` (6,), LVLH, under ``history``.
+    """:class:`~safestart.processes.start_in_space.flight_output.SpaceFlight` from ``state`` (6,), LVLH.
 
     ``history`` (k, channels) is an answer's thrust: the flight ends with it.
     """
-    count = len(history)
-    watch = space_watch_of(question).until(count)
-    thrust = watch.accelerations(history)
+    watch = space_watch_of(question).until(len(history))
+    return flown_curves(question, state, watch.accelerations(history))
+
+
+def flown_curves(question: SpaceQuestion, state: Floats, thrust: Floats) -> dict[str, Any]:
+    """The same under ``thrust`` (k, 3), LVLH, m/s^2, each held over an interval."""
+    count = len(thrust)
     flown = prediction_of(question.motion, question.dt, count, 3, _PARTS).flight(state, thrust)
     states = np.concatenate([flown[:, :-1].reshape(-1, 6), flown[-1, -1:]])
     times: Floats = question.dt / _PARTS * np.arange(len(states), dtype=np.float64)
@@ -48,7 +52,7 @@ def curves(question: SpaceQuestion, state: Floats, history: Floats) -> dict[str,
 
 
 def turning(question: SpaceQuestion) -> dict[str, Any]:
-    """:class:`~safestart.processes.start_in_space.spec.Turning` at the ends of every interval."""
+    """:class:`~safestart.processes.start_in_space.flight_output.Turning` at the ends of every interval."""
     times: Floats = question.dt * np.arange(question.steps + 1, dtype=np.float64)
     return {
         "time_s": times.tolist(),

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-_ENVISAT = [[17023.3, 397.1, -2171.4], [397.1, 124825.7, 344.2], [-2171.4, 344.2, 129112.2]]
-"""kg m^2; Envisat's orbit is nearly circular at about 770 km."""
+from safestart.papers.envisat import INERTIA_KG_M2 as _ENVISAT
+
 _ENVISAT_ORBIT = {"semi_major_axis_m": 7143500.0, "eccentricity": 0.00012, "true_anomaly_deg": 90.0}
+"""Nearly circular at about 770 km."""
 _PAPER_ORBIT = {"semi_major_axis_m": 7144800.0, "eccentricity": 0.0, "true_anomaly_deg": 0.0}
 _TRANSFER = {"semi_major_axis_m": 24396000.0, "eccentricity": 0.7283}
 _MOLNIYA = {"semi_major_axis_m": 26600000.0, "eccentricity": 0.74}
@@ -35,6 +36,23 @@ MISSIONS: dict[str, dict[str, Any]] = {
         },
         "orbit": _ENVISAT_ORBIT,
         "a_max_m_s2": 0.1,
+    },
+    # What observers give: attitude to a degree, rate to 0.02 deg/s, moments to 1 %; 1e-4 m/s^2 of what else acts.
+    "envisat-estimated": {
+        "starts": [{"position_m": [0, 30, 0]}],
+        "attitude": {
+            "kind": "torque_free",
+            "inertia_kg_m2": _ENVISAT,
+            "body_rate_deg_s": [0.0, 0.0, -2.67],
+        },
+        "orbit": _ENVISAT_ORBIT,
+        "a_max_m_s2": 0.1,
+        "position_half_width_m": 0.5,
+        "velocity_half_width_m_s": 0.01,
+        "attitude_half_angle_deg": 1,
+        "body_rate_half_width_deg_s": 0.02,
+        "inertia_half_width": 0.01,
+        "disturbance_m_s2": 1e-4,
     },
     "envisat-tumbling": {
         "starts": [{"position_m": [0, 25, 0], "frame": "body"}],
@@ -66,7 +84,8 @@ MISSIONS: dict[str, dict[str, Any]] = {
         "thrust": {"kind": "box", "a_max_m_s2": [0.075, 0.075, 0.075], "frame": "lvlh"},
     },
     # A CZ-3B third stage turns once in 117.724 s (Zhao et al., Adv. Space Res. 65, 2020); here in a flat spin.
-    # Inertia of a thin cylinder of 2740 kg, 12.4 m long, 3 m wide, along y; on its way to a ring at 21 500 km.
+    # Inertia of a thin-walled cylinder along y of the stage's size, 12.4 m by 3 m (Wikipedia, Long March 3B: 12.375 m,
+    # 3.00 m). Assumed: 2740 kg, of which no answer depends (ratios of moments count), and the way to 21 500 km.
     "rocket-body": {
         "starts": [{"position_m": [2, 25, 1], "velocity_m_s": [0, 0, 0], "frame": "body"}],
         "attitude": {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any, Literal
 
 from pydantic import Field
@@ -11,14 +12,13 @@ from safestart.processes.base import WireModel
 from safestart.processes.flat import Flat, Parameter
 from safestart.processes.go_no_go.question_fields import QuestionKind
 from safestart.processes.sharding import load
+from safestart.processes.start_in_space.flight_output import SpaceFlight, Turning
 from safestart.processes.start_in_space.parts import FiveFaces, SpaceStart
 from safestart.processes.start_in_space.spec import (
     SPEC,
     Method,
-    SpaceFlight,
     SpaceInputs,
     SpaceOutputs,
-    Turning,
 )
 from safestart.processes.tracking_mpc.controller_input import TrackingAnswer
 from safestart.runtime.progress import Context
@@ -68,7 +68,33 @@ def parse(values: Mapping[str, Any]) -> SpaceInputs:
     return (_WHOLE if "corridor" in values else _FIVE).parse(values)
 
 
-def document_of_one(inputs: SpaceInputs, context: Context) -> dict[str, Any]:
-    """``SpaceAnswer`` for the only start."""
-    found: dict[str, Any] = load(SPEC.run)(inputs, context).document
-    return found | {name: found[name] and found[name][0] for name in _ARRAYS}
+@dataclass(frozen=True, slots=True)
+class OneInSpace:
+    """The question about one start in space; see ``OneStart`` of :mod:`safestart.processes.door`."""
+
+    inputs: SpaceInputs
+
+    def cost(self) -> float:
+        """Seconds of one core, roughly."""
+        return SPEC.cost(self.inputs)
+
+    def at_once(self, context: Context) -> dict[str, Any] | None:  # noqa: ARG002
+        """Nothing is known at once: every answer solves a program."""
+        return None
+
+    def document(self, context: Context) -> dict[str, Any]:
+        """``SpaceAnswer`` for the only start."""
+        found: dict[str, Any] = load(SPEC.run)(self.inputs, context).document
+        return found | {name: found[name] and found[name][0] for name in _ARRAYS}
+
+    def sound(self) -> bool:
+        """True: no method says GO without a proof."""
+        return True
+
+    def with_proof(self) -> OneInSpace:
+        """Ask for the proof, too."""
+        return OneInSpace(self.inputs.model_copy(update={"proofs": True}))
+
+    def remarks(self, document: Mapping[str, Any]) -> list[str]:  # noqa: ARG002
+        """Say nothing more: the reason says it all."""
+        return []

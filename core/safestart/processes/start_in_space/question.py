@@ -16,6 +16,7 @@ from safestart.constraints.thrust_limit import ThrustLimit, ball
 from safestart.errors import InvalidInput, invalid
 from safestart.exact.question import Goal
 from safestart.exact.space.question import Face, SpaceQuestion, five_faces, starts_in_lvlh
+from safestart.exact.space.unknowns import Unknowns
 from safestart.model.orbit import KeplerOrbit
 from safestart.model.scenario import Floats
 from safestart.processes.start_in_space.demand_parts import demands_of
@@ -24,6 +25,7 @@ from safestart.processes.start_in_space.parts import (
     BoxThrust,
     EllipticOrbit,
     Faces,
+    SpaceStart,
     SpinAttitude,
     TorqueFreeAttitude,
 )
@@ -66,7 +68,18 @@ def question_of(inputs: SpaceInputs) -> SpaceQuestion:
             goal,
             inputs.speed_limit_m_s,
             demands,
+            unknowns_of(inputs),
         )
+
+
+def unknowns_of(inputs: SpaceInputs) -> Unknowns:
+    """What is not known beside the start, in SI units."""
+    return Unknowns(
+        math.radians(inputs.attitude_half_angle_deg),
+        math.radians(inputs.body_rate_half_width_deg_s),
+        inputs.inertia_half_width,
+        inputs.disturbance_m_s2,
+    )
 
 
 def stay_in(scenario: SpaceScenario, horizon_s: float) -> SpaceQuestion:
@@ -109,6 +122,7 @@ def _as_asked() -> Iterator[None]:
             "normal": "corridor.faces.normal",
             "offset": "corridor.faces.offset_m",
             "hold": "hold_m",
+            "inertia": "inertia_half_width",
         }
         field = str(error.field)
         place = "attitude.times_s" if field == "times" else places.get(field, field)
@@ -117,11 +131,16 @@ def _as_asked() -> Iterator[None]:
 
 def states_of(inputs: SpaceInputs, question: SpaceQuestion) -> Floats:
     """The starts (S, 6), LVLH, m and m/s."""
-    positions = np.array([start.position_m for start in inputs.starts])
-    velocities = np.array([start.velocity_m_s for start in inputs.starts])
+    return states_in(question, inputs.starts)
+
+
+def states_in(question: SpaceQuestion, starts: Sequence[SpaceStart]) -> Floats:
+    """Starts (S, 6), LVLH, m and m/s; raises ``InvalidInput`` for those too far or too fast."""
+    positions = np.array([start.position_m for start in starts])
+    velocities = np.array([start.velocity_m_s for start in starts])
     if float(np.abs(positions).max()) > 10_000.0 or float(np.abs(velocities).max()) > 1000.0:
         raise invalid("starts", "positions within 10 000 m and velocities within 1 000 m/s", "more")
-    body = np.array([start.frame == "body" for start in inputs.starts])
+    body = np.array([start.frame == "body" for start in starts])
     states: Floats = np.concatenate([positions, velocities], axis=1)
     if body.any():
         states[body] = starts_in_lvlh(question.attitude, positions[body], velocities[body])

@@ -112,8 +112,8 @@ def _sentence(answer: Answer, error: float, told: str) -> str:
 
 
 def _told(question: SpaceQuestion, half: Floats | None, answer: Answer) -> str:
-    if half is not None:
-        return _from_box(question, answer)
+    if half is not None or question.unknowns:
+        return _for_all(question, answer, box=half is not None)
     at_start = answer.multipliers[0].face if answer.multipliers else ""
     if at_start in question.demands.names:
         return f"the start itself is {-answer.upper:.2f} m on the wrong side of {at_start}"
@@ -132,13 +132,19 @@ def _demands_violated(question: SpaceQuestion, state: Floats) -> list[str]:
     return [name for name, room in question.demands.rooms(state[:3], body) if room < 0.0]
 
 
-def _from_box(question: SpaceQuestion, answer: Answer) -> str:
-    span = question.horizon
+def _for_all(question: SpaceQuestion, answer: Answer, *, box: bool) -> str:
+    """The verdict on a box of starts, or on all members of what is not known."""
+    span, from_box = question.horizon, ", from all starts of the box" if box else ""
+    members = ", for every member of what is not known" if question.unknowns else ""
     if answer.verdict is Verdict.UNDECIDED:
         return f"undecided: {answer.reason}"
     if answer.verdict is Verdict.GO:
-        return f"one thrust history keeps {answer.lower:.2f} m to every face for {span:g} s, from all starts of the box"
+        return (
+            f"one thrust history keeps {answer.lower:.2f} m to every face for {span:g} s{from_box}{members}"
+        )
+    of_all = "from no start of the box any" if box else "no"
+    stated = ", even where all is as given" if question.unknowns else ""
     return (
-        f"from no start of the box any thrust history stays for {span:g} s: each is at some time at least "
+        f"{of_all} thrust history stays for {span:g} s{stated}: each is at some time at least "
         f"{-answer.upper:.2f} m outside a face"
     )

@@ -7,10 +7,12 @@ from typing import Any, Literal
 from pydantic import Field, model_validator
 
 from safestart.engines.tracking_options import TrackingSettings
+from safestart.papers.envisat import TUMBLING
 from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.costs import FIRST_S, program_s
 from safestart.processes.go_no_go.question_fields import QuestionKind
 from safestart.processes.start_in_space.demand_parts import FieldOfViewInput, KeepOutInput, PlumeInput
+from safestart.processes.start_in_space.flight_output import SpaceFlight, Turning
 from safestart.processes.start_in_space.missions import MISSIONS
 from safestart.processes.start_in_space.parts import (
     SpaceStart,
@@ -23,6 +25,8 @@ from safestart.processes.wire import Horizon, Triple
 
 MOST_STARTS = 1000
 MOST_PROOFS = 100
+UNKNOWNS = ("attitude_half_angle_deg", "body_rate_half_width_deg_s", "inertia_half_width", "disturbance_m_s2")
+"""What may not be known beside the start."""
 Method = Literal["exact", "auto", "tracking"]
 
 
@@ -78,6 +82,35 @@ class SpaceInputs(SpaceScenario, _Starts):
     velocity_half_width_m_s: float = Field(
         0.0, ge=0, le=10, description="Half-width of the box in velocity, m/s (stay)."
     )
+    attitude_half_angle_deg: float = Field(
+        0.0,
+        ge=0,
+        le=30,
+        description="The attitude at t = 0 is within this angle of the one given, deg (stay). For this and the next "
+        "three GO is one thrust history for all, by a bound on how far the attitude and the chaser may be off; NO_GO "
+        "holds for what is given; else UNDECIDED. Starts in body axes are taken to LVLH by the attitude given.",
+    )
+    body_rate_half_width_deg_s: float = Field(
+        0.0,
+        ge=0,
+        le=5,
+        description="The angular velocity differs by at most this, deg/s: at t = 0 of a torque-free body, at all times "
+        "of a spin or a table (stay).",
+    )
+    inertia_half_width: float = Field(
+        0.0,
+        ge=0,
+        le=0.3,
+        description="Each moment about the body's axes (diagonal of inertia_kg_m2) differs by at most this share "
+        "(stay, torque_free).",
+    )
+    disturbance_m_s2: float = Field(
+        0.0,
+        ge=0,
+        le=1,
+        description="Any acceleration of the chaser up to this acts beside the thrust, m/s^2 (stay); no feedback is "
+        "assumed.",
+    )
     keep_outs: list[KeepOutInput] = Field(
         default_factory=list,
         max_length=8,
@@ -99,35 +132,16 @@ class SpaceInputs(SpaceScenario, _Starts):
         False, description="Return proof documents for `safestart verify`; at most 100 starts."
     )
 
+    @property
+    def uncertain(self) -> bool:
+        """Whether more than the start is not known."""
+        return any(getattr(self, name) > 0.0 for name in UNKNOWNS)
+
     @model_validator(mode="after")
     def _settings_of_its_method(self) -> SpaceInputs:
         if self.tracking is not None and self.method != "tracking":
             raise ValueError(f"tracking: only with method tracking, received {self.method}")
         return self
-
-
-class SpaceFlight(WireModel):
-    """Curves over ``time_s``, four instants for each 2 s; vectors as rows."""
-
-    time_s: list[float]
-    lvlh_m: list[list[float]] = Field(description="Position in LVLH, m.")
-    lvlh_m_s: list[list[float]] = Field(description="Velocity in LVLH, m/s.")
-    body_m: list[list[float]] = Field(description="Position in the body frame, m.")
-    body_m_s: list[list[float]] = Field(description="Velocity against the turning body, in its axes, m/s.")
-    attitude_wxyz: list[list[float]] = Field(description="From LVLH to the body, scalar first.")
-    thrust_m_s2: list[list[float]] = Field(description="Acceleration in LVLH, held over 2 s, m/s^2.")
-    distance_m: list[list[float]] = Field(description="Distance to each face, m; negative: outside.")
-    delta_v_m_s: float
-
-
-class Turning(WireModel):
-    """How the target turns over ``time_s``, every 2 s from 0 to the latest end."""
-
-    time_s: list[float]
-    attitude_wxyz: list[list[float]] = Field(description="From LVLH to the body, scalar first.")
-    rate_deg_s: list[list[float]] = Field(
-        description="Angular velocity against LVLH, in the body's axes, deg/s."
-    )
 
 
 class SpaceOutputs(WireModel):
@@ -182,6 +196,8 @@ def _cost(inputs: SpaceInputs) -> float:
     one = 3.0 * program_s(inputs.within_s if synchronize else inputs.horizon_s)
     if inputs.position_half_width_m or inputs.velocity_half_width_m_s:
         one *= 10.0
+    if inputs.uncertain:
+        one *= 5.0
     if inputs.keep_outs or inputs.field_of_view or inputs.plume:
         one *= 6.0
     flight = _FLIGHT_S if inputs.method == "tracking" else 0.0
@@ -258,11 +274,7 @@ SPEC = ProcessSpec(
     extensions={"safestart:examples": MISSIONS},
     example={
         "starts": [{"position_m": [2, 25, 1], "velocity_m_s": [0, 0, 0], "frame": "body"}],
-        "attitude": {
-            "kind": "torque_free",
-            "inertia_kg_m2": [[17023, 0, 0], [0, 124826, 0], [0, 0, 129112]],
-            "body_rate_deg_s": [0.3, 0.5, -2.0],
-        },
+        "attitude": TUMBLING,
         "orbit": {"mean_motion_rad_s": 0.00105},
         "thrust": {"kind": "ball", "a_max_m_s2": 0.1},
     },

@@ -19,7 +19,7 @@ from safestart.exact.space.question import SpaceQuestion, turned_from_y
 from safestart.exact.space.watch import space_watch_of
 from safestart.model.scenario import Floats
 from safestart.processes.start_in_space.parts import FiveFaces
-from safestart.processes.start_in_space.spec import SpaceInputs
+from safestart.processes.start_in_space.spec import UNKNOWNS, SpaceInputs
 from safestart.processes.tracking_mpc import flown_answer as flown
 from safestart.processes.wire import DT_S
 from safestart.tracking.take import Approach, take
@@ -43,6 +43,7 @@ def flights(inputs: SpaceInputs, question: SpaceQuestion) -> Flights:
         "hold_m": inputs.hold_m is None,
         "position_half_width_m": inputs.position_half_width_m == 0.0,
         "velocity_half_width_m_s": inputs.velocity_half_width_m_s == 0.0,
+        **{name: getattr(inputs, name) == 0.0 for name in UNKNOWNS},
     }
     for name, known in asks.items():
         if not known:

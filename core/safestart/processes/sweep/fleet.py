@@ -35,13 +35,13 @@ NODES = 6
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome(Record):
+class JudgedFlights(Record):
     """M flights without paths; ``verdict`` (M,) is the exact answer if the controller knew it, else UNASKED."""
 
     verdict: Verdicts = field(default_factory=lambda: np.empty(0, np.int8))
 
     @classmethod
-    def of(cls, flown: Record, verdict: Verdicts) -> Outcome:
+    def of(cls, flown: Record, verdict: Verdicts) -> JudgedFlights:
         """The flights, with the controller's verdicts on the starts."""
         return cls(
             flown.margin,
@@ -88,7 +88,7 @@ def timing(inputs: SweepInputs, controller: str) -> tuple[float, int, int]:
     return dt, inputs.steps * ratio, NODES * ratio
 
 
-def fly_all(inputs: SweepInputs, controller: str, cases: Cases, poll: Callable[[int], None]) -> Outcome:
+def fly_all(inputs: SweepInputs, controller: str, cases: Cases, poll: Callable[[int], None]) -> JudgedFlights:
     """Fly every case; ``poll`` gets the number flown and may raise."""
     if not CONTROLLERS[controller].compiled or inputs.truth.model != "cwh":
         return _one_by_one(inputs, controller, cases, poll)
@@ -102,7 +102,7 @@ def fly_all(inputs: SweepInputs, controller: str, cases: Cases, poll: Callable[[
         drawn = draws(truth, inputs.seed, cases.numbers[rows], steps)
         parts.append(fly(plan, starts[rows], truth, drawn))
         poll(min(first + CHUNK, len(starts)))
-    return Outcome.of(Record.joined(parts), np.full(len(starts), UNASKED, dtype=np.int8))
+    return JudgedFlights.of(Record.joined(parts), np.full(len(starts), UNASKED, dtype=np.int8))
 
 
 def fly_one(
@@ -140,7 +140,9 @@ def sequence_of(_: SweepInputs, scenario: Scenario, dt: float, steps: int, __: i
     return SequenceMpc(Question(scenario, dt, steps))
 
 
-def _one_by_one(inputs: SweepInputs, controller: str, cases: Cases, poll: Callable[[int], None]) -> Outcome:
+def _one_by_one(
+    inputs: SweepInputs, controller: str, cases: Cases, poll: Callable[[int], None]
+) -> JudgedFlights:
     pilot = controller_of(inputs, controller, cases)
     known = truth_from(inputs).position_sigma == truth_from(inputs).velocity_sigma == 0.0
     flights, verdicts = [], []
@@ -151,4 +153,4 @@ def _one_by_one(inputs: SweepInputs, controller: str, cases: Cases, poll: Callab
         verdicts.append(of(verdict) if verdict is not None and known else UNASKED)
         flights.append(flown)
         poll(row + 1)
-    return Outcome.of(Record.joined(flights), np.array(verdicts, dtype=np.int8))
+    return JudgedFlights.of(Record.joined(flights), np.array(verdicts, dtype=np.int8))

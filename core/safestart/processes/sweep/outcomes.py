@@ -7,11 +7,13 @@ import numpy as np
 from safestart.campaign.study import Study
 from safestart.campaign.table import Table
 from safestart.processes.sweep.cases import Cases
-from safestart.processes.sweep.fleet import Outcome
+from safestart.processes.sweep.fleet import JudgedFlights
 from safestart.processes.sweep.judge import GO, NO_GO, UNASKED, UNDECIDED, Verdicts
 
 
-def table_of(study: Study, cases: Cases, verdicts: dict[str, Verdicts], flown: dict[str, Outcome]) -> Table:
+def table_of(
+    study: Study, cases: Cases, verdicts: dict[str, Verdicts], flown: dict[str, JudgedFlights]
+) -> Table:
     """One row per start."""
     count = len(cases.points)
     none, every = np.zeros(count, np.bool_), np.ones(count, np.bool_)

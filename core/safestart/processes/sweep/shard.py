@@ -11,7 +11,7 @@ from safestart.campaign.part import Part
 from safestart.campaign.table import Table
 from safestart.processes.sweep import judge
 from safestart.processes.sweep.cases import Cases, cases_of
-from safestart.processes.sweep.fleet import Outcome, fly_all
+from safestart.processes.sweep.fleet import JudgedFlights, fly_all
 from safestart.processes.sweep.inputs import SweepInputs
 from safestart.processes.sweep.judge import UNASKED, Verdicts
 from safestart.processes.sweep.outcomes import table_of
@@ -31,7 +31,7 @@ def shard(part: dict[str, Any], context: Context) -> Part:
     tables = []
     done = 0
     for cases in groups:
-        flown: dict[str, Outcome] = {}
+        flown: dict[str, JudgedFlights] = {}
         for controller in inputs.controllers:
             flown[controller] = fly_all(inputs, controller, cases, _poll(context, done, total, controller))
             done += len(cases.points)
@@ -47,7 +47,7 @@ def _poll(context: Context, done: int, total: int, label: str) -> Callable[[int]
 
 
 def _verdicts(
-    inputs: SweepInputs, cases: Cases, flown: dict[str, Outcome], asked: int
+    inputs: SweepInputs, cases: Cases, flown: dict[str, JudgedFlights], asked: int
 ) -> dict[str, Verdicts]:
     out: dict[str, Verdicts] = {}
     for certificate in inputs.certificates:

@@ -6,6 +6,7 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
+from safestart.papers.envisat import TUMBLING
 from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.costs import FIRST_S, program_s
 from safestart.processes.start_in_space.parts import SpaceStart
@@ -154,11 +155,7 @@ SPEC = ProcessSpec(
         ),
     ),
     example={
-        "attitude": {
-            "kind": "torque_free",
-            "inertia_kg_m2": [[17023, 0, 0], [0, 124826, 0], [0, 0, 129112]],
-            "body_rate_deg_s": [0.3, 0.5, -2.0],
-        },
+        "attitude": TUMBLING,
         "a_max_m_s2": 0.02,
         "cases": 20,
     },

@@ -10,10 +10,10 @@ from safestart.processes.base import Artifact
 from safestart.processes.course_files import course_files
 from safestart.processes.plotting import npz
 from safestart.processes.tracking_mpc.setup import Setup
-from safestart.tracking.flight import Flight
+from safestart.tracking.flight import TrackedFlight
 
 
-def flight_files(setup: Setup, flight: Flight) -> tuple[Artifact, ...]:
+def flight_files(setup: Setup, flight: TrackedFlight) -> tuple[Artifact, ...]:
     """The courses of both craft; states with impulses are those after the impulse of their time."""
     motion = setup.motion
     times = motion.period * np.arange(float(len(flight.states)))
@@ -27,7 +27,7 @@ def flight_files(setup: Setup, flight: Flight) -> tuple[Artifact, ...]:
     return course_files(courses)
 
 
-def scene(setup: Setup, flight: Flight) -> Artifact:
+def scene(setup: Setup, flight: TrackedFlight) -> Artifact:
     """``scene.npz`` for the view of the same kind: the flight and the corridor's outline in the turning body."""
     count = len(flight.states)
     return npz(

@@ -15,13 +15,13 @@ from safestart.processes.base import Artifact
 from safestart.processes.output import Undrawn
 from safestart.processes.plotting import drawn_as, figure, npz
 from safestart.processes.tracking_mpc.setup import Setup
-from safestart.tracking.flight import Flight
+from safestart.tracking.flight import TrackedFlight
 
 _COLOURS = ("#0072B2", "#D55E00", "#009E73")
 _PLAN, _WALL, _INK = "#CC79A7", "#888888", "#333333"
 
 
-def pictures(setup: Setup, flight: Flight, document: dict[str, Any]) -> Iterator[Artifact | Undrawn]:
+def pictures(setup: Setup, flight: TrackedFlight, document: dict[str, Any]) -> Iterator[Artifact | Undrawn]:
     """The pictures and arrays of a request."""
     if flight.plans:
         yield _path(setup, flight, np.array(document["predicted_body_m"]))
@@ -42,7 +42,7 @@ def pictures(setup: Setup, flight: Flight, document: dict[str, Any]) -> Iterator
 
 
 @drawn_as("path.png")
-def _path(setup: Setup, flight: Flight, predicted: Floats) -> Figure:
+def _path(setup: Setup, flight: TrackedFlight, predicted: Floats) -> Figure:
     drawing = figure(11.0, 5.4)
     lvlh: Any = drawing.add_subplot(1, 2, 1, projection="3d")
     body: Any = drawing.add_subplot(1, 2, 2, projection="3d")
@@ -100,7 +100,7 @@ def _frames(count: int) -> tuple[int, ...]:
 
 
 @drawn_as("over_time.png")
-def _over_time(setup: Setup, flight: Flight) -> Figure:
+def _over_time(setup: Setup, flight: TrackedFlight) -> Figure:
     drawing = figure(10.4, 6.6)
     (inputs, ranges), (place, cost) = drawing.subplots(2, 2)
     period = setup.motion.period

@@ -26,7 +26,7 @@ from safestart.processes.wire import finite
 from safestart.runtime.progress import Context
 from safestart.tracking.any_history import AnyHistory
 from safestart.tracking.certificate import cost_decrease, holds_until, recursion
-from safestart.tracking.flight import Flight, fly
+from safestart.tracking.flight import TrackedFlight, fly
 from safestart.tracking.printed_limit import counter_example
 
 
@@ -129,7 +129,7 @@ def limits(inputs: TrackingMpcInputs, setup: Setup) -> dict[str, Any]:
     }
 
 
-def _flown(inputs: TrackingMpcInputs, setup: Setup, flight: Flight) -> dict[str, Any]:
+def _flown(inputs: TrackingMpcInputs, setup: Setup, flight: TrackedFlight) -> dict[str, Any]:
     plans, flown = flight.plans, bool(flight.plans)
     settled = {name: flight.settled(radius) for name, radius in (("5", 0.05), ("1", 0.01))}
     slack = setup.program.faces.slack(flight.body).min(axis=1)
@@ -152,7 +152,7 @@ def _flown(inputs: TrackingMpcInputs, setup: Setup, flight: Flight) -> dict[str,
     }
 
 
-def _predicted(setup: Setup, flight: Flight) -> list[list[float]]:
+def _predicted(setup: Setup, flight: TrackedFlight) -> list[list[float]]:
     if not flight.plans:
         return []
     states = flight.plans[0].states
@@ -160,7 +160,7 @@ def _predicted(setup: Setup, flight: Flight) -> list[list[float]]:
     return [[float(value) for value in row] for row in body]
 
 
-def _certificate(inputs: TrackingMpcInputs, setup: Setup, flight: Flight) -> dict[str, Any] | None:
+def _certificate(inputs: TrackingMpcInputs, setup: Setup, flight: TrackedFlight) -> dict[str, Any] | None:
     if not flight.plans:
         return None
     program = setup.program

@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 from pydantic import Field, field_validator, model_validator
 
 from safestart.model.orbit import EARTH_RADIUS, MU
+from safestart.papers.envisat import INERTIA_KG_M2
 from safestart.processes.base import ProcessSpec, Table, WireModel
 from safestart.processes.sharding import Sharding
 from safestart.processes.tracking_mpc.outputs import TrackingMpcOutputs
@@ -15,7 +16,6 @@ from safestart.processes.tracking_mpc.targets import presets
 from safestart.processes.views import Column, Facts, Findings, Matrices, Overlay, Rows, Scene
 from safestart.processes.wire import Seed
 
-ENVISAT = [[17023.3, 397.1, -2171.4], [397.1, 124825.7, 344.2], [-2171.4, 344.2, 129112.2]]
 MAX_RUNS = 100_000
 MAX_PERIOD_S = 60.0
 MAX_RATE_DEG_S = 60.0
@@ -84,7 +84,7 @@ class TrackingMpcInputs(WireModel):
     """Target, orbit, controller and start; the defaults are the paper's Table I with the recommended weights."""
 
     inertia_kg_m2: list[Triple] = Field(
-        default_factory=lambda: [list(row) for row in ENVISAT],
+        default_factory=lambda: [list(row) for row in INERTIA_KG_M2],
         min_length=3,
         max_length=3,
         description="Inertia of the target, body axes, kg m^2; Envisat.",

@@ -65,11 +65,11 @@ class Reached:
     blocks: list[list[arb_mat]] = field(default_factory=list)
 
     def moved(self, matrix: arb_mat) -> Reached:
-        """Its image."""
+        """The image of the set under ``matrix`` (6, 6)."""
         return Reached(matrix * self.centre, [[matrix * m for m in block] for block in self.blocks])
 
     def grown(self, half: list[arb]) -> Reached:
-        """With a box added."""
+        """Add a box of half-widths ``half`` (6)."""
         blocks = list(self.blocks)
         for k, size in enumerate(half):
             if size == 0:

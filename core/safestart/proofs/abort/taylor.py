@@ -33,7 +33,7 @@ class Field:
         return self.mu * size / square.sqrt() ** 3 + self.bulge * size / square.sqrt() ** 5 * (3 + 5 * q)
 
     def slope(self, size: arb, square: arb) -> arb:
-        """The same for |G|."""
+        """Bound |G|, the gradient of g, where :meth:`pull` bounds |g|."""
         q = size * size / square
         return (
             self.mu * (1 + 3 * q) / square.sqrt() ** 3
@@ -72,7 +72,7 @@ def frobenius(matrix: arb_mat) -> arb:
 
 
 def middle(matrix: arb_mat) -> arb_mat:
-    """The same with radii dropped: exact."""
+    """The middles of the balls, exact: radii are dropped."""
     return arb_mat(matrix.nrows(), matrix.ncols(), [e.mid() for e in matrix.entries()])
 
 

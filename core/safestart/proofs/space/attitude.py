@@ -23,15 +23,20 @@ from safestart.proofs.strict import ProofRejected
 
 _ORDER, _SHARE, _MOST = 22, 16.0, 50_000
 Matrix = list[list[arb_poly]]
+_WHOLE = arb(0.5, 0.5)
 
 
 class Piece(NamedTuple):
-    """C over [begin, begin + length] s; ``spin`` is the rate of what C turns against at its end, rad/s, body axes."""
+    """C over [begin, begin + length] s; ``spin`` is the rate of what C turns against at its end, rad/s, body axes.
+
+    ``rates`` holds that rate at all times of the piece, for a torque-free body.
+    """
 
     begin: fmpq
     length: fmpq
     turn: Matrix
     spin: list[arb]
+    rates: list[arb] = []  # noqa: RUF012 (no one changes it)
 
 
 class Course:
@@ -197,7 +202,7 @@ def _times_exact(turn: Matrix, first: list[list[fmpq]]) -> Matrix:
 
 def _free(stated: SpaceStated, orbit: Orbit) -> Iterator[list[Piece]]:
     said: Attitude = stated.attitude
-    body = _Body(said.inertia)
+    body = Body(said.inertia)
     state = [arb(e) for e in said.rate_vector]
     state += [arb(e) for row in _matrix_of(said.quaternions[0]) for e in row]
     for k in range(stated.steps):
@@ -206,7 +211,8 @@ def _free(stated: SpaceStated, orbit: Orbit) -> Iterator[list[Piece]]:
         for begin, length in _marks(stated, k, orbit, 4.0 * float(body.quick.upper()) * speed, []):
             flown = body.flown(state, length)
             state = [p(arb(1)) for p in flown]
-            out.append(Piece(begin, length, [flown[3:6], flown[6:9], flown[9:12]], state[:3]))
+            turn, rates = [flown[3:6], flown[6:9], flown[9:12]], [p(_WHOLE) for p in flown[:3]]
+            out.append(Piece(begin, length, turn, state[:3], rates))
         yield out
 
 
@@ -214,7 +220,7 @@ def _size(vector: list[arb]) -> arb:
     return sum((e * e for e in vector), arb(0)).sqrt()
 
 
-class _Body:
+class Body:
     """Euler's equations of one inertia tensor."""
 
     def __init__(self, inertia: list[list[fmpq]]) -> None:
@@ -226,7 +232,7 @@ class _Body:
             [b[0] * c[1] - b[1] * c[0], a[1] * c[0] - a[0] * c[1], a[0] * b[1] - a[1] * b[0]],
         ]
         size = sum((a[j] * cofactors[j][0] for j in range(3)), fmpq(0))
-        inverse = [[e / size for e in row] for row in cofactors]
+        inverse = self.inverse = [[e / size for e in row] for row in cofactors]
         # Q_i(x, y) = sum_jk tensor[i][j][k] x_j y_k, symmetric in j and k, of I^-1 ((I x) x y).
         cross = {
             (0, 1): (2, 1),

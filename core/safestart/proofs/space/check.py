@@ -12,6 +12,7 @@ from safestart.proofs.space.motion import Motion, Stretch
 from safestart.proofs.space.orbit import Orbit
 from safestart.proofs.space.refute import Refutation
 from safestart.proofs.space.series import Series, between, fresh_budget, pieces_of, require_positive
+from safestart.proofs.space.spread import Spread
 from safestart.proofs.space.statement import SpaceStated, read
 from safestart.proofs.space.wording import lines
 from safestart.proofs.strict import ProofRejected
@@ -28,7 +29,8 @@ def check(document: Any) -> Verified:
         course, motion = Course(stated, orbit), Motion(orbit, stated.dt)
         pieces = 0
         if stated.verdict == "GO":
-            pieces = _fly(stated, course, motion)
+            spread = Spread(stated, course, orbit) if stated.unknowns is not None else None
+            pieces = _fly(stated, course, motion, spread)
         elif stated.violated:
             _is_outside(stated, course)
         else:
@@ -36,10 +38,11 @@ def check(document: Any) -> Verified:
     return Verified(stated.verdict, float(document["margin_m"]), pieces, lines(stated))
 
 
-def _fly(stated: SpaceStated, course: Course, motion: Motion) -> int:
+def _fly(stated: SpaceStated, course: Course, motion: Motion, spread: Spread | None) -> int:
     """Every thrust can be had and every margin is >= the claim > 0 at all times; the number of pieces it took.
 
-    From a box of starts: the middle flown, and beside it how the state moves with each number of the start.
+    From a box of starts: the middle flown, and beside it how the state moves with each number of the start. What else
+    is not known takes from the distances what ``spread`` says.
     """
     wide = [i for i in range(6) if stated.half[i] > 0]
     columns = [[arb(e) for e in stated.start]]
@@ -49,7 +52,7 @@ def _fly(stated: SpaceStated, course: Course, motion: Motion) -> int:
         push = _push(stated, course, k, entry)
         stretches = motion.over(k, columns, [push, *still])
         for piece in course.pieces[k]:
-            _keeps(stated, piece, stretches, stated.dt * k, budget, push)
+            _keeps(stated, piece, stretches, stated.dt * k, budget, push, spread)
         if stated.limits.most is not None:
             _holds_back(stated, stretches, stated.dt * k, budget)
         columns = [[p(arb(1)) for p in each] for each in stretches[-1].flown]
@@ -92,33 +95,34 @@ def _keeps(
     begin: fmpq,
     budget: list[int],
     push: list[arb],
+    spread: Spread | None,
 ) -> None:
     """Every distance is at least the claim over the piece, and every demand is kept under the thrust ``push``."""
-    claim = arb(stated.claim)
-    for stretch in stretches:
-        first = max(piece.begin, begin + stretch.begin)
-        last = min(piece.begin + piece.length, begin + stretch.begin + stretch.length)
+    claim, marks = arb(stated.claim), [(begin + s.begin, begin + s.begin + s.length, s) for s in stretches]
+    for stretch_first, stretch_last, stretch in marks:
+        first, last = max(piece.begin, stretch_first), min(piece.begin + piece.length, stretch_last)
         if first >= last:
             continue
-        start, width = (
-            arb((first - begin - stretch.begin) / stretch.length),
-            arb((last - first) / stretch.length),
-        )
-        flown = [[between(p, start, width) for p in each[:3]] for each in stretch.flown]
-        body = [_in_body(piece, position, first, last) for position in flown]
-        for name, face in stated.faces.items():
-            length = arb(sum((e * e for e in face.normal), fmpq(0))).sqrt()
-            along = [
-                sum((arb(e) * p for e, p in zip(face.normal, at, strict=True)), arb_poly([0])) * (1 / length)
-                for at in (body if face.frame == "body" else flown)
-            ]
-            room = arb(face.offset) / length - along[0] - claim
-            require_positive(room, f"distance to {name}", first, last - first, budget, along[1:])
-        if stated.demands:
-            held = [arb_poly([e]) for e in push]
-            pushes = {"lvlh": held, "body": _in_body(piece, held, first, last)}
-            span = (first, last - first)
-            stated.demands.keep({"lvlh": flown[0], "body": body[0]}, pushes, claim, span, budget)
+        for a, b in spread.spans(piece, stretch, stretch_first, first, last) if spread else [(first, last)]:
+            start, width = arb((a - stretch_first) / stretch.length), arb((b - a) / stretch.length)
+            flown = [[between(p, start, width) for p in each[:3]] for each in stretch.flown]
+            body = [_in_body(piece, position, a, b) for position in flown]
+            taken = spread.taken(piece, flown, a, b) if spread else None
+            for name, face in stated.faces.items():
+                length = arb(sum((e * e for e in face.normal), fmpq(0))).sqrt()
+                along = [
+                    sum((arb(e) * p for e, p in zip(face.normal, at, strict=True)), arb_poly([0]))
+                    * (1 / length)
+                    for at in (body if face.frame == "body" else flown)
+                ]
+                room, less = arb(face.offset) / length - along[0] - claim, along[1:]
+                if taken is not None:
+                    room, less = taken.from_face(room, less, in_body=face.frame == "body")
+                require_positive(room, f"distance to {name}", a, b - a, budget, less)
+            if stated.demands:
+                held = [arb_poly([e]) for e in push]
+                pushes = {"lvlh": held, "body": _in_body(piece, held, a, b)}
+                stated.demands.keep({"lvlh": flown[0], "body": body[0]}, pushes, claim, (a, b - a), budget)
 
 
 def _in_body(piece: Piece, position: Series, first: fmpq, last: fmpq) -> Series:

@@ -72,7 +72,7 @@ class Plume:
     frame: str
 
     def alternatives(self, p: Series, push: Series) -> list[Series]:
-        """The same for a thrust ``push`` in the rule's frame."""
+        """As :meth:`KeepOut.alternatives`, for a thrust ``push`` in the rule's frame."""
         away = [e - arb(q) for e, q in zip(p, self.point, strict=True)]
         along, square = _dot(push, away), _dot(away, away)
         cone = arb(self.angle).cos() ** 2 * _dot(push, push) * square - along * along

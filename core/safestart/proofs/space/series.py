@@ -36,7 +36,7 @@ def rest(size: arb, ratio: arb, order: int) -> arb:
 
 
 def folded(series: arb_poly, order: int) -> arb_poly:
-    """The same with every term beyond ``order`` taken into the constant's ball."""
+    """Take every term beyond ``order`` into the constant's ball."""
     if series.degree() <= order:
         return series
     over = sum((c.abs_upper() for c in series.coeffs()[order + 1 :]), arb(0))

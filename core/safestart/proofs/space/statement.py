@@ -9,6 +9,7 @@ from flint import fmpq
 
 from safestart.proofs.space.demands import KEYS, Demands, demands_of
 from safestart.proofs.space.parts import Attitude, Face, Thrust, attitude_of, faces_of, thrust_of
+from safestart.proofs.space.unknowns import Unknowns, unknowns_of
 from safestart.proofs.statement import DOCUMENT, check_seal
 from safestart.proofs.strict import LARGEST, ProofRejected, fields, number, part, shown, vector
 from safestart.proofs.weights import Limits, Weight, limits_of, parts_of
@@ -23,7 +24,8 @@ _BOX = ("position_half_width_m", "velocity_half_width_m_s")
 class SpaceStated:
     """A document's statement: question, start (6 numbers), claim (m), and the evidence.
 
-    ``half`` (6) are the half-widths of the box of starts, 0 where the start is known. The end is any of the steps
+    ``half`` (6) are the half-widths of the box of starts, 0 where the start is known; ``unknowns`` what else is not
+    known, None where all is. The end is any of the steps
     ``earliest`` .. ``steps``; both are equal if it is fixed. ``history`` (k, channels) for GO: m/s^2 for a ball, else
     shares of the bounds. For NO_GO ``parts`` (first, last, weights), each against the ends first .. last, together
     against all ends in question.
@@ -41,6 +43,7 @@ class SpaceStated:
     thrust: Thrust
     limits: Limits
     demands: Demands
+    unknowns: Unknowns | None
     start: list[fmpq]
     half: list[fmpq]
     claim: fmpq
@@ -67,7 +70,7 @@ def read(document: Any) -> SpaceStated:
         proved_by = "violated"
     fields(document, "document", (*DOCUMENT, proved_by))
     ends = ("earliest_step", "goal") if free else ()
-    fields(question, f"question ({kind})", (*_QUESTION, *ends), ("speed_limit", *KEYS))
+    fields(question, f"question ({kind})", (*_QUESTION, *ends), ("speed_limit", "unknowns", *KEYS))
     steps, dt = part(question, "steps", int), number(question, "dt_s", 1e-6, 3600.0)
     if not 1 <= steps <= _MOST_STEPS:
         raise ProofRejected(f"steps: required 1..{_MOST_STEPS}, received {steps}")
@@ -99,6 +102,13 @@ def read(document: Any) -> SpaceStated:
             raise ProofRejected(
                 f"{_BOX[0]}: required half-widths >= 0, and stay without a speed limit or demands"
             )
+    attitude = attitude_of(part(question, "attitude", dict), dt * steps)
+    unknowns = unknowns_of(question["unknowns"], attitude) if "unknowns" in question else None
+    if unknowns is not None:
+        if free or limits.most is not None or demands:
+            raise ProofRejected("unknowns: required stay without a speed limit or demands")
+        if unknowns.turns and thrust.frame == "body":
+            raise ProofRejected("unknowns: required thrusts in axes of LVLH where the attitude is not known")
     violated = str(part(document, "violated", str)) if proved_by == "violated" else ""
     evidence = [] if violated else part(document, proved_by, list)
     rows = evidence if free else [{"first_step": steps, "last_step": steps, "multipliers": evidence}]
@@ -110,11 +120,12 @@ def read(document: Any) -> SpaceStated:
         mean_motion=number(orbit, "mean_motion_rad_s", 0.0, 0.01),
         eccentricity=number(orbit, "eccentricity", 0.0, 0.9),
         true_anomaly=number(orbit, "true_anomaly_rad", -1e4, 1e4),
-        attitude=attitude_of(part(question, "attitude", dict), dt * steps),
+        attitude=attitude,
         faces=faces,
         thrust=thrust,
         limits=limits,
         demands=demands,
+        unknowns=unknowns,
         start=vector(start["position_m"], "position_m", 3) + vector(start["velocity_m_s"], "velocity_m_s", 3),
         half=half,
         claim=claim,

@@ -29,6 +29,7 @@ def lines(stated: SpaceStated) -> tuple[str, ...]:
         f"orbit: mean motion {_number(stated.mean_motion)} rad/s, eccentricity {_number(stated.eccentricity)}, true "
         f"anomaly {_number(stated.true_anomaly)} rad ({_degrees(stated.true_anomaly)} deg) at t = 0",
         _thrust(stated),
+        *_unknowns(stated),
         f"start, position in LVLH: {_vector(stated.start[:3])}{_around(stated.half[:3])} m",
         f"start, velocity in LVLH: {_vector(stated.start[3:])}{_around(stated.half[3:])} m/s",
     )
@@ -45,6 +46,32 @@ def _found(stated: SpaceStated) -> str:
         )
     parts = [*margin_parts(stated.limits), *("distance to " + repr(name) for name in stated.demands.regions)]
     return f"{found} the margin, the least of {', '.join(parts)}"
+
+
+def _unknowns(stated: SpaceStated) -> list[str]:
+    said = stated.unknowns
+    if said is None:
+        return []
+    if stated.verdict == "NO_GO":
+        return ["the member that is as stated: what is not known counts for no NO_GO"]
+    out = ["for every member: the same thrust history keeps the margin whatever is not known"]
+    if said.angle > 0:
+        out.append(
+            f"not known: the attitude at t = 0, within {_number(said.angle)} rad ({_degrees(said.angle)} deg)"
+        )
+    if said.rate > 0:
+        when = "at t = 0" if stated.attitude.kind == "torque_free" else "at all times"
+        out.append(
+            f"not known: the angular velocity {when}, within {_number(said.rate)} rad/s ({_degrees(said.rate)} deg/s) "
+            "in body axes"
+        )
+    if said.inertia > 0:
+        out.append(
+            f"not known: the moments about the body's axes, each within a share of {_number(said.inertia)}"
+        )
+    if said.disturbance > 0:
+        out.append(f"not known: an acceleration of the chaser, any up to {_number(said.disturbance)} m/s^2")
+    return out
 
 
 def _asked(stated: SpaceStated) -> list[str]:
@@ -121,17 +148,18 @@ def _attitude(said: Attitude) -> list[str]:
 
 
 def _thrust(stated: SpaceStated) -> str:
-    limit = stated.thrust
+    limit, said = stated.thrust, stated.unknowns
+    still = "" if said is not None and said.disturbance > 0 else ", no disturbance"
     if limit.kind == "ball":
-        return f"thrust: at most {_number(limit.bounds[0])} m/s^2 in any direction, no disturbance"
+        return f"thrust: at most {_number(limit.bounds[0])} m/s^2 in any direction{still}"
     axes = "LVLH" if limit.frame == "lvlh" else "the body frame at the step's begin"
     if limit.kind == "box":
-        return f"thrust: at most {_vector(limit.bounds)} m/s^2 along the axes of {axes}, no disturbance"
+        return f"thrust: at most {_vector(limit.bounds)} m/s^2 along the axes of {axes}{still}"
     arms = "; ".join(
         f"{_number(bound)} along {_vector(direction)}"
         for bound, direction in zip(limit.bounds, limit.directions, strict=True)
     )
-    return f"thrust: shares, together at most 1, of thrusters in {axes}, m/s^2: {arms}; no disturbance"
+    return f"thrust: shares, together at most 1, of thrusters in {axes}, m/s^2: {arms}{still and '; no disturbance'}"
 
 
 def _degrees(value: fmpq) -> str:

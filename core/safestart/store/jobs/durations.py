@@ -31,7 +31,7 @@ class Past:
         self._database = database
 
     def durations(self, process_id: str, inputs: dict[str, Any]) -> Durations:
-        """Those of the latest successful runs of a process; ``inputs`` are whole, with every default.
+        """Durations of the latest successful runs of a process, s; ``inputs`` are whole, with every default.
 
         Only the latest 300 runs are looked at, and of each kind at most 20 are told. Raises ``InvalidInput`` when the
         inputs are not JSON.

@@ -57,5 +57,5 @@ def searched(job_id: str, process_id: str, name: str, tags: Iterable[str]) -> st
 
 
 def of_tag(tag: str) -> str:
-    """What the text of a job with this tag holds, and no other."""
+    """Give the text that a job with this tag holds, and no other job."""
     return f"\n\t{tag.lower()}\n"

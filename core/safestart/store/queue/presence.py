@@ -40,10 +40,6 @@ class Presence:
         with self._database.session(write=True) as session:
             session.execute(delete(WorkerRow).where(WorkerRow.owner == owner))
 
-    def workers_alive(self, within_s: float = ALIVE_S) -> int:
-        """Number of workers with a heartbeat in the last ``within_s`` seconds."""
-        return self.crew(within_s).workers
-
     def owners_alive(self, within_s: float = ALIVE_S) -> tuple[str, ...]:
         """Names of the workers with a heartbeat in the last ``within_s`` seconds."""
         query = select(WorkerRow.owner).where(WorkerRow.heartbeat_at >= after(-within_s))

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from safestart.processes.registry import PROCESS_IDS, process
+from safestart.processes.sharding import load
 from safestart_service.documents.formats.base import Format, Record
 from safestart_service.errors import NotAcceptable
 
@@ -13,15 +15,16 @@ if TYPE_CHECKING:
 
 def courses_in(record: Record) -> FlightCourses:
     """The courses of a flight's record; raises ``NotAcceptable`` for another process, ``InvalidInput``."""
-    if record.get("process", {}).get("id") != "flight" or "lvlh_m_s" not in record["outputs"]:
+    process_id = record.get("process", {}).get("id")
+    named = process(process_id).courses if process_id in PROCESS_IDS else None
+    found: FlightCourses | None = load(named)(record["inputs"], record["outputs"]) if named else None
+    if found is None:
         raise NotAcceptable(
             "this result is not a flight; required application/json",
             field="Accept",
             required="application/json",
         )
-    from safestart.processes.flight.files import courses
-
-    return courses(record["inputs"], record["outputs"])
+    return found
 
 
 def _encode(record: Record, _: str | None) -> bytes:

@@ -5,7 +5,10 @@ import { figure } from "./words.js";
 
 export const STARTS = "start-in-space", REGIONS = "region-in-space";
 /** Inputs of start-in-space that stand in the field of further inputs. */
-const FURTHER = ["keep_outs", "field_of_view", "plume", "position_half_width_m", "velocity_half_width_m_s", "method", "tracking"];
+const FURTHER = [
+  "keep_outs", "field_of_view", "plume", "position_half_width_m", "velocity_half_width_m_s", "attitude_half_angle_deg", "body_rate_half_width_deg_s",
+  "inertia_half_width", "disturbance_m_s2", "method", "tracking",
+];
 const FRAMES = ["body", "lvlh"], AXES = ["inertial", "lvlh"];
 const word = (title, first, words) => ({ title, first, words });
 const number = (title, first) => ({ title, first: String(first) });
