@@ -113,7 +113,7 @@ def workers(count: int) -> dict[str, Any]:
     for processes in (1, 2):
         with _farm(processes) as farm:
             farm.ended(farm.submit("sweep", FILTER), 600)
-            until(lambda at=farm: "all kernels are there" in at.said(), "the kernels")
+            until(lambda at=farm: "every process holds" in at.said(), "modules and kernels")
             begin = time.perf_counter()
             farm.ended(farm.submit("sweep", inputs), 3600)
             seconds[processes] = time.perf_counter() - begin

@@ -31,6 +31,9 @@ test("a layer has the rows of its table, and of the inputs beside them", () => {
   assert.deepEqual(more, []);
   assert.deepEqual(shapeOf({ corridor: { c_x: 1 } }), { c_x: 1, x0_m: 2.5, r_h_m: 0.5 });
   assert.equal(shapeOf({ corridor: { faces: [] } }), null);
+  assert.equal(shapeOf({ corridor: { axis: [0, 1, 0.2] } }), null);
+  assert.equal(shapeOf({ corridor: { axis: [0, -1, 0] } }), null);
+  assert.deepEqual(shapeOf({ corridor: { c_x: 1, axis: [0, 2, 0] } }).c_x, 1);
   assert.equal(shapeOf({}), null);
   assert.deepEqual(shapeOf({}, { corridor: { minOccurs: 0 } }), { c_x: 1.5, x0_m: 2.5, r_h_m: 0.5 });
   assert.equal(shapeOf({}, { corridor: { minOccurs: 1 } }), null);

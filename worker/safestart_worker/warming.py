@@ -85,7 +85,10 @@ class Kernels:
 
     async def _everywhere(self) -> None:
         """All modules and kernels in every process, so that no later job loads them."""
-        await self._kept("modules and kernels", self._cluster.warm_all())
+        if await self._kept("modules and kernels", self._cluster.warm_all()):
+            log.info(
+                "every process holds all modules and kernels after %.1f s", time.monotonic() - self._begun
+            )
 
     async def _kept(self, what: str, work: Awaitable[None]) -> bool:
         """Whether ``work`` has ended well; an error of it ends the worker."""

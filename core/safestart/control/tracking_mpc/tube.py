@@ -22,8 +22,9 @@ from safestart.errors import invalid
 from safestart.model.scenario import Floats
 
 SIGMAS = 3.0
-_LEAST = 1e-9
-"""Least deviation of a measurement, m and m/s, so that the filter exists without noise."""
+_LEAST, _SHARE = 1e-6, 1e-3
+"""Least deviations, m and m/s, and least share of one kind's deviation in another's. Without them the steady filter of
+exact measurements or exact inputs has no solution in double precision; larger errors only tighten more."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,8 +47,10 @@ class Tube:
 
 def tube_of(motion: Sampled, tuning: Tuning, errors: Errors, *, bounded: bool = False) -> Tube:
     """The filter and the tightening; raises ``InvalidInput`` for errors that leave no input."""
-    measured = np.diag([max(errors.position, _LEAST) ** 2] * 3 + [max(errors.velocity, _LEAST) ** 2] * 3)
-    pushed = max(errors.impulse, _LEAST) ** 2 * (motion.b @ motion.b.T)
+    place, speed = max(errors.position, _LEAST), max(errors.velocity, _LEAST)
+    place, speed = max(place, _SHARE * speed * motion.period), max(speed, _SHARE * place / motion.period)
+    measured = np.diag([place**2] * 3 + [speed**2] * 3)
+    pushed = max(errors.impulse, _SHARE * speed) ** 2 * (motion.b @ motion.b.T)
     predicted = solve_discrete_are(motion.a.T, np.eye(6), pushed, measured)
     innovation = predicted + measured
     gain = predicted @ np.linalg.inv(innovation)

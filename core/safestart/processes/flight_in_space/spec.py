@@ -93,7 +93,8 @@ def _seen(title: str, frame: str, across: int, up: int) -> Picture:
         f"{axes[across]} [m], {seen}",
         f"{axes[up]} [m], {seen}",
         (Layer("flight", "line", "flight", f"{frame}_m.{across}", f"{frame}_m.{up}"),),
-        equal=True,
+        # A picture of one scale draws the corridor, which is that of the body's x and y.
+        equal=(frame, across, up) == ("body", 0, 1),
     )
 
 
@@ -123,11 +124,11 @@ SPEC = ProcessSpec(
     ),
     views=(
         Findings(
-            "Flight",
+            "Verdict",
             "",
-            word="stayed",
+            word="verdict",
             columns=(
-                Column("verdict", "verdict"),
+                Column("the flight", "stayed"),
                 Column("proved margin [m]", "margin_m"),
                 Column("error of the model [m]", "model_error_m"),
                 Column("flown by", "flown_by"),

@@ -105,13 +105,13 @@ class PassiveAbortInputs(WireModel):
 
     def _one_plan(self) -> None:
         if (self.burns is None) == (self.plan is None):
-            raise ValueError("burns: required, or plan, not both")
+            raise ValueError("burns: the burns, or a file of them in plan, not both")
         if self.target is None:
             if self.start is None:
-                raise ValueError("start: required, but for a plan from a message, which comes with target")
+                raise ValueError("start: a state, but for a plan from a message, which comes with target")
             return
         if self.plan is None or self.start is not None:
-            raise ValueError("target: goes with a plan from a message, without start")
+            raise ValueError("target: the target's course beside a plan from a message, without start")
         ours = {"semi_major_axis_m", "eccentricity", "inclination_deg", "argument_of_perigee_deg"}
         given = sorted(self.model_fields_set & (ours | {"true_anomaly_deg"}))
         if given:

@@ -13,7 +13,7 @@ from safestart.control.tracking_mpc.sampled import Sampled
 from safestart.control.tracking_mpc.theta_set import theta_set
 from safestart.control.tracking_mpc.tumble import Tumble
 from safestart.control.tracking_mpc.tuning import DockingCorridor, Tuning
-from safestart.errors import invalid
+from safestart.errors import InvalidInput, invalid
 from safestart.model.scenario import Floats
 from safestart.processes.tracking_mpc.spec import TrackingMpcInputs
 from safestart.tracking.certificate import shifts_needed
@@ -50,8 +50,11 @@ def setup_of(inputs: TrackingMpcInputs, tightening: Any = None) -> Setup:
         inputs.input_limit,
     )
     motion = Sampled(inputs.mean_motion, inputs.period_s, inputs.thrust == "held")
-    tumble = tumble_of(inputs)
-    tumble.slow_enough(inputs.period_s)
+    try:
+        tumble = tumble_of(inputs)
+        tumble.slow_enough(inputs.period_s)
+    except InvalidInput as error:
+        raise _under_wire_name(error) from None
     position = np.array(inputs.start.position_m)
     outside = -float(shape.faces().slack(position).min())
     if outside > 0.0:
@@ -65,6 +68,13 @@ def setup_of(inputs: TrackingMpcInputs, tightening: Any = None) -> Setup:
     program = Program(motion, shape, tuning, limit, tightening)
     start = np.concatenate([attitudes[0].T @ position, np.array(inputs.start.velocity_m_s)])
     return Setup(tumble, motion, shape, tuning, program, attitudes, start, shifts)
+
+
+def _under_wire_name(error: InvalidInput) -> InvalidInput:
+    """The same error about the input's field."""
+    names = {"inertia": "inertia_kg_m2", "attitude": "attitude_wxyz", "body_rate": "body_rate_deg_s"}
+    named = (names | {"period": "period_s"}).get(error.field or "")
+    return error if named is None else invalid(named, error.required or "", error.received)
 
 
 def tumble_of(inputs: TrackingMpcInputs) -> Tumble:

@@ -18,6 +18,7 @@ from safestart.processes.wire import Seed
 
 MAX_RUNS = 100_000
 MAX_PERIOD_S = 60.0
+MAX_RATE_DEG_S = 60.0
 Triple = list[float]
 
 
@@ -151,10 +152,17 @@ class TrackingMpcInputs(WireModel):
             raise ValueError("three rows of three numbers")
         return value
 
+    @field_validator("body_rate_deg_s")
+    @classmethod
+    def _slow(cls, value: Triple) -> Triple:
+        if math.hypot(*value) > MAX_RATE_DEG_S:
+            raise ValueError(f"three numbers, together at most {MAX_RATE_DEG_S:g} deg/s")
+        return value
+
     @model_validator(mode="after")
     def _horizons(self) -> TrackingMpcInputs:
         if self.n_c > self.n_lqr:
-            raise ValueError(f"n_c: at most n_lqr, {self.n_lqr}, received {self.n_c}")
+            raise ValueError(f"n_c: at most n_lqr, {self.n_lqr}")
         return self
 
     @property

@@ -25,5 +25,7 @@ export const layerTitle = (title, outputs) => title.replace(/\{([\w.]+)\}/g, (_,
 export function shapeOf({ corridor }, described = {}) {
   if (corridor === undefined || corridor === null) return described.corridor?.minOccurs === 0 ? { ...DEFAULT } : null;
   const shape = { ...DEFAULT, ...corridor };
-  return "faces" in corridor || !Object.keys(DEFAULT).every((name) => typeof shape[name] === "number") ? null : shape;
+  // Another axis than the picture's y opens another way.
+  const [x, y, z] = corridor.axis ?? [0, 1, 0];
+  return "faces" in corridor || x !== 0 || z !== 0 || !(y > 0) || !Object.keys(DEFAULT).every((name) => typeof shape[name] === "number") ? null : shape;
 }
