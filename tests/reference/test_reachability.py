@@ -7,7 +7,7 @@ import pytest
 from safestart.constraints.corridor import corridor_of
 from safestart.dynamics.cwh import planar_input, planar_transition
 from safestart.model.scenario import Rest, Scenario, SetKind
-from tests.unit.engines.exact_margin import reach_margin
+from tests.unit.sets.exact_margin import reach_margin
 
 # Source: our own study before this code was written (tube and fixed-time sets by a separate prototype): cone
 # cells of a 31 x 31 grid over x in [-150, 150] m, y in [0, 200] m from which the corridor is reachable at

@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from safestart.optim.dense_kernel import back, dot, factor
 from safestart.runtime.kernels import compiled
 
 SOLVED, SINGULAR, SLOW, CLOSE = 0, 1, 2, 3
@@ -35,65 +36,6 @@ _SHORT, _RECENTERING = 0.1, 0.5
 # A ball that does not bind has y near 0: its block is taken no flatter than this share of the mean row, or the system's
 # rounding would hide the slacks. It changes the path, not the optimum.
 _LEAST_CURVATURE = 1e-6
-_LEAST_PIVOT = 1e-15
-
-
-# Inlined: a call with two rows counts references to them, which takes longer than the sum.
-@compiled(error_model="numpy", forceinline=True)
-def _dot(a: Any, b: Any, count: int) -> float:
-    # Eight sums side by side: vector instructions without the freedom to reorder, so every processor gives these bits.
-    s0 = s1 = s2 = s3 = s4 = s5 = s6 = s7 = 0.0
-    for eight in range(count // 8):
-        i = 8 * eight
-        s0 += a[i] * b[i]
-        s1 += a[i + 1] * b[i + 1]
-        s2 += a[i + 2] * b[i + 2]
-        s3 += a[i + 3] * b[i + 3]
-        s4 += a[i + 4] * b[i + 4]
-        s5 += a[i + 5] * b[i + 5]
-        s6 += a[i + 6] * b[i + 6]
-        s7 += a[i + 7] * b[i + 7]
-    total = ((s0 + s1) + (s2 + s3)) + ((s4 + s5) + (s6 + s7))
-    for i in range(count - count % 8, count):
-        total += a[i] * b[i]
-    return total
-
-
-@compiled(error_model="numpy")
-def _factor(matrix: Any) -> bool:
-    """Cholesky factor into the lower triangle, in place; False where the matrix is not positive definite."""
-    size = len(matrix)
-    for j in range(size):
-        pivot, least = matrix[j, j], _LEAST_PIVOT * matrix[j, j]
-        for i in range(j):
-            pivot -= matrix[j, i] * matrix[j, i]
-        pivot = max(pivot, least)
-        if not 0.0 < pivot < math.inf:
-            return False
-        pivot = math.sqrt(pivot)
-        matrix[j, j] = pivot
-        for row in range(j + 1, size):
-            value = matrix[row, j]
-            for i in range(j):
-                value -= matrix[row, i] * matrix[j, i]
-            matrix[row, j] = value / pivot
-    return True
-
-
-@compiled(error_model="numpy")
-def _back(factor: Any, x: Any) -> None:
-    """Solve with the factor, in place."""
-    size = len(x)
-    for j in range(size):
-        value = x[j]
-        for i in range(j):
-            value -= factor[j, i] * x[i]
-        x[j] = value / factor[j, j]
-    for j in range(size - 1, -1, -1):
-        value = x[j]
-        for i in range(j + 1, size):
-            value -= factor[i, j] * x[i]
-        x[j] = value / factor[j, j]
 
 
 @compiled(error_model="numpy")
@@ -203,7 +145,7 @@ def largest_margin(constant: Any, rows: Any, d: int, tolerance: float) -> Any:
         # Slacks anew from the point, so that no rounding gathers; then the bound, the margin and the mean product.
         lowest, product, total, weighted = np.inf, 0.0, 0.0, 0.0
         for j in range(count):
-            s[j] = constant[j] + _dot(rows[j], w, ends[j]) - margin
+            s[j] = constant[j] + dot(rows[j], w, ends[j]) - margin
             lowest = min(lowest, s[j])
             product += z[j] * s[j]
             total += z[j]
@@ -227,12 +169,12 @@ def largest_margin(constant: Any, rows: Any, d: int, tolerance: float) -> Any:
             row = scaled[j]
             _through_root(rows[j], w, gamma, root, ends[j] // d, d, row)
             for i in range(j + 1):
-                system[j, i] = _dot(row, scaled[i], min(ends[i], ends[j]))
+                system[j, i] = dot(row, scaled[i], min(ends[i], ends[j]))
             system[j, j] += s[j] / z[j]
             ones[j] = 1.0
-        if not (lowest > 0.0 and _factor(system)):
+        if not (lowest > 0.0 and factor(system)):
             return w, best, CLOSE if gap <= _USABLE * reach else SINGULAR, iteration
-        _back(system, ones)
+        back(system, ones)
         target, dm = 0.0, 0.0
         primal, dual = 1.0, 1.0
         for phase in range(2):
@@ -249,10 +191,10 @@ def largest_margin(constant: Any, rows: Any, d: int, tolerance: float) -> Any:
                 dy[k] = missing / h[k]
             _through_root(q, w, gamma, root, balls, d, along)
             for j in range(count):
-                dz[j] = target / z[j] - s[j] - _dot(scaled[j], along, ends[j])
+                dz[j] = target / z[j] - s[j] - dot(scaled[j], along, ends[j])
                 if phase == 1:
                     dz[j] -= ds_trial[j] * dz_trial[j] / z[j]
-            _back(system, dz)
+            back(system, dz)
             moved, along_ones = 0.0, 0.0
             for j in range(count):
                 moved += dz[j]
@@ -279,7 +221,7 @@ def largest_margin(constant: Any, rows: Any, d: int, tolerance: float) -> Any:
                         primal, h[k] / (inner + radical) if inner > 0.0 else (radical - inner) / square
                     )
             for j in range(count):
-                ds[j] = _dot(rows[j], step, ends[j]) - dm
+                ds[j] = dot(rows[j], step, ends[j]) - dm
                 if ds[j] < 0.0:
                     primal = min(primal, -s[j] / ds[j])
                 if dz[j] < 0.0:

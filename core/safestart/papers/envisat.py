@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 INERTIA_KG_M2 = [[17023.3, 397.1, -2171.4], [397.1, 124825.7, 344.2], [-2171.4, 344.2, 129112.2]]
-"""Paper 002, table I, kg m^2."""
+"""Moments and products of inertia; the study of paper 002 uses them."""
 
 TUMBLING: dict[str, Any] = {
     "kind": "torque_free",

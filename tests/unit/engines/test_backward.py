@@ -28,7 +28,7 @@ from safestart.model.scenario import (
 )
 from safestart.runtime.progress import Context
 from safestart.sets import zonotope
-from tests.unit.engines.exact_margin import reach_margin
+from tests.unit.sets.exact_margin import reach_margin
 from tests.unit.sets.support_twin import disk_support
 
 NARROW = Scenario(Target(math.radians(4.0)), Chaser(0.05), CorridorShape(c_x=0.4, x0=0.0, hold_radius=3.0))

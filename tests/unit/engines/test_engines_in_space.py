@@ -27,7 +27,7 @@ from safestart.exact.space.watch import space_watch_of
 from safestart.model.orbit import KeplerOrbit
 from safestart.model.scenario import CorridorShape, Grid, Rest, Scenario, SetKind
 from safestart.runtime.progress import Context
-from tests.unit.engines.exact_margin import reach_margin
+from tests.unit.sets.exact_margin import reach_margin
 
 CORRIDOR = five_faces(CorridorShape())
 BODY = ((120.0, 2.0, -1.0), (2.0, 100.0, 3.0), (-1.0, 3.0, 60.0))

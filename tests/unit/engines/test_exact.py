@@ -20,7 +20,7 @@ from safestart.model.scenario import Chaser, CorridorShape, Floats, Grid, Rest, 
 from safestart.runtime.progress import Context
 from safestart.sets import series
 from tests.unit.engines import exact_twin
-from tests.unit.engines.exact_margin import reach_margin
+from tests.unit.sets.exact_margin import reach_margin
 
 NARROW = CorridorShape(c_x=0.3, x0=0.0, hold_radius=3.0)
 CASES = {

@@ -11,7 +11,7 @@ from safestart.engines.exact import containment_horizon
 from safestart.errors import InvalidInput
 from safestart.model.scenario import Floats, Rest, Scenario, SetKind
 from safestart.sets import series
-from tests.unit.engines.exact_margin import reach_margin
+from tests.unit.sets.exact_margin import reach_margin
 from tests.unit.sets.support_twin import disk_support
 
 

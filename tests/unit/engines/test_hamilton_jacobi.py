@@ -18,7 +18,7 @@ from safestart.errors import Cancelled, InvalidInput
 from safestart.model.scenario import Grid, Rest, Scenario, SetKind
 from safestart.processes.registry import process
 from safestart.runtime.progress import Context
-from tests.unit.engines.exact_margin import reach_margin
+from tests.unit.sets.exact_margin import reach_margin
 
 SMALL = {"nodes_xy": 21, "nodes_v": 9}
 GRID = Grid(21, 21, 40.0)

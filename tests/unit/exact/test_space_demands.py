@@ -16,7 +16,7 @@ from safestart.errors import InvalidInput
 from safestart.exact.answer import Answer, Verdict
 from safestart.exact.question import Goal
 from safestart.exact.space.decide import decide_in_space
-from safestart.exact.space.demands import Demands, FieldOfView, KeepOut, Plume
+from safestart.exact.space.demands.rules import Demands, FieldOfView, KeepOut, Plume
 from safestart.exact.space.question import SpaceQuestion, five_faces
 from safestart.exact.space.start_box import decide_from_box
 from safestart.exact.space.watch import space_watch_of

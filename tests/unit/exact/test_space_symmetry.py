@@ -16,7 +16,7 @@ from safestart.attitude.spin import Spin
 from safestart.constraints.thrust_limit import ThrustLimit, ball
 from safestart.exact.answer import Answer, Verdict
 from safestart.exact.space.decide import decide_in_space
-from safestart.exact.space.demands import Demands, FieldOfView, KeepOut, Plume
+from safestart.exact.space.demands.rules import Demands, FieldOfView, KeepOut, Plume
 from safestart.exact.space.question import Face, SpaceQuestion, five_faces
 from safestart.exact.space.watch import space_watch_of
 from safestart.model.orbit import KeplerOrbit

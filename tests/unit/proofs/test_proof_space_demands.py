@@ -16,7 +16,7 @@ from safestart.constraints.thrust_limit import ThrustLimit
 from safestart.exact.answer import Answer, Verdict
 from safestart.exact.question import Goal
 from safestart.exact.space.decide import decide_in_space
-from safestart.exact.space.demands import Demands, FieldOfView, KeepOut, Plume
+from safestart.exact.space.demands.rules import Demands, FieldOfView, KeepOut, Plume
 from safestart.exact.space.prove import proof_in_space
 from safestart.exact.space.question import SpaceQuestion
 from safestart.proofs.checker import check

@@ -8,7 +8,7 @@ from safestart.errors import invalid
 from safestart.exact.answer import GUARD, TOLERANCE, Answer
 from safestart.exact.decide import answer_of, outside
 from safestart.exact.search import Search
-from safestart.exact.space.demanded import decide_demanded
+from safestart.exact.space.demands.demanded import decide_demanded
 from safestart.exact.space.question import SpaceQuestion
 from safestart.exact.space.start_box import decide_from_box
 from safestart.exact.space.watch import SpaceWatch, space_watch_of
@@ -23,7 +23,7 @@ def decide_in_space(
 
     The answer's ``thrust`` is (N, channels): m/s^2 in LVLH axes for a ball, else points of the unit set (shares of the
     half-widths of a box in its own axes, throttles of thrusters). With demands see
-    :mod:`safestart.exact.space.demanded`, with unknowns :mod:`safestart.exact.space.start_box`. Raises
+    :mod:`safestart.exact.space.demands.demanded`, with unknowns :mod:`safestart.exact.space.start_box`. Raises
     ``InvalidInput`` for an invalid state.
     """
     state = np.asarray(state, dtype=np.float64)

@@ -14,7 +14,7 @@ from safestart.attitude.turning import SmoothAttitude
 from safestart.errors import invalid
 from safestart.exact.answer import Answer, Verdict
 from safestart.exact.prove import GO_STAND_BACK_M, NO_GO_STAND_BACK_M, limits_of, refuted_by
-from safestart.exact.space.demands import PLUME, VIEW, Demands
+from safestart.exact.space.demands.rules import PLUME, VIEW, Demands
 from safestart.exact.space.question import SpaceQuestion
 from safestart.exact.space.unknowns import Unknowns
 from safestart.model.scenario import Floats

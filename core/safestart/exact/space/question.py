@@ -28,7 +28,7 @@ from safestart.dynamics.yamanaka_ankersen import YamanakaAnkersen
 from safestart.errors import invalid
 from safestart.exact.limits import AT_END, SPEED
 from safestart.exact.question import Goal, Spanned, check_steps
-from safestart.exact.space.demands import NONE, Demands
+from safestart.exact.space.demands.rules import NONE, Demands
 from safestart.exact.space.unknowns import KNOWN, Unknowns
 from safestart.model.orbit import KeplerOrbit
 from safestart.model.scenario import MAX_RANGE, CorridorShape, Floats, number

@@ -9,7 +9,7 @@ from typing import Annotated
 from pydantic import Field, Tag
 
 from safestart.errors import InvalidInput, invalid
-from safestart.exact.space.demands import Demands, FieldOfView, KeepOut, Plume
+from safestart.exact.space.demands.rules import Demands, FieldOfView, KeepOut, Plume
 from safestart.processes.base import WireModel
 from safestart.processes.start_in_space.parts import Frame, Vector, has
 

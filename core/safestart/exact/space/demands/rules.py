@@ -1,7 +1,7 @@
 """Demands that are not convex, or are convex but no half-spaces: keep-outs, the field of view, the plume rule.
 
-What is asked is the demand itself; :mod:`safestart.exact.space.restriction` answers it by convex parts of it, and the
-checker of proofs checks the demand.
+What is asked is the demand itself; :mod:`safestart.exact.space.demands.restriction` answers it by convex parts of it,
+and the checker of proofs checks the demand.
 """
 
 from __future__ import annotations

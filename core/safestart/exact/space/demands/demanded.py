@@ -14,10 +14,10 @@ from dataclasses import replace
 import numpy as np
 
 from safestart.exact.answer import GUARD, Answer, Multiplier, Verdict
-from safestart.exact.space.demands import NONE, VIEW, Demands
+from safestart.exact.space.demands.restricted_watch import RestrictedWatch
+from safestart.exact.space.demands.restriction import Course, course_of, cuts_of, plume_kept, walls_of
+from safestart.exact.space.demands.rules import NONE, VIEW, Demands
 from safestart.exact.space.question import SpaceQuestion
-from safestart.exact.space.restricted_watch import RestrictedWatch
-from safestart.exact.space.restriction import Course, course_of, cuts_of, plume_kept, walls_of
 from safestart.exact.space.watch import SpaceWatch, space_watch_of
 from safestart.model.scenario import Floats
 

@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from safestart.exact.space.demands import VIEW, Demands, Plume
-from safestart.exact.space.restricted_watch import Wall
+from safestart.exact.space.demands.restricted_watch import Wall
+from safestart.exact.space.demands.rules import VIEW, Demands, Plume
 from safestart.exact.space.watch import SpaceWatch
 from safestart.model.scenario import Bools, Floats
 
