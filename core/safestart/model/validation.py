@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import Any, TypeVar
 
@@ -12,6 +13,8 @@ from safestart.errors import InvalidInput, SafestartError
 _LONGEST = 120
 _LISTED = 5
 _SHORT = 40
+_FIELD = re.compile(r"[a-z][a-z0-9_]*(\.[a-z][a-z0-9_]*)*")
+_ABSENT = object()
 
 _REQUIRED = {
     "missing": "a value",
@@ -58,7 +61,7 @@ def required(report: Any) -> str:
 
 def received(report: Any) -> str:
     """The received value, shortened."""
-    if report["type"] == "missing":
+    if report["type"] == "missing" or report.get("input") is _ABSENT:
         return "nothing"
     value = report.get("input")
     if isinstance(value, list | dict) and len(value) > _SHORT:  # its text would be as long as the whole body
@@ -77,13 +80,30 @@ def refusal(reports: Sequence[Any], prefix: str = "", others: int = 0) -> Invali
 
 def error_of(kind: type[Error], reports: Sequence[Any], prefix: str = "", others: int = 0) -> Error:
     """The same report as another error class of ours."""
-    named = reports[: 1 + _LISTED]
+    named = [_at_its_field(report) for report in reports[: 1 + _LISTED]]
     fields = [prefix + (".".join(str(part) for part in report["loc"]) or "body") for report in named]
-    wanted, came = required(reports[0]), received(reports[0])
+    wanted, came = required(named[0]), received(named[0])
     detail = f"{fields[0]}: required {wanted}, received {came}"
     if len(fields) > 1:
         detail += f" (and {len(reports) - 1 + others} more: {', '.join(fields[1:])})"
     return kind(detail, field=fields[0], required=wanted, received=came)
+
+
+def _at_its_field(report: Any) -> Any:
+    """A rule about several fields that says "field: what is required" is reported at that field, with its value."""
+    if report["type"] != "value_error":
+        return report
+    name, _, wanted = str(report.get("ctx", {}).get("error", "")).partition(": ")
+    given, wanted = report.get("input"), wanted.partition(", received ")[0]
+    if not wanted or not _FIELD.fullmatch(name) or not isinstance(given, dict):
+        return report
+    first, *rest = name.split(".")
+    if first not in given and report["loc"]:
+        own = not rest and report["loc"][-1] == first
+        return {**report, "ctx": {"error": wanted}} if own else report
+    for part in (first, *rest):
+        given = given.get(part, _ABSENT) if isinstance(given, dict) else _ABSENT
+    return {"type": "value_error", "ctx": {"error": wanted}, "input": given, "loc": (*report["loc"], name)}
 
 
 def validation_error(error: ValidationError, prefix: str = "") -> InvalidInput:

@@ -43,8 +43,10 @@ class ProcessSpec:
     only; ``cost`` estimates the seconds of one core that an answer takes for given inputs. ``replay_tolerance`` bounds
     the deviation of a replay on another machine or with other versions, relative to max(1, |value|); on the same
     machine and versions a replay is equal bit for bit. ``instant`` names a function (inputs) -> document for the
-    service's answer at submission. ``states`` names the input list, if any, that a service may limit further
-    (``max_states``). ``kernels`` names the parts of :mod:`safestart.runtime.warmup` that its jobs need: a worker that
+    service's answer at submission. ``possible`` names a function (inputs) that raises ``InvalidInput`` for what no
+    model can have: it is called before a job is queued, so that nobody waits for a refusal, and before a run.
+    ``states`` names the input list, if any, that a service may limit further (``max_states``). ``kernels`` names the
+    parts of :mod:`safestart.runtime.warmup` that its jobs need: a worker that
     has just started compiles those of waiting jobs first. ``tables`` declares tables over plain lists among the
     outputs; lists of objects are tables without a declaration. ``views`` say how a page shows the outputs, the most
     important first. ``courses`` names a function (inputs, outputs) -> ``FlightCourses`` or None where the outputs are a
@@ -62,6 +64,7 @@ class ProcessSpec:
     light: bool = False
     cost: Callable[[Any], float] = lambda _: 0.0
     instant: str | None = None
+    possible: str | None = None
     courses: str | None = None
     version: str = "1.0.0"
     replay_tolerance: float = 1e-9
@@ -100,6 +103,11 @@ class ProcessSpec:
             return load(self.run)
         load(self.sharding.shard), load(self.sharding.merge)
         return self.sharding.run
+
+    def require_possible(self, inputs: WireModel) -> None:
+        """Raise ``InvalidInput`` where ``possible`` does."""
+        if self.possible is not None:
+            load(self.possible)(inputs)
 
     def instant_answer(self, inputs: WireModel) -> dict[str, Any] | None:
         """The document that is known before any engine has run, or None."""

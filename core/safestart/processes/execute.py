@@ -32,6 +32,7 @@ def execute(process_id: str, inputs: Any, context: Context | None = None) -> Exe
     """
     spec = process(process_id)
     parsed = spec.parse(inputs)
+    spec.require_possible(parsed)
     started = datetime.now(UTC)
     return _finished(spec, parsed, started, spec.runner()(parsed, context or Context()))
 

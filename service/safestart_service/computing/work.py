@@ -137,6 +137,7 @@ def _submitted(store: Store, spec: ProcessSpec, request: ExecuteRequest, asked: 
             required="at most 0, or a key of role admin",
             received=request.priority,
         )
+    spec.require_possible(request.inputs)
     new = str(uuid4())
     job = store.jobs.submit(
         spec.id,

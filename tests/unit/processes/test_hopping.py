@@ -160,7 +160,7 @@ def test_passive_abort_speaks_about_the_true_earth() -> None:
         ({"model": "earth", "errors": {"at_each_burn": False}}, "at_each_burn"),
         ({"model": "earth", "eccentricity": 0.3}, "perigee"),
         ({"model": "earth", "states": []}, "states"),
-        ({"eccentricity": 0.01}, "model: earth"),
+        ({"eccentricity": 0.01}, "model: required earth"),
     ],
 )
 def test_bad_plans_are_named(more, said: str) -> None:
@@ -177,3 +177,20 @@ def test_reproduce_hopping_stands_beside_the_paper() -> None:
         said[f"0.6 orbits, barrier {name}: closest after each hop, m"][0] for name in ("off", "nominal")
     )
     assert min(float(c) for c in off.split(", ")) < 50.0 <= min(float(c) for c in on.split(", "))
+
+
+@pytest.mark.parametrize(
+    ("asked", "field", "received"),
+    [
+        ({"hold_m": 40}, "hold_m", "40"),
+        ({"start_m": 50}, "start_m", "50"),
+        ({"keep_out_m": 200}, "hold_m", "nothing"),
+        ({"eccentricity": 0.5}, "eccentricity", "0.5"),
+    ],
+)
+def test_a_rule_about_two_fields_names_one_and_its_value(asked, field, received):
+    """Clients mark the field; the whole body was reported instead."""
+    with pytest.raises(InvalidInput) as refused:
+        process("hopping").parse(asked)
+    assert (refused.value.field, refused.value.received) == (field, received)
+    assert not str(refused.value.required).startswith(field)

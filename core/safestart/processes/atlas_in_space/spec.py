@@ -127,6 +127,7 @@ SPEC = ProcessSpec(
     ),
     inputs=AtlasInSpaceInputs,
     outputs=AtlasInSpaceOutputs,
+    possible="safestart.processes.start_in_space.question:require_stay",
     kernels=("exact answers",),
     run="safestart.processes.atlas_in_space.run:run",
     keywords=("exact", "proof", "safe-start region", "torque-free"),

@@ -99,6 +99,7 @@ SPEC = ProcessSpec(
     ),
     inputs=PlaneBenchmarkInputs,
     outputs=PlaneBenchmarkOutputs,
+    possible="safestart.processes.start_in_space.question:require_stay",
     kernels=("exact answers",),
     run="safestart.processes.plane_benchmark.run:run",
     keywords=("reachability", "torque-free", "Monte Carlo", "IoU"),

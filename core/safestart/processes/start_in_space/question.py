@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from typing import Any
 
 import numpy as np
 
@@ -87,6 +88,11 @@ def stay_in(scenario: SpaceScenario, horizon_s: float) -> SpaceQuestion:
     orbit, attitude, thrust = _parts(scenario)
     with _as_asked():
         return SpaceQuestion(orbit, attitude, _faces(scenario), thrust, DT_S, round(horizon_s / DT_S))
+
+
+def require_stay(inputs: Any) -> None:
+    """Raise as :func:`stay_in` does for the scenario of a process that has a horizon, ``horizon_s``."""
+    stay_in(inputs, inputs.horizon_s)
 
 
 def _parts(inputs: SpaceScenario) -> tuple[KeplerOrbit, SmoothAttitude, ThrustLimit]:

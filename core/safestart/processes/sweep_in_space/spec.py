@@ -116,6 +116,7 @@ SPEC = ProcessSpec(
     ),
     inputs=SweepInSpaceInputs,
     outputs=SweepInSpaceOutputs,
+    possible="safestart.processes.start_in_space.question:require_stay",
     run="safestart.processes.sweep_in_space.run:run",
     cost=_cost,
     keywords=("closed loop", "Monte Carlo", "MPC", "torque-free"),

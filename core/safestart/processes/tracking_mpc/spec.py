@@ -192,6 +192,7 @@ SPEC = ProcessSpec(
     ),
     inputs=TrackingMpcInputs,
     outputs=TrackingMpcOutputs,
+    possible="safestart.processes.tracking_mpc.possible:require_possible",
     kernels=("tracking",),
     sharding=Sharding.of("safestart.processes.tracking_mpc"),
     tables=(Table("flight", ("time_s", "range_m", "cost_to_go", "slack_m")),),
