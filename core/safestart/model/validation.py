@@ -94,7 +94,7 @@ def _at_its_field(report: Any) -> Any:
     if report["type"] != "value_error":
         return report
     name, _, wanted = str(report.get("ctx", {}).get("error", "")).partition(": ")
-    given, wanted = report.get("input"), wanted.partition(", received ")[0]
+    given, wanted = report.get("input"), wanted.removeprefix("required ").partition(", received ")[0]
     if not wanted or not _FIELD.fullmatch(name) or not isinstance(given, dict):
         return report
     first, *rest = name.split(".")

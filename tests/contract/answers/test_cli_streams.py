@@ -109,7 +109,8 @@ def test_a_place_that_cannot_be_written_is_named_before_the_work(
     def work(*_: object, **__: object) -> None:
         raise AssertionError("the work has begun")
 
-    for name in ("go_no_go.document_of_one", "run.execute", "records._bundle_of"):
+    monkeypatch.setattr("safestart.processes.go_no_go.one_start.OneAtRest.document", work)
+    for name in ("run.execute", "records._bundle_of"):
         monkeypatch.setattr(f"safestart.cli.{name}", work)
     # A directory: even root cannot write it.
     monkeypatch.setattr(

@@ -73,7 +73,7 @@ def test_a_start_depends_on_its_number_and_the_seed() -> None:
     ("wrong", "said"),
     [
         ({"controllers": ["filter"]}, "flies nothing in space: its prediction"),
-        ({"controllers": ["pid"]}, "received pid"),
+        ({"controllers": ["pid"]}, "some of filter, filter_fine, sequence, received .*pid"),
         ({"cases": 0}, "cases"),
         ({"position_half_width_m": [1, 1]}, "position_half_width_m"),
     ],
