@@ -61,8 +61,7 @@ class TorqueFree:
         moments, axes = _principal(inertia)
         first = axes @ matrix_of(np.array(attitude))
         spin = axes @ rate
-        momentum = moments * spin
-        if np.cross(spin, momentum).any():
+        if _turns(moments, spin):
             course: Any = _Poinsot(moments, axes, spin, first)
         else:
             course = _Steady(rate, matrix_of(np.array(attitude)))
@@ -219,6 +218,16 @@ class _Poinsot:
         out[2, 1] = -tilt_sin * turn_cos
         out[2, 2] = tilt_cos
         return out
+
+
+def _turns(moments: Floats, spin: Floats) -> bool:
+    """Whether the angular velocity changes, by Euler's equations: exactly never between two equal moments.
+
+    The cross product of spin and momentum would round to something else. Below 1e-140 rad/s^2 nothing changes in any
+    time, and squares underflow.
+    """
+    (a, b, c), (wa, wb, wc) = moments.tolist(), spin.tolist()
+    return max(abs((c - b) / a * wb * wc), abs((a - c) / b * wc * wa), abs((b - a) / c * wa * wb)) > 1e-140
 
 
 def _size(x: Floats, y: Floats) -> Floats:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from safestart.control.tracking_mpc.controller import Program
+from safestart.control.tracking_mpc.controller import FIXED_TOLERANCE, Program
 from safestart.control.tracking_mpc.sampled import Sampled
 from safestart.control.tracking_mpc.theta_set import theta_set
 from safestart.control.tracking_mpc.tumble import Tumble
@@ -57,7 +57,8 @@ def setup_of(inputs: TrackingMpcInputs, tightening: Any = None) -> Setup:
         raise _under_wire_name(error) from None
     position = np.array(inputs.start.position_m)
     outside = -float(shape.faces().slack(position).min())
-    if outside > 0.0:
+    # A start on a face is inside, whatever the last bit of its slack.
+    if outside > FIXED_TOLERANCE:
         raise invalid("start", "a position inside the corridor", f"one {outside:.3g} m outside")
     # The regulator alone says how many steps a certificate looks ahead.
     pace = motion.a + motion.b @ motion.regulator(inputs.rho)
