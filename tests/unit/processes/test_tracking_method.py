@@ -147,7 +147,9 @@ def test_a_go_that_arrives_after_the_horizon_is_proved_until_then():
     assert outputs["verdict"] == ["GO"]
     assert arrives > 60.0
     proof, flight = outputs["proof"][0], outputs["flight"][0]
-    assert 2.0 * len(proof["thrust_m_s2"]) == flight["time_s"][-1] == outputs["turning"]["time_s"][-1] == arrives
+    assert (
+        2.0 * len(proof["thrust_m_s2"]) == flight["time_s"][-1] == outputs["turning"]["time_s"][-1] == arrives
+    )
     shown = checker.check(proof)
     assert shown.verdict == "GO"
     assert shown.margin_m == pytest.approx(outputs["margin_m"][0], abs=1e-6)

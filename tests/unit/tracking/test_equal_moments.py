@@ -57,6 +57,7 @@ def test_motion_and_bounds(moments):
         motion = Sampled(MEAN_MOTION, 1.0)
         low, high = bracket(tumble, motion, 0.075)
         assert 0.0 < low <= high
+        assert low >= 0.7 * high
         assert ball_radius(tumble, motion, 0.075) <= high * (1.0 + 1e-9)
         assert printed_radius(tumble, motion, 0.075) > 0.0
 

@@ -4,8 +4,8 @@ Every one holds the corridor's faces. ``printed`` adds y <= y_max of paper 002 (
 inside the rigorous ball; ``corners`` the largest whose corners need at most u_max at every node of the window;
 ``polytope`` the input's own rows on u_e(k; theta), without those that others imply; ``zero`` theta = 0. A window is the
 nodes of a flight and of its last plan, so that a theta allowed at one node is allowed at the next. With held thrust the
-chaser passes a little beside theta, by a share of |theta|: the corridor's faces lean in by so much at every height y, so
-that far thetas do not keep near ones from the port.
+chaser passes a little beside theta, by a share of |theta|: the corridor's faces lean in by so much at every height y.
+Moved in by the most for all, far thetas would keep near ones from the port.
 """
 
 from __future__ import annotations

@@ -101,7 +101,7 @@ def _by_tracking(inputs: SpaceInputs, question: SpaceQuestion) -> Any:
 
 
 def _covering(question: SpaceQuestion, answer: Answer) -> SpaceQuestion:
-    """The question `stay` over a whole flight that arrives after ``horizon_s``: all that is said is proved and shown."""
+    """The question `stay` over a whole flight that arrives after ``horizon_s``: all said is proved, and shown."""
     if question.goal is not None or answer.thrust is None or len(answer.thrust) <= question.steps:
         return question
     return replace(question, steps=len(answer.thrust))

@@ -17,7 +17,7 @@ def statements(inputs: TrackingMpcInputs, document: dict[str, Any]) -> list[dict
         (
             "The controller has a plan from this start",
             "HELD" if document["feasible"] else "BROKEN",
-            f"least violation {_shown(document['least_violation_m'])} m; an input over its limit by u_max counts as 1 m",
+            f"least violation {_shown(document['least_violation_m'])} m; u_max over an input's limit counts as 1 m",
         ),
         (
             f"Some impulse history keeps the corridor for {inputs.steps} steps",
