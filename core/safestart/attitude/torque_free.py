@@ -18,20 +18,19 @@ Ic - Ia and l the slope of the argument at u = 0. Nothing is integrated, so noth
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from safestart.attitude.elliptic import Jacobi, ThetaArgument, first_kind
+from safestart.attitude.inertia import checked_inertia, principal_axes, turns
 from safestart.attitude.quaternion import matrix_of, unit_quaternion
 from safestart.attitude.turning import Bounds, of_rates
 from safestart.errors import invalid
 from safestart.model.scenario import MAX_TUMBLE_RATE, Floats
 
 Inertia = tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
-_TRIANGLE = 1e-9
 
 
 @dataclass(frozen=True)
@@ -49,7 +48,7 @@ class TorqueFree:
     _course: Any = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        inertia = _checked(self.inertia)
+        inertia = checked_inertia(self.inertia)
         attitude = unit_quaternion("attitude", self.attitude)
         rate = np.asarray(self.body_rate, dtype=np.float64)
         if rate.shape != (3,) or not np.isfinite(rate).all() or math.hypot(*rate) > MAX_TUMBLE_RATE:
@@ -58,11 +57,10 @@ class TorqueFree:
         object.__setattr__(self, "inertia", tuple(tuple(row) for row in inertia.tolist()))
         object.__setattr__(self, "attitude", attitude)
         object.__setattr__(self, "body_rate", tuple(rate.tolist()))
-        moments, axes = _principal(inertia)
+        moments, axes = principal_axes(inertia)
         first = axes @ matrix_of(np.array(attitude))
         spin = axes @ rate
-        momentum = moments * spin
-        if np.cross(spin, momentum).any():
+        if turns(moments, spin):
             course: Any = _Poinsot(moments, axes, spin, first)
         else:
             course = _Steady(rate, matrix_of(np.array(attitude)))
@@ -71,6 +69,14 @@ class TorqueFree:
     def rotation(self, times: Floats) -> Floats:
         """(..., 3, 3): inertial coordinates to body coordinates."""
         out: Floats = self._course.rotation(np.asarray(times, dtype=np.float64))
+        return out
+
+    def turn_back(self, times: Floats, after: float) -> Floats:
+        """(T, 3, 3): body coordinates ``after`` s later to those at ``times`` (T,).
+
+        As exact at any time within :meth:`polhode_period`, which may be so long that doubles know no attitude there.
+        """
+        out: Floats = self._course.turn_back(times, after)
         return out
 
     def angular_velocity(self, times: Floats) -> Floats:
@@ -119,6 +125,11 @@ class _Steady:
         along = np.outer(axis, axis)
         cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
         out: Floats = (along + np.cos(angle) * (np.eye(3) - along) - np.sin(angle) * cross) @ self.first
+        return out
+
+    def turn_back(self, times: Floats, after: float) -> Floats:
+        later = self.rotation(np.full(times.shape, after))
+        out: Floats = self.first @ later.swapaxes(-1, -2)
         return out
 
     def angular_velocity(self, times: Floats) -> Floats:
@@ -191,9 +202,20 @@ class _Poinsot:
         out: Floats = self.frame.T @ turned
         return np.moveaxis(out.reshape(3, 3, *times.shape), (0, 1), (-2, -1))
 
+    def turn_back(self, times: Floats, after: float) -> Floats:
+        u = self.begin + self.pace * times
+        now = self._angles_at(u, np.zeros(times.shape))
+        later = self._angles_at(u + self.pace * after, np.full(times.shape, self.precession * after))
+        out: Floats = np.einsum("pi,pkt,qkt,qj->tij", self.axes, now, later, self.axes, optimize=True)
+        return out
+
     def _angles(self, times: Floats) -> Floats:
         """R_z(phi) R_x(theta) R_z(psi), (3, 3, T): the frame with z along the momentum to principal axes."""
-        u, sn, cn, dn = self._functions(times)
+        return self._angles_at(self.begin + self.pace * times, self.precession * times)
+
+    def _angles_at(self, u: Floats, angle: Floats) -> Floats:
+        """The same at ``u`` (T,), with the precession's steady part ``angle`` (T,)."""
+        sn, cn, dn = self.jacobi.functions(u)
         a, b, c = self.moments
         tilt_cos = c * self.size_c * dn
         tilt_sin = _size(a * self.size_a * cn, b * self.size_b * sn)
@@ -203,12 +225,11 @@ class _Poinsot:
         size = _size(third_sin, third_cos)
         third_sin, third_cos = third_sin / size, third_cos / size
         relative = self.theta.direction(u) * self.first_theta.conjugate()
-        angle = self.precession * times
         steady_cos, steady_sin = np.cos(angle), np.sin(angle)
         wobble_cos, wobble_sin = relative.real, self.way * relative.imag
         turn_cos = steady_cos * wobble_cos - steady_sin * wobble_sin
         turn_sin = steady_sin * wobble_cos + steady_cos * wobble_sin
-        out = np.empty((3, 3, len(times)))
+        out = np.empty((3, 3, len(u)))
         out[0, 0] = third_cos * turn_cos - third_sin * tilt_cos * turn_sin
         out[0, 1] = third_cos * turn_sin + third_sin * tilt_cos * turn_cos
         out[0, 2] = third_sin * tilt_sin
@@ -244,37 +265,3 @@ def _circled(moments: Floats, spin: Floats) -> tuple[list[int], Floats]:
     # The sign of a makes odd orders and flipped axes right-handed.
     turn[0, order[0]] = round(float(np.linalg.det(turn)))
     return order, turn
-
-
-def _principal(inertia: Floats) -> tuple[Floats, Floats]:
-    """Principal moments, rising, and the rows (3, 3), right-handed, that lead from body axes to principal axes."""
-    if not (inertia - np.diag(np.diagonal(inertia))).any():
-        # Exact test, so that a spin about an axis of the body is one about a principal axis.
-        order = np.argsort(np.diagonal(inertia), kind="stable")
-        moments, rows = np.diagonal(inertia)[order], np.eye(3)[order]
-    else:
-        moments, columns = np.linalg.eigh(inertia)
-        rows = columns.T.copy()
-    if np.linalg.det(rows) < 0.0:
-        rows[2] *= -1.0
-    return moments, rows
-
-
-def _checked(value: Sequence[Sequence[float]]) -> Floats:
-    """The inertia (3, 3); raises ``InvalidInput`` unless it is one of a rigid body."""
-    try:
-        inertia = np.array(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise invalid("inertia", "three rows of three numbers, kg m^2", value) from None
-    if inertia.shape != (3, 3) or not np.isfinite(inertia).all():
-        raise invalid("inertia", "three rows of three finite numbers, kg m^2", value)
-    if (inertia != inertia.T).any():
-        raise invalid("inertia", "a symmetric tensor", inertia.tolist())
-    moments = np.linalg.eigvalsh(inertia)
-    size = float(moments[2])
-    if not 1e-6 <= size <= 1e12:
-        raise invalid("inertia", "a largest principal moment in [1e-6, 1e12] kg m^2", moments.tolist())
-    if not (moments[0] > 1e-9 * size and moments[0] + moments[1] >= (1.0 - _TRIANGLE) * size):
-        required = "positive principal moments, none above the sum of the other two"
-        raise invalid("inertia", required, moments.tolist())
-    return inertia

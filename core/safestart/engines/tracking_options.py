@@ -16,8 +16,10 @@ class TrackingSettings(WireModel):
     n_lqr: int = Field(30, ge=1, le=200, description="Steps of the regulator after them.")
     rho: float = Field(100.0, gt=0, le=1e6, description="Weight of |u - u_e|^2, u in m/s per step.")
     tau: float = Field(10.0, ge=0, le=1e6, description="Weight of |theta|^2.")
-    theta_limit: Literal["corners", "polytope", "zero"] = Field(
-        "polytope", description="Limit on the artificial reference, as for tracking-mpc."
+    theta_limit: Literal["corners", "polytope"] = Field(
+        "polytope",
+        description="Limit on the artificial reference, as for tracking-mpc; not zero, the target's centre, which is "
+        "behind the hold plane.",
     )
 
     @model_validator(mode="after")

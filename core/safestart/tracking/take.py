@@ -54,6 +54,7 @@ class Taken:
     ``arrived``: the first node at which it is at rest at the port, None if it is not. ``certified``: every plan has
     candidates for all later steps. ``margin``, m: the proved distance that the thrust keeps. ``theta`` (3,): reference
     of the first plan. ``violation``, m: least violation of the first program; inf: no plan whatever is given up.
+    ``lost``: a step after the first had no plan.
     """
 
     thrust: Floats
@@ -64,6 +65,7 @@ class Taken:
     theta: Floats | None
     violation: float
     reserve: float
+    lost: bool = False
 
 
 def take(approach: Approach, start: Floats, margin: Callable[[Floats], float]) -> Taken:
@@ -140,4 +142,5 @@ def _flight(approach: Approach, start: Floats, reserve: float) -> Taken:
         first.theta if plans else None,
         first.violation,
         reserve,
+        lost=bool(plans) and not plan.feasible,
     )

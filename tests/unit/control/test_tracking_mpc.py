@@ -209,6 +209,14 @@ def test_the_loop_flies_it():
     "make",
     [
         lambda: Tuning(u_max=0.0),
+        lambda: Tuning(u_max=1e-300),
+        lambda: theta_set(
+            Tuning(theta_limit="zero"),
+            DockingCorridor(y0=1.0),
+            envisat(),
+            Sampled(MEAN_MOTION, 1.0),
+            envisat().nodes(1.0, 9),
+        ),
         lambda: Tuning(n_c=31),
         lambda: Tuning(rho=0.0),
         lambda: Tuning(theta_limit="none"),

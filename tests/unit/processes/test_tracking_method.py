@@ -40,7 +40,7 @@ def test_a_go_is_proved_and_certified(question):
 
 def test_what_it_cannot_take_is_undecided_beside_the_exact_answer():
     """A regulator with a short horizon has no plan where the exact answer is GO."""
-    tuned = {"n_c": 1, "theta_limit": "zero"}
+    tuned = {"n_c": 1, "n_lqr": 1}
     asked = PLANAR | {"tracking": tuned, "states": [{"x_m": 5, "y_m": 40}]}
     outputs = execute("go-no-go", asked).document["outputs"]
     assert outputs["verdict"] == ["UNDECIDED"]
@@ -105,6 +105,7 @@ def test_a_corridor_along_another_axis():
         ({"hold_x_m": 1.0}, "hold_y_m"),
         ({"method": "exact", "tracking": {}}, "tracking"),
         ({"tracking": {"n_c": 40}}, "n_c"),
+        ({"tracking": {"theta_limit": "zero"}}, "theta_limit"),
         ({"states": [{"x_m": 0, "y_m": 5}] * 51}, "states"),
     ],
 )
@@ -128,3 +129,44 @@ def test_refusals_in_space(wrong, field):
     asked = SPACE | {"thrust": {"kind": "ball", "a_max_m_s2": 0.1}, "starts": [{"position_m": [0, 5, 0]}]}
     with pytest.raises(InvalidInput, match=field):
         execute("start-in-space", asked | wrong)
+
+
+def test_a_go_that_arrives_after_the_horizon_is_proved_until_then():
+    attitude = SPACE["attitude"] | {"body_rate_deg_s": [0, 1, 1]}
+    asked = {
+        "attitude": attitude,
+        "orbit": SPACE["orbit"],
+        "method": "tracking",
+        "thrust": {"kind": "ball", "a_max_m_s2": 0.03},
+        "starts": [{"position_m": [-10, 25, 0]}],
+        "proofs": True,
+        "flights": True,
+    }
+    outputs = execute("start-in-space", asked).document["outputs"]
+    arrives = outputs["tracking"][0]["arrives_s"]
+    assert outputs["verdict"] == ["GO"]
+    assert arrives > 60.0
+    proof, flight = outputs["proof"][0], outputs["flight"][0]
+    assert (
+        2.0 * len(proof["thrust_m_s2"]) == flight["time_s"][-1] == outputs["turning"]["time_s"][-1] == arrives
+    )
+    shown = checker.check(proof)
+    assert shown.verdict == "GO"
+    assert shown.margin_m == pytest.approx(outputs["margin_m"][0], abs=1e-6)
+    assert f"for {arrives:g} s" in outputs["reason"][0]
+
+
+def test_so_is_one_in_the_plane():
+    asked = {"omega_t_deg_s": 1, "a_max_m_s2": 0.03, "method": "tracking", "states": [{"x_m": 0, "y_m": 40}]}
+    outputs = execute("go-no-go", asked | {"proofs": True, "horizon_s": 20}).document["outputs"]
+    proof, arrives = outputs["proof"][0], outputs["tracking"][0]["arrives_s"]
+    assert outputs["verdict"] == ["GO"]
+    assert 2.0 * len(proof["thrust_m_s2"]) == arrives > 20.0
+    assert checker.check(proof).margin_m == pytest.approx(outputs["margin_m"][0], abs=1e-6)
+
+
+def test_a_flight_that_is_late_has_not_lost_its_plan():
+    asked = PLANAR | {"states": [{"x_m": 5, "y_m": 40}], "within_s": 30, "horizon_s": 20}
+    outputs = execute("go-no-go", asked).document["outputs"]
+    assert outputs["verdict"] == ["UNDECIDED"]
+    assert "keeps its plan, but is not at rest at the port within 30 s" in outputs["reason"][0]

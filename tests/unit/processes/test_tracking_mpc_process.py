@@ -80,6 +80,7 @@ def test_infeasible_is_an_answer():
         ({"body_rate_deg_s": [0, 50, 50]}, "body_rate_deg_s"),
         ({"inertia_kg_m2": [[1, 0], [0, 1, 0], [0, 0, 1]]}, "inertia_kg_m2"),
         ({"u_max_m_s": 0}, "u_max_m_s"),
+        ({"u_max_m_s": 1e-300}, "u_max_m_s"),
         ({"n_c": 31}, "n_c"),
         ({"period_s": 30, "body_rate_deg_s": [0, 10, 0]}, "period_s"),
         ({"period_s": 60, "body_rate_deg_s": [0, 0.01, 0], "orbit_radius_m": 7e6}, "start"),
@@ -144,3 +145,25 @@ def test_a_printed_limit_that_is_not_safe_says_so():
     said = {row["statement"]: row["verdict"] for row in outputs["statements"]}
     assert said["The printed theta_max is safe"] == "UNSAFE"
     assert outputs["theta_max_m"]["printed"] > 5.0 * outputs["theta_max_m"]["exact_high"]
+
+
+@pytest.mark.parametrize("position", [[1.1, 1.0, 0.0], [1.1, 1.0, 1.1], [-0.4, 0.3, 0.0]])
+def test_a_start_on_a_face_is_inside(position):
+    outputs = execute("tracking-mpc", {"start": {"position_m": position}}).document["outputs"]
+    assert abs(outputs["slack_m"][0]) < 1e-12
+    assert outputs["exact_violation_m"] is not None
+
+
+def test_a_rocket_body_in_whole():
+    """Two equal moments, held thrust, region: an answer with its certificate, and words on whether it arrives."""
+    asked = {
+        "inertia_kg_m2": [[1000, 0, 0], [0, 1000, 0], [0, 0, 1500]],
+        "region": {"rows": 3},
+        "thrust": "held",
+        "steps": 20,
+    }
+    outputs = execute("tracking-mpc", asked).document["outputs"]
+    assert outputs["feasible"]
+    said = {row["statement"]: row["verdict"] for row in outputs["statements"]}
+    arrives = outputs["time_to_5cm_s"] is not None
+    assert said["The flight arrives: it ends within 5 cm of the port"] == ("HELD" if arrives else "BROKEN")

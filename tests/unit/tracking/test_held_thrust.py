@@ -3,12 +3,15 @@
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.optimize import linprog
 from scipy.spatial.transform import Rotation
 
 from safestart.control.tracking_mpc import equilibrium
 from safestart.control.tracking_mpc.controller import TrackingMpc
 from safestart.control.tracking_mpc.sampled import Sampled
 from safestart.control.tracking_mpc.theta_radius import bracket
+from safestart.control.tracking_mpc.theta_set import theta_set
+from safestart.control.tracking_mpc.tumble import Tumble
 from safestart.control.tracking_mpc.tuning import Tuning, input_sides
 from safestart.dynamics.cwh import Cwh, system_matrix
 from safestart.errors import InvalidInput
@@ -18,7 +21,7 @@ from safestart.tracking.any_history import AnyHistory
 from safestart.tracking.certificate import cost_decrease, recursion, shifts_needed
 from safestart.tracking.flight import fly
 from safestart.tracking.noisy_flight import Belief, NoisyFlights
-from tests.unit.tracking.envisat import INERTIA, MEAN_MOTION, SHAPE, START, envisat, program
+from tests.unit.tracking.envisat import INERTIA, MEAN_MOTION, RATE, SHAPE, START, envisat, program
 
 
 @pytest.mark.parametrize("period", [0.5, 1.0, 5.0])
@@ -155,3 +158,32 @@ def test_the_printed_limit_is_about_impulses():
         program(Tuning(theta_limit="printed"), held=True)
     with pytest.raises(InvalidInput, match="input_limit"):
         Tuning(input_limit="disk")
+
+
+@pytest.mark.parametrize("limit", ["polytope", "corners"])
+def test_far_thetas_do_not_keep_it_from_the_port(limit):
+    """A spin about an axis in the corridor needs no input along it: the set of thetas reaches 100 km there."""
+    ball = ((1000.0, 0.0, 0.0), (0.0, 1000.0, 0.0), (0.0, 0.0, 1000.0))
+    tumble = Tumble(ball, (1.0, 0.0, 0.0, 0.0), (0.0, RATE, RATE), MEAN_MOTION, "lvlh")
+    tuning = Tuning(u_max=0.15, n_c=10, tau=10.0, theta_limit=limit)
+    mpc, attitudes = program(tuning, period=2.0, tumble=tumble, window=400, held=True)
+    flight = fly(mpc, tumble, attitudes, START, 60)
+    assert flight.finished
+    assert flight.ranges[-1] < 1e-3
+    shifts = shifts_needed(mpc.condensed.closed)
+    assert all(recursion(mpc, attitudes[k:], plan, shifts).holds for k, plan in enumerate(flight.plans))
+
+
+def test_faces_lean_in_by_all_that_it_passes_beside():
+    """Thetas at corners of the set: the places where the chaser is then are in the corridor, at every node."""
+    tumble, motion = envisat("inertial"), Sampled(MEAN_MOTION, 5.0, held=True)
+    attitudes = tumble.nodes(5.0, 300)
+    limit = theta_set(Tuning(u_max=0.5), SHAPE, tumble, motion, attitudes)
+    rng, faces, places = np.random.default_rng(4), SHAPE.faces(), equilibrium.places(motion, attitudes)
+    worst = np.inf
+    for direction in rng.normal(size=(40, 3)):
+        found = linprog(-direction, limit.normals, limit.high, bounds=(None, None))
+        assert found.status == 0
+        assert limit.contains(found.x, 1e-7)
+        worst = min(worst, float(faces.slack(places @ found.x).min()))
+    assert worst >= -1e-9

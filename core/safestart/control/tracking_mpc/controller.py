@@ -14,12 +14,9 @@ from safestart.control.tracking_mpc.condensed import Condensed, condense
 from safestart.control.tracking_mpc.sampled import Sampled
 from safestart.control.tracking_mpc.step_kernel import SOLVED, feasible_starts, soften, solve_from
 from safestart.control.tracking_mpc.theta_set import ThetaSet
-from safestart.control.tracking_mpc.tuning import DockingCorridor, Tuning
+from safestart.control.tracking_mpc.tuning import FIXED_TOLERANCE, DockingCorridor, Tuning
 from safestart.errors import invalid
 from safestart.model.scenario import Bools, Floats
-
-FIXED_TOLERANCE = 1e-9
-"""Allowed violation (m) of corridor rows that no input affects, at this step and the next."""
 
 
 @dataclass(frozen=True)

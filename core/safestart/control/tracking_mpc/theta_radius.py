@@ -81,8 +81,7 @@ def bracket(tumble: Tumble, motion: Sampled, u_max: float, limit: InputLimit = "
     shares = np.convolve([1.0, -2.0, 1.0], motion.weights) / period
     constants = _constants(motion)
     steps = np.arange(len(shares))
-    here = body.rotation(times)
-    turns = [here @ body.rotation(times + j * period).swapaxes(1, 2) for j in steps[1:]]
+    turns = [body.turn_back(times, j * period) for j in steps[1:]]
     steady = sum(
         (w * turn for w, turn in zip(shares[1:], turns, strict=True)),
         np.tile(shares[0] * np.eye(3), (len(times), 1, 1)),

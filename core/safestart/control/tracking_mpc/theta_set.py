@@ -4,7 +4,8 @@ Every one holds the corridor's faces. ``printed`` adds y <= y_max of paper 002 (
 inside the rigorous ball; ``corners`` the largest whose corners need at most u_max at every node of the window;
 ``polytope`` the input's own rows on u_e(k; theta), without those that others imply; ``zero`` theta = 0. A window is the
 nodes of a flight and of its last plan, so that a theta allowed at one node is allowed at the next. With held thrust the
-chaser passes a little beside theta: the corridor's faces move in by the most that this can be.
+chaser passes a little beside theta, by a share of |theta|: the corridor's faces lean in by so much at every height y.
+Moved in by the most for all, far thetas would keep near ones from the port.
 """
 
 from __future__ import annotations
@@ -47,11 +48,14 @@ def theta_set(
 ) -> ThetaSet:
     """The set of a tuning's limit for a window of ``attitudes`` (K, 3, 3).
 
-    Raises ``InvalidInput`` for ``printed`` with held thrust, and for ``printed`` and ``ball`` without a ``tumble``.
+    Raises ``InvalidInput`` for ``printed`` with held thrust, for ``printed`` and ``ball`` without a ``tumble``, and for
+    ``zero`` where the corridor begins away from the target's centre.
     """
     limit = tuning.theta_limit
     sides, most = tuning.sides
     if limit == "zero":
+        if shape.y0 > 0.0:
+            raise invalid("theta_limit", "another limit: the target's centre is behind the hold plane", limit)
         return ThetaSet(np.eye(3), np.zeros(3), np.zeros(3))
     if limit == "polytope":
         return _polytope(shape, sides @ inputs(motion, attitudes), most, _beside(motion, attitudes))
@@ -68,9 +72,7 @@ def theta_set(
     faces = shape.faces()
     normals = np.vstack([faces.normals, [0.0, 1.0, 0.0]])
     high = np.append(faces.offsets, max(y_max, shape.y0))
-    if motion.held:
-        far = _farthest(shape, y_max) if y_max < _FARTHEST else 0.0
-        high[:-1] -= far * _beside(motion, attitudes)
+    _lean_in(shape, normals, high, _beside(motion, attitudes))
     return ThetaSet(normals, np.full(len(high), -np.inf), high, y_max)
 
 
@@ -81,10 +83,15 @@ def _beside(motion: Sampled, attitudes: Floats) -> float:
     return float(np.linalg.norm(places(motion, attitudes) - np.eye(3), 2, axis=(1, 2)).max())
 
 
-def _farthest(shape: DockingCorridor, y: float) -> float:
-    """Distance from the target to the corners of the corridor cut at ``y``, m."""
-    x, z = shape.x0 + (y - shape.y0) / shape.c_x, shape.z0 + (y - shape.y0) / shape.c_z
-    return math.hypot(x, y, z)
+def _lean_in(shape: DockingCorridor, normals: Floats, high: Floats, beside: float) -> None:
+    """Change the corridor's rows, the first five of ``normals`` and ``high``, so that ``beside`` |theta| is left over.
+
+    In the corridor |theta| <= |(x0 - y0 / c_x, 0, z0 - y0 / c_z)| + y |(1 / c_x, 1, 1 / c_z)|, which is affine in y.
+    """
+    if beside > 0.0:
+        x0, z0 = shape.x0 - shape.y0 / shape.c_x, shape.z0 - shape.y0 / shape.c_z
+        normals[:5, 1] += beside * math.hypot(1.0 / shape.c_x, 1.0, 1.0 / shape.c_z)
+        high[:5] -= beside * math.hypot(x0, z0)
 
 
 def printed_cut(shape: DockingCorridor, radius: float) -> float:
@@ -145,7 +152,6 @@ def _polytope(shape: DockingCorridor, maps: Floats, u_max: float, beside: float)
     hull = ConvexHull(normals / room[:, None])
     # The corridor's own faces are identified by their order, so they stay.
     kept = np.union1d(np.arange(len(faces.offsets)), np.sort(hull.vertices))
-    if beside > 0.0:
-        corners = inside - hull.equations[:, :3] / hull.equations[:, 3:]
-        high[: len(faces.offsets)] -= beside * float(np.linalg.norm(corners, axis=1).max())
+    # What the faces imply, they imply all the more when they lean in.
+    _lean_in(shape, normals, high, beside)
     return ThetaSet(normals[kept], np.full(len(kept), -np.inf), high[kept])

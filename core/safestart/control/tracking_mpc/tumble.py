@@ -81,8 +81,11 @@ class Tumble:
         """
         moments, squares = self.principal()
         i1, i2, i3 = (float(e) for e in moments)
+        grown = 1.0 + 1e-12
         if i3 - i1 <= 1e-12 * i3:
-            return float(np.sqrt(squares.sum())), 0.0
+            # A ball but for rounding: its energy bounds |omega|, Euler's equations |omega dot|.
+            most = float(squares.sum()) * i3 / i1
+            return grown * float(np.sqrt(most)), grown * most * (i3 - i1) / i1
         # The middle square is the free variable: w1^2 = s1 + b1 (q - s2), w3^2 = s3 + b3 (q - s2).
         s1, s2, s3 = (float(e) for e in squares)
         b1 = -i2 * (i3 - i2) / (i1 * (i3 - i1))
@@ -95,16 +98,16 @@ class Tumble:
         middle = np.array([1.0, 0.0])
         total = np.polyadd(np.polyadd(first, middle), third)
         turning: Floats = np.zeros(3)
+        # Not polymul, which drops leading zeros: with two equal moments one of the squares stays.
         for (near, far), moment, gap in (
             ((middle, third), i1, i2 - i3),
             ((third, first), i2, i3 - i1),
             ((first, middle), i3, i1 - i2),
         ):
-            turning = turning + (gap / moment) ** 2 * np.polymul(near, far)
+            turning = turning + (gap / moment) ** 2 * np.convolve(near, far)
         places = [0.0, high]
         if turning[0] != 0.0:
             places.append(float(np.clip(-0.5 * turning[1] / turning[0], 0.0, high)))
-        grown = 1.0 + 1e-12
         return (
             grown * float(np.sqrt(max(np.polyval(total, places)))),
             grown * float(np.sqrt(max(0.0, *np.polyval(turning, places)))),

@@ -15,9 +15,13 @@ from safestart.constraints.corridor import Corridor, polyhedron
 from safestart.errors import invalid
 from safestart.model.scenario import Floats, number
 
+FIXED_TOLERANCE = 1e-9
+"""Allowed violation (m) of corridor rows that no input affects: a start's own, and those of the next step."""
 ThetaLimit = Literal["printed", "ball", "corners", "polytope", "zero"]
 InputLimit = Literal["box", "ball"]
 MAX_HORIZON = 400
+LEAST_U_MAX = 1e-9
+"""Smallest u_max, m/s: below it rows of theta and of the corridor differ by more than doubles tell apart."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +81,7 @@ class Tuning:
     input_limit: InputLimit = "box"
 
     def __post_init__(self) -> None:
-        number("u_max", self.u_max, 0.0, 100.0, open_low=True)
+        number("u_max", self.u_max, LEAST_U_MAX, 100.0)
         number("rho", self.rho, 0.0, 1e9, open_low=True)
         number("tau", self.tau, 0.0, 1e9)
         for name in ("n_c", "n_lqr"):

@@ -58,7 +58,9 @@ class TorqueFreeAttitude(WireModel):
     )
     body_rate_deg_s: Vector = Field(description="Angular velocity at t = 0, body axes, deg/s.")
     reference: Reference = Field(
-        "inertial", description="What the rate is against: inertial axes, or LVLH at t = 0."
+        "inertial",
+        description="What the rate is against: inertial axes, or LVLH, which turns, at t = 0. Not tracking-mpc's lvlh, "
+        "which takes LVLH as inertial.",
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -47,13 +48,14 @@ def run(inputs: SpaceInputs, context: Context) -> ProcessOutput:
             tracking.append((said, told))
         answers.append(answer)
         context.step(k + 1, len(states), "starts")
-    errors = [model_error(question, state) for state in states]
+    spans = [_covering(question, answer) for answer in answers]
+    errors = [model_error(span, state) for span, state in zip(spans, states, strict=True)]
     distances = (watch.offsets - states[:, :3] @ watch.normals.T).tolist()
     proof: list[dict[str, Any] | None] | None = None
     if inputs.proofs:
         proof = [
-            None if answer.verdict is Verdict.UNDECIDED else proof_in_space(question, state, answer, half)
-            for state, answer in zip(states, answers, strict=True)
+            None if answer.verdict is Verdict.UNDECIDED else proof_in_space(span, state, answer, half)
+            for span, state, answer in zip(spans, states, answers, strict=True)
         ]
     return ProcessOutput(
         {
@@ -79,12 +81,12 @@ def run(inputs: SpaceInputs, context: Context) -> ProcessOutput:
             "flight": [
                 None
                 if answer.verdict is not Verdict.GO or answer.thrust is None
-                else curves(question, state, answer.thrust)
-                for state, answer in zip(states, answers, strict=True)
+                else curves(span, state, answer.thrust)
+                for span, state, answer in zip(spans, states, answers, strict=True)
             ]
             if inputs.flights
             else None,
-            "turning": turning(question) if inputs.flights else None,
+            "turning": turning(max(spans, key=lambda one: one.steps)) if inputs.flights else None,
             "tracking": [said for said, _ in tracking] or None,
             "proof": proof,
         }
@@ -96,6 +98,13 @@ def _by_tracking(inputs: SpaceInputs, question: SpaceQuestion) -> Any:
     from safestart.processes.start_in_space.tracking import flights
 
     return flights(inputs, question)
+
+
+def _covering(question: SpaceQuestion, answer: Answer) -> SpaceQuestion:
+    """The question `stay` over a whole flight that arrives after ``horizon_s``: all said is proved, and shown."""
+    if question.goal is not None or answer.thrust is None or len(answer.thrust) <= question.steps:
+        return question
+    return replace(question, steps=len(answer.thrust))
 
 
 def _end(question: SpaceQuestion, answer: Answer) -> float | None:

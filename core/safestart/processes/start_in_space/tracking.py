@@ -65,7 +65,7 @@ def flights(inputs: SpaceInputs, question: SpaceQuestion) -> Flights:
         words = flown.sentence(flight, exact, told, inputs.within_s)
         answer = exact
         if by == "tracking":
-            thrust = _shares(question, flight.thrust)[: question.steps]
+            thrust = _shares(question, flight.thrust)
             answer = Answer(Verdict.GO, flight.margin, flight.margin, np.inf, thrust, (), 0)
         elif verdict is Verdict.UNDECIDED:
             answer = replace(exact, verdict=verdict, margin_m=math.nan, thrust=None)

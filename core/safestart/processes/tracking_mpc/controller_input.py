@@ -17,10 +17,13 @@ class TrackingAnswer(WireModel):
         description="When its nominal flight is at rest at the port, s; null: not within within_s."
     )
     certified: bool = Field(description="Every plan of the flight is one for all later steps: none is lost.")
-    margin_m: float | None = Field(description="Proved distance of the flight to every face at all times, m.")
+    margin_m: float | None = Field(
+        description="Proved distance of the flight to every face, m, at all times until it arrives and until horizon_s."
+    )
     theta_m: list[float] | None = Field(description="Artificial reference of the first plan, body axes, m.")
     least_violation_m: float | None = Field(
-        description="Least violation of the first program where it has no plan."
+        description="Least t > 0 with which the first program has a plan: corridor overstepped by t m, later inputs "
+        "by t u_max per m. Not comparable with exact_margin_m."
     )
     delta_v_m_s: float | None = Field(description="Impulse of the flight, m/s.")
     exact_verdict: Literal["GO", "NO_GO", "UNDECIDED"]

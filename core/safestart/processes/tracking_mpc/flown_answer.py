@@ -48,14 +48,16 @@ def sentence(flight: Taken, exact: Answer, told: str, within: float, *, stays: b
     if verdict is Verdict.GO and flight.arrived is not None:
         return (
             f"the tracking MPC arrives: at rest at the port after {flight.arrived * DT_S:g} s, at least "
-            f"{flight.margin:.3g} m from every face, no plan is ever lost; {beside}"
+            f"{flight.margin:.3g} m from every face for {len(flight.thrust) * DT_S:g} s, no plan is ever lost; {beside}"
         )
     if verdict is Verdict.NO_GO:
         return told
     if flight.theta is None:
         lacks = f"the tracking MPC has no plan (least violation {flight.violation:.3g} m)"
+    elif flight.lost:
+        lacks = f"the tracking MPC loses its plan after {len(flight.thrust) * DT_S:g} s"
     elif flight.arrived is None:
-        lacks = f"the tracking MPC is not at rest at the port within {within:g} s, or loses its plan"
+        lacks = f"the tracking MPC keeps its plan, but is not at rest at the port within {within:g} s"
     elif not flight.certified:
         lacks = "the tracking MPC arrives, but not every plan is certified for later steps"
     elif not stays:

@@ -133,10 +133,12 @@ class TrackingMpcOutputs(WireModel):
     feasible: bool = Field(description="The controller has a plan from the start.")
     exact_feasible: bool = Field(description="Some impulse history keeps the corridor at all nodes.")
     least_violation_m: float | None = Field(
-        description="Least t > 0 with which there is a plan: corridor overstepped by t, later inputs by t u_max per m."
+        description="Least t > 0 with which there is a plan: corridor overstepped by t, later inputs by t u_max per m. "
+        "Not comparable with exact_violation_m."
     )
     exact_violation_m: float | None = Field(
-        description="Least violation of any history; negative: room to spare."
+        description="Least violation of the corridor by any history, inputs within their limit; negative: room to "
+        "spare. Not comparable with least_violation_m, which lets inputs exceed theirs, too."
     )
     exact_infeasibility_proved: bool = Field(description="A dual solution shows that no history exists.")
     theta_max_m: ThetaMax

@@ -7,12 +7,10 @@ import math
 import numpy as np
 
 from safestart.control.tracking_mpc.tumble import Tumble
-from safestart.control.tracking_mpc.tuning import DockingCorridor
+from safestart.control.tracking_mpc.tuning import FIXED_TOLERANCE, DockingCorridor
 from safestart.errors import InvalidInput, invalid
 from safestart.processes.tracking_mpc.spec import TrackingMpcInputs
 
-_ON_A_FACE_M = 1e-9
-"""A start this far outside is on the face: rows are kept as closely."""
 _WIRE_NAMES = {
     "inertia": "inertia_kg_m2",
     "attitude": "attitude_wxyz",
@@ -29,7 +27,7 @@ def require_possible(inputs: TrackingMpcInputs) -> None:
         name = str(error.field)
         raise invalid(_WIRE_NAMES.get(name, name), str(error.required), error.received) from None
     slack = float(shape_of(inputs).faces().slack(np.array(inputs.start.position_m)).min())
-    if slack < -_ON_A_FACE_M:
+    if slack < -FIXED_TOLERANCE:
         raise invalid("start.position_m", "a position inside the corridor", f"one {-slack:.3g} m outside")
     if inputs.thrust == "held" and inputs.theta_limit == "printed":
         raise invalid("theta_limit", "a limit for held thrust: ball, corners, polytope or zero", "printed")

@@ -93,20 +93,22 @@ class TrackingMpcInputs(WireModel):
         [1.0, 0.0, 0.0, 0.0],
         min_length=4,
         max_length=4,
-        description="LVLH to body at t = 0, scalar first: r_B = C r_L, C = (s^2 - v.v) I + 2 v v^T - 2 s [v]x.",
+        description="LVLH to body at t = 0, scalar first: r_B = C r_L, C = (s^2 - v.v) I + 2 v v^T - 2 s [v]x. "
+        "Scaled to length 1.",
     )
     body_rate_deg_s: Triple = Field(
         [0.0, 3.53, 3.53], min_length=3, max_length=3, description="Angular velocity, body axes, deg/s."
     )
     attitude_reference: Literal["inertial", "lvlh"] = Field(
         "inertial",
-        description="inertial: the rate is inertial and LVLH turns; lvlh: the paper's (2)-(3), LVLH taken as inertial.",
+        description="inertial: the rate is inertial and LVLH turns; lvlh: the paper's (2)-(3), LVLH taken as inertial, "
+        "with which the paper's figures hold. Not go-no-go's lvlh, a rate relative to the turning LVLH.",
     )
     orbit_radius_m: float = Field(7_144_800.0, ge=EARTH_RADIUS, le=1e9, description="Circular orbit, m.")
     period_s: float = Field(
         1.0, gt=0, le=MAX_PERIOD_S, description="Length T of a step, s; an impulse ends it."
     )
-    u_max_m_s: float = Field(0.075, gt=0, le=100, description="Largest input per step, m/s.")
+    u_max_m_s: float = Field(0.075, ge=1e-9, le=100, description="Largest input per step, m/s.")
     input_limit: Literal["box", "ball"] = Field(
         "box",
         description="box: u_max_m_s per body axis. ball: in length; plans use a polyhedron of 62 faces inside it.",

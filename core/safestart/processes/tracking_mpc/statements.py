@@ -17,18 +17,23 @@ def statements(inputs: TrackingMpcInputs, document: dict[str, Any]) -> list[dict
         (
             "The controller has a plan from this start",
             "HELD" if document["feasible"] else "BROKEN",
-            f"least violation {_shown(document['least_violation_m'])} m",
+            f"least violation {_shown(document['least_violation_m'])} m; u_max over an input's limit counts as 1 m",
         ),
         (
             f"Some impulse history keeps the corridor for {inputs.steps} steps",
             "HELD" if document["exact_feasible"] else ("BROKEN" if proved else "UNDECIDED"),
-            f"least violation {_shown(document['exact_violation_m'])} m",
+            f"least violation {_shown(document['exact_violation_m'])} m of the corridor alone; not comparable",
         ),
     ]
     if certificate is not None:
-        recursive = certificate["recursive_feasibility"]
+        recursive, settled = certificate["recursive_feasibility"], document["time_to_5cm_s"]
         flown = len(document["inputs_m_s"])
         said += [
+            (
+                "The flight arrives: it ends within 5 cm of the port",
+                "HELD" if settled is not None else "BROKEN",
+                f"{_shown(document['range_m'][-1])} m after {document['time_s'][-1]:g} s",
+            ),
             (
                 "Every plan is one for all later steps",
                 "HELD" if recursive["holds"] else "BROKEN",

@@ -72,7 +72,7 @@ def decide(inputs: GoNoGoInputs, _: Conditions, context: Context) -> Verdicts:
                 flight, exact, asked.sentence(question, exact), inputs.within_s, stays=stays
             ),
             "end_s": flight.arrived * DT_S if by == "tracking" and flight.arrived else None,
-            "proof": proof_of(question, start, answer) if by and inputs.proofs else None,
+            "proof": proof_of(_covering(question, answer), start, answer) if by and inputs.proofs else None,
             "decided_by": by,
             "tracking": flown.flown_answer(flight, exact),
         }
@@ -121,10 +121,15 @@ def _answer(question: Question, flight: Taken) -> Answer:
     """The flight as a GO of the exact question; of `synchronize` with how it goes on after its end."""
     rows, d = len(flight.thrust), question.dimensions
     arrival = None
-    if question.goal is None:
-        rows = question.steps
-    elif flight.arrived is not None:
+    if question.goal is not None and flight.arrived is not None:
         end = flight.states[-1]
         arrival = arrival_of(question, np.concatenate([end[:d], end[3 : 3 + d]]), rows * question.dt)
-    thrust = flight.thrust[:rows, :d]
+    thrust = flight.thrust[:, :d]
     return Answer(Verdict.GO, flight.margin, flight.margin, np.inf, thrust, (), 0, arrival=arrival)
+
+
+def _covering(question: Question, answer: Answer) -> Question:
+    """The question `stay` over the whole flight where it arrives after ``horizon_s``: all that is said is proved."""
+    if question.goal is not None or answer.thrust is None or len(answer.thrust) <= question.steps:
+        return question
+    return replace(question, steps=len(answer.thrust))
