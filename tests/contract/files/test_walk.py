@@ -35,7 +35,7 @@ def _run(line: str, folder: Path) -> str:
 def walked(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[str]]:
     folder = tmp_path_factory.mktemp("walk")
     said = []
-    lines = [line for block in _blocks("sh") for line in block.splitlines()]
+    lines = [line for block in _blocks("sh")[:2] for line in block.splitlines()]  # the walk's own
     assert len(lines) == 5
     for line in lines:
         if line.startswith("echo "):

@@ -148,7 +148,7 @@ def test_an_answer_that_takes_too_long(tmp_path: Path, monkeypatch: pytest.Monke
         quick = {**POINT, "x_m": 5, "y_m": 40, "method": "exact"}
         assert client.get("/go-no-go", params=quick).status_code == 200  # a process has started
         # As if the estimate were wrong; the helper process has its own, so the question goes there by its document.
-        monkeypatch.setattr("safestart_service.computing.dispatch.cost", lambda _: 0.1)
+        monkeypatch.setattr("safestart.processes.go_no_go.one_start.OneAtRest.cost", lambda _: 0.1)
         slow = {**POINT, "x_m": 5, "y_m": 40, "method": "exact", "horizon_s": 600}
         slow |= {"omega_t_half_width_deg_s": 0.1}  # half a minute
         begun = time.monotonic()

@@ -10,10 +10,9 @@ from scipy import sparse
 
 from safestart.constraints.corridor import corridor_of
 from safestart.dynamics.cwh import planar_input, planar_transition
-from safestart.engines import exact
 from safestart.engines.backward import Backward
 from safestart.engines.base import Engine, Problem, ResultCode
-from safestart.engines.exact import Exact
+from safestart.engines.exact import Exact, reach_of
 from safestart.engines.forward import Forward
 from safestart.engines.region import restrict
 from safestart.model.scenario import Chaser, CorridorShape, Floats, Grid, Rest, Scenario, SetKind, Target
@@ -88,7 +87,7 @@ def test_flight_under_the_maximising_thrust_reaches_the_support(rest: Rest) -> N
     """RK4 through the CWH equations, thrust a_max Phi_rv(T - t)^T e / |.|: the margin's witness."""
     scenario, horizon, n = Scenario.of(3.0, 0.1, mean_motion=1.3e-3), 40.0, 1.3e-3
     omega = scenario.target.tumble_rate
-    model = exact._reach(scenario, horizon, rest)
+    model = reach_of(scenario, horizon, rest)
     p = np.array([-40.0, -60.0])
     velocity = omega * np.array([-p[1], p[0]]) if rest is Rest.BODY else np.zeros(2)
     theta = omega * horizon
@@ -244,7 +243,7 @@ class TestEngine:
 
     def test_chunks_do_not_change_the_answer(self, monkeypatch: pytest.MonkeyPatch) -> None:
         whole = Exact().solve(self.problem, Context())
-        monkeypatch.setattr(exact, "CHUNK", 100)
+        monkeypatch.setattr("safestart.engines.exact.CHUNK", 100)
         seen: list[float] = []
         parts = Exact().solve(self.problem, Context(lambda done, total, _: seen.append(done / total)))
         np.testing.assert_array_equal(whole.margin, parts.margin)

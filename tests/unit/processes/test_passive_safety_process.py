@@ -91,8 +91,8 @@ def test_dismissal_and_progress() -> None:
     ("change", "field"),
     [
         ({"horizon_min": 0}, "horizon_min"),
-        ({"abort_windows_min": [[5, 3]]}, "body"),
-        ({"abort_windows_min": [[5, 301]]}, "body"),
+        ({"abort_windows_min": [[5, 3]]}, "abort_windows_min"),
+        ({"abort_windows_min": [[5, 301]]}, "abort_windows_min"),
         ({"abort_windows_min": [[5]]}, "abort_windows_min.0"),
         ({"box_half_width_m": 0}, "box_half_width_m"),
         ({"model": "elliptic"}, "model"),

@@ -122,9 +122,9 @@ def test_the_variant_is_part_of_every_shard() -> None:
 @pytest.mark.parametrize(
     ("change", "field"),
     [
-        ({"arc": {"from_deg": 90, "to_deg": 0}}, "body"),
-        ({"arc": {"inner_m": 900, "outer_m": 800}}, "body"),
-        ({"arc": {"rings": 200, "angles": 2000}}, "body"),
+        ({"arc": {"from_deg": 90, "to_deg": 0}}, "arc"),
+        ({"arc": {"inner_m": 900, "outer_m": 800}}, "arc"),
+        ({"arc": {"rings": 200, "angles": 2000}}, "starts"),
         ({"grid": {"nx": 1}}, "grid.nx"),
         ({"windows": 0}, "windows"),
         ({"starts": "line"}, "starts"),
