@@ -34,6 +34,7 @@ class AttitudeCourse:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "reference", reference_of(self.reference))
+        _require_body(self.body)
         system_of(self.time_system)
         count = len(self.epochs)
         if count < 1 or self.quaternions.shape != (count, 4):
@@ -48,6 +49,15 @@ class AttitudeCourse:
         if wrong.any():
             k = int(np.argmax(wrong))
             raise invalid("quaternions", "length 1 within 0.001", f"{length[k]:g} in entry {k + 1}")
+
+
+def _require_body(name: str) -> None:
+    """Raise ``InvalidInput`` for axes that are those of no body: an attitude of a frame says nothing of the target."""
+    plain = name.upper().replace("_", "").replace("-", "").replace(" ", "")
+    axes = ("LVLH", "RTN", "RSW", "RIC", "NTW", "TNW", "QSW", "PQW", "TOD", "MOD")
+    known = plain.startswith((*axes, "ITRF")) or plain in ("GCRF", "ICRF", "EME2000", "J2000", "TEME", "GTOD")
+    if not plain or known:
+        raise invalid("REF_FRAME_B", "the body's axes (SC_BODY_1 or another name)", name)
 
 
 def reference_of(name: str) -> str:

@@ -1,7 +1,7 @@
 """The XML form of CCSDS messages (505.0-B-3) as the tokens of KVN, and back.
 
-Document types are refused: declarations of entities, and so entity bombs and external files, raise an error. What parsing
-costs is bounded by what the bytes hold, before they are parsed.
+Document types are refused: declarations of entities, and so entity bombs and external files, raise an error. What
+parsing costs is bounded by what the bytes hold, before they are parsed.
 """
 
 from __future__ import annotations
