@@ -151,6 +151,14 @@ FREE = {"kind": "torque_free", "inertia_kg_m2": BODY, "body_rate_deg_s": [1, 0, 
         ({"corridor": {"axis": [0, 0, 0]}}, "corridor.axis"),
         (
             {
+                "corridor": {
+                    "faces": [{"name": n, "normal": [0, 0, int(n == "a")], "offset_m": 9} for n in "ab"]
+                }
+            },
+            "corridor.faces.1.normal",
+        ),
+        (
+            {
                 "a_max_m_s2": None,
                 "thrust": {"kind": "thrusters", "directions": [[1, 0, 0]] * 3, "a_max_m_s2": [1, 1, 1]},
             },
@@ -166,7 +174,7 @@ FREE = {"kind": "torque_free", "inertia_kg_m2": BODY, "body_rate_deg_s": [1, 0, 
         ),
         ({"keep_outs": [{"name": "a", "radius_m": 1}] * 2}, "keep_outs"),
         ({"keep_outs": [{"name": "left", "radius_m": 1}]}, "keep_outs"),
-        ({"keep_outs": [{"name": "a", "radius_m": 1, "centre_m": [1e6, 0, 0]}]}, "keep_outs.centre_m"),
+        ({"keep_outs": [{"name": "a", "radius_m": 1, "centre_m": [1e6, 0, 0]}]}, "keep_outs.0.centre_m"),
         ({"field_of_view": {"axis": [0, 0, 0], "half_angle_deg": 10}}, "field_of_view.axis"),
         ({"field_of_view": {"axis": [0, 1, 0], "half_angle_deg": 90}}, "field_of_view.half_angle_deg"),
         (

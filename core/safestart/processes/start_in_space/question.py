@@ -123,15 +123,11 @@ def _as_asked() -> Iterator[None]:
     try:
         yield
     except InvalidInput as error:
-        places = {
-            "faces": "corridor.faces",
-            "normal": "corridor.faces.normal",
-            "offset": "corridor.faces.offset_m",
-            "hold": "hold_m",
-            "inertia": "inertia_half_width",
-        }
+        places = {"hold": "hold_m", "inertia": "inertia_half_width", "times": "attitude.times_s"}
         field = str(error.field)
-        place = "attitude.times_s" if field == "times" else places.get(field, field)
+        place = places.get(field, field)
+        if field.partition(".")[0] == "faces":
+            place = f"corridor.{field.removesuffix('.offset')}" + ".offset_m" * field.endswith(".offset")
         raise invalid(place, str(error.required), error.received) from None
 
 
