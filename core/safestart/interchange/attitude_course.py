@@ -64,7 +64,7 @@ class AttitudeCourse:
         """(S, 2): first and last epochs, TAI, of the spans in which the attitude is known, in time.
 
         A span ends where a segment does, at the ends of what is useable, and before a gap: entries more than
-        :data:`LONGEST_GAP_S` apart, or so far apart that the body, at its rate beside the gap, turns by more than
+        :data:`LONGEST_GAP_S` apart, or so far apart that the body, at its rate there or beside it, turns by more than
         :data:`LARGEST_TURN` in it. Slerp across one would make any body slow.
         """
         begins = sorted({*self.pieces, *(1 + np.nonzero(self._gaps())[0]).tolist()})
@@ -83,7 +83,7 @@ class AttitudeCourse:
         seconds = np.diff(self.epochs) / SECOND
         turns = turns_of(self.quaternions)
         rates = np.concatenate([[0.0], turns / seconds, [0.0]])
-        predicted = np.maximum(rates[:-2], rates[2:]) * seconds
+        predicted = np.maximum(turns, np.maximum(rates[:-2], rates[2:]) * seconds)
         return np.asarray((seconds > LONGEST_GAP_S) | (predicted > LARGEST_TURN))
 
 

@@ -14,7 +14,7 @@ from safestart.attitude.spin import Spin
 from safestart.attitude.table import LARGEST_STEP, Table
 from safestart.attitude.turning import SmoothAttitude
 from safestart.errors import invalid
-from safestart.interchange.attitude_course import LONGEST_GAP_S, AttitudeCourse, turns_of
+from safestart.interchange.attitude_course import AttitudeCourse, turns_of
 from safestart.interchange.ephemeris import Ephemeris
 from safestart.interchange.epochs import SECOND, Nanoseconds, seconds_since, text_of
 from safestart.interchange.frames import rotation_to_gcrf, to_gcrf
@@ -54,10 +54,12 @@ class Encounter:
         if isinstance(attitude, AttitudeCourse):
             if attitude.reference != "RTN" and "ITRF" in (self.chaser.frame, self.target.frame):
                 raise invalid("REF_FRAME", "courses in an inertial frame beside an inertial attitude", "ITRF")
-            turns = turns_of(attitude.quaternions)
+            turns, seconds = turns_of(attitude.quaternions), np.diff(attitude.epochs)
+            # A step as long as others must not turn too far; in a hole, or from segment to segment, nothing is known.
             turns[[piece - 1 for piece in attitude.pieces[1:]]] = 0.0
-            turns[np.diff(attitude.epochs) > round(LONGEST_GAP_S * SECOND)] = 0.0
-            if len(turns) and float(turns.max()) > LARGEST_STEP:
+            if len(turns):
+                turns[seconds > 1.5 * np.median(seconds)] = 0.0
+            if float(turns.max(initial=0.0)) > LARGEST_STEP:
                 k = int(np.argmax(turns))
                 at = text_of(attitude.epochs[k : k + 1], attitude.time_system)[0]
                 raise invalid("attitude", "at most 90 degrees between two entries", f"more after {at}")

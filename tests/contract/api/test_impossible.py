@@ -61,7 +61,7 @@ IMPOSSIBLE: list[tuple[str, dict[str, Any], str]] = [
     ("commit-timeline", TIMELINE | {"start": "2026-03-02T12:00:00"}, "stop"),
     ("commit-timeline", TIMELINE | {"confidence": 0.9}, "confidence"),
     ("commit-timeline", TIMELINE | {"spin": {"rate_deg_s": 1, "axis": [0, 0, 0]}}, "spin"),
-    ("commit-timeline", TIMELINE | {"corridors": [{"axis": [0, 0, 0]}]}, "corridors.0"),
+    ("commit-timeline", TIMELINE | {"corridors": [{"axis": [0, 0, 0]}]}, "corridors.0.axis"),
     ("commit-timeline", TIMELINE | {"corridors": [{}, {}]}, "corridors"),
     ("sweep-in-space", {"attitude": FLAT_BODY, "a_max_m_s2": 0.1}, "attitude.inertia_kg_m2"),
 ]

@@ -189,7 +189,7 @@ def test_an_elliptic_orbit_and_a_tumble_about_a_slanted_axis() -> None:
         ({"stop": "2027-03-01T12:03:00"}, "step_s", "at most 100000 instants"),
         ({"start": "soon"}, "start", "start"),
         ({"corridors": [{}, {}]}, "corridors", "names that differ"),
-        ({"corridors": [{"axis": [0, 0, 0]}]}, "axis", "not all 0"),
+        ({"corridors": [{"axis": [0, 0, 0]}]}, "corridors.0.axis", "not all 0"),
         ({"horizon_s": 31}, "horizon_s", "horizon_s"),
         ({"other": 1}, "other", "no field of this name"),
     ],

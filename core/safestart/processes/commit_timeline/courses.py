@@ -48,7 +48,7 @@ def judges_of(inputs: CommitTimelineInputs, encounter: Encounter) -> list[Judge]
     corridors = [
         Corridor(
             one.name,
-            _named(f"corridors.{k}", five_faces, one.shape(), (one.axis[0], one.axis[1], one.axis[2])),
+            _named(f"corridors.{k}.axis", five_faces, one.shape(), (one.axis[0], one.axis[1], one.axis[2])),
         )
         for k, one in enumerate(inputs.corridors)
     ]
