@@ -74,8 +74,30 @@ def certify(scenario: Scenario, points: Floats, rest: Rest = Rest.LVLH) -> Certi
 def certify_by(rates: Rates, corridor: CorridorShape, points: Floats) -> Certified:
     """:func:`certify` for given rates; ``points`` as there, checked."""
     shape, dimensions = points.shape[:-1], points.shape[-1]
-    place = np.ascontiguousarray(points.reshape(-1, dimensions).T)
     faces = Faces.of(corridor, dimensions)
+    margin, binding, member, drop = _arrays(
+        rates, faces, np.ascontiguousarray(points.reshape(-1, dimensions).T)
+    )
+    return Certified(
+        (*faces.names, OUT_OF_REACH),
+        (margin > 0.0).reshape(shape),
+        margin.reshape(shape),
+        binding.reshape(shape),
+        member.reshape(shape),
+        drop.reshape(shape),
+    )
+
+
+def _arrays(rates: Rates, faces: Faces, place: Floats) -> tuple[Floats, Ints, Ints, Floats]:
+    """Margin, binding, member and drop of the starts ``place`` (2 or 3, n), a block at a time."""
+    parts = row_blocks(max(place.shape[1], 1), 1)
+    margin, binding, member, drop = zip(
+        *(_block(rates, faces, place[:, part]) for part in parts), strict=True
+    )
+    return np.concatenate(margin), np.concatenate(binding), np.concatenate(member), np.concatenate(drop)
+
+
+def _block(rates: Rates, faces: Faces, place: Floats) -> tuple[Floats, Ints, Ints, Floats]:
     start = faces.room(place)
     # Outside the corridor no manoeuvre helps, so the margin is the start's own.
     margin, binding = start.min(axis=0), start.argmin(axis=0)
@@ -87,15 +109,7 @@ def certify_by(rates: Rates, corridor: CorridorShape, points: Floats) -> Certifi
     margin[inside] = np.where(lost, _shortfall(rates, place), found.margin)
     binding[inside] = np.where(lost, len(faces.names), found.binding)
     member[inside], drop[inside] = found.member, found.drop
-    margin -= ROUNDING
-    return Certified(
-        (*faces.names, OUT_OF_REACH),
-        (margin > 0.0).reshape(shape),
-        margin.reshape(shape),
-        binding.reshape(shape),
-        member.reshape(shape),
-        drop.reshape(shape),
-    )
+    return margin - ROUNDING, binding, member, drop
 
 
 def certify_grid(scenario: Scenario, grid: Grid, rest: Rest = Rest.LVLH) -> CertifiedMap:

@@ -23,6 +23,7 @@ from safestart.interchange.foreign import refuse_foreign
 from safestart.interchange.matlab import arrays_in
 from safestart.interchange.source import text_of as decoded
 from safestart.model.scenario import Floats
+from safestart.records import parquet
 
 STATE = ("x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s")
 TURN = ("q_s", "q_x", "q_y", "q_z")
@@ -98,9 +99,9 @@ def parquet_of(columns: Mapping[str, Sequence[Any]]) -> bytes:
 def _columns(data: bytes, name: str) -> Columns:
     refuse_foreign(data)
     if data[:4] == b"PAR1":
-        pa, pq = _arrow()
+        pa, _ = _arrow()
         try:
-            table = pq.read_table(io.BytesIO(data))
+            table = parquet.read(data)
         except (pa.ArrowException, OSError) as error:
             raise invalid("file", "Parquet", str(error)) from None
         found: Columns = table.to_pydict()
