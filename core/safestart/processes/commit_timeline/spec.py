@@ -139,6 +139,7 @@ SPEC = ProcessSpec(
     inputs=CommitTimelineInputs,
     outputs=CommitTimelineOutputs,
     kernels=("exact answers",),
+    possible="safestart.processes.commit_timeline.question:require_possible",
     sharding=Sharding.of("safestart.processes.commit_timeline", light="split"),
     views=(
         Findings(
