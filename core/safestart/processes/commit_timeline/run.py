@@ -9,19 +9,18 @@ from typing import Any
 
 import numpy as np
 
-from safestart.constraints.thrust_limit import ThrustLimit
 from safestart.interchange.epochs import SECOND, Nanoseconds, shortened, text_of
 from safestart.interchange.tables import csv_of
 from safestart.processes.base import Artifact, ProcessOutput
+from safestart.processes.commit_timeline.courses import encounter_of, judges_of
 from safestart.processes.commit_timeline.plots import picture
-from safestart.processes.commit_timeline.question import encounter_of, faces_of
 from safestart.processes.commit_timeline.spec import CommitTimelineInputs
 from safestart.processes.commit_timeline.split import PARTS
 from safestart.processes.sharding import Part
 from safestart.processes.wire import finite
 from safestart.runtime.progress import Context
 from safestart.timeline.encounter import Encounter
-from safestart.timeline.verdicts import Corridor, Instant, Judge, joined
+from safestart.timeline.verdicts import Instant, Judge, joined
 
 _AT_ONCE = 50
 
@@ -81,12 +80,6 @@ def _run(corridor: str, run: Sequence[Instant], proofs: Sequence[str | None]) ->
         "begin_proof": proofs[0],
         "end_proof": proofs[1],
     }
-
-
-def judges_of(inputs: CommitTimelineInputs, encounter: Encounter) -> list[Judge]:
-    """One for each corridor; raises ``InvalidInput`` for names that come twice."""
-    thrust = ThrustLimit("ball", (inputs.a_max_m_s2,))
-    return [Judge(encounter, Corridor(name, faces), thrust) for name, faces in faces_of(inputs)]
 
 
 def merge(inputs: CommitTimelineInputs, parts: Sequence[Part], context: Context) -> ProcessOutput:

@@ -138,8 +138,8 @@ SPEC = ProcessSpec(
     ),
     inputs=CommitTimelineInputs,
     outputs=CommitTimelineOutputs,
+    possible="safestart.processes.commit_timeline.courses:require_possible",
     kernels=("exact answers",),
-    possible="safestart.processes.commit_timeline.question:require_possible",
     sharding=Sharding.of("safestart.processes.commit_timeline", light="split"),
     views=(
         Findings(

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from safestart.attitude.quaternion import matrix_of, unit_quaternion
-from safestart.errors import InvalidInput, invalid, named
+from safestart.errors import InvalidInput, Unavailable, invalid, named
 from safestart.hopping.approach import mean_motion_of
 from safestart.interchange.read import ephemeris_from, manoeuvres_from
 from safestart.missed_burn.plan import Burn, Errors, Failures, Plan, Question
@@ -30,12 +30,20 @@ def require_possible(inputs: PassiveAbortInputs) -> None:
     if inputs.plan is not None and is_message(inputs.plan):
         if inputs.target is None:
             raise invalid("target", "the target's OEM, OPM or OCM beside a plan from a message", "none")
-        plan, target = inputs.plan.encode(), inputs.target.encode()
-        named("plan", manoeuvres_from, plan), named("target", ephemeris_from, target)
-        named("plan", courses_of, plan, target)
         _shared(inputs)
+        _readable(inputs.plan.encode(), inputs.target.encode())
         return
     plain_question(with_burns(inputs))
+
+
+def _readable(plan: bytes, target: bytes) -> None:
+    """Raise ``InvalidInput`` for messages that say no plan; where the packages that read files are missing, the worker
+    looks."""
+    try:
+        named("plan", manoeuvres_from, plan), named("target", ephemeris_from, target)
+        named("plan", courses_of, plan, target)
+    except Unavailable:
+        return
 
 
 def with_burns(inputs: PassiveAbortInputs) -> PassiveAbortInputs:
