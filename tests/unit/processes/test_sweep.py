@@ -15,9 +15,9 @@ from safestart.model.metrics import wilson
 from safestart.model.scenario import Scenario
 from safestart.processes.execute import execute
 from safestart.processes.registry import process
+from safestart.processes.sharding import MAX_SHARDS
 from safestart.processes.sweep.cases import cases_of
 from safestart.processes.sweep.fleet import fly_all
-from safestart.processes.sharding import MAX_SHARDS
 from safestart.processes.sweep.inputs import SweepInputs
 from safestart.processes.sweep.split import DRAWN
 from safestart.records import parquet
@@ -208,7 +208,7 @@ def test_noise_belongs_to_the_case_and_not_to_the_shard() -> None:
         ({"controllers": ["autopilot"]}, "controllers"),
         ({"horizon_s": 61}, "horizon_s"),
         ({"r0_m": [0.4]}, "r0_m"),
-        ({"cases_per_cell": 10_000_000, "controllers": ["filter"]}, "cases_per_cell"),
+        ({"cases_per_cell": 20_000_000, "controllers": ["filter"]}, "cases_per_cell"),
         ({"cases_per_cell": 100_000}, "cases_per_cell"),
         ({"truth": {"model": "two_body_j2"}, "mean_motion_rad_s": 0}, "mean_motion"),
         ({"truth": {"thrust_magnitude_sigma": -1}}, "thrust_magnitude_sigma"),
@@ -228,7 +228,7 @@ def test_wilson_intervals() -> None:
 
 
 def test_a_very_large_sweep_has_larger_shards_of_whole_draws_and_not_more_of_them() -> None:
-    asked = inputs(cases_per_cell=16_666_666)
+    asked = inputs(cases_per_cell=16_666_666, controllers=["filter"])
     parts = SHARDING.parts(asked)
     assert 7_000 <= len(parts) <= MAX_SHARDS
     last: dict[int, int] = {}
