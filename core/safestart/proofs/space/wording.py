@@ -9,7 +9,7 @@ from flint import fmpq
 from safestart.proofs.space.demands import View
 from safestart.proofs.space.parts import Attitude
 from safestart.proofs.space.statement import SpaceStated
-from safestart.proofs.wording import margin_parts
+from safestart.proofs.wording import found, margin_parts
 
 _AXES = {"lvlh": "LVLH", "body": "the body frame"}
 
@@ -37,15 +37,15 @@ def lines(stated: SpaceStated) -> tuple[str, ...]:
 
 def _found(stated: SpaceStated) -> str:
     go, box = stated.verdict == "GO", any(stated.half)
-    found = "a thrust history keeps" if go else "no thrust history keeps more than"
+    who = found(stated)
     if box:
-        found = (
-            "one thrust history keeps, from every start of the box,"
+        who = (
+            "one thrust history, held over the steps, keeps, from every start of the box,"
             if go
-            else "from no start of the box a thrust history keeps more than"
+            else "from no start of the box a thrust history that is held over the steps keeps more than"
         )
-    parts = [*margin_parts(stated.limits), *("distance to " + repr(name) for name in stated.demands.regions)]
-    return f"{found} the margin, the least of {', '.join(parts)}"
+    parts = [*margin_parts(stated.limits), *("distance to " + ascii(name) for name in stated.demands.regions)]
+    return f"{who} the margin, the least of {', '.join(parts)}"
 
 
 def _unknowns(stated: SpaceStated) -> list[str]:
