@@ -23,14 +23,21 @@ from safestart.families.members import Family
 from safestart.families.prove import proof_for_all
 from safestart.model.scenario import Chaser, CorridorShape, Scenario, Target
 from safestart.proofs.checker import check
+from safestart.proofs.single import Verified
 from safestart.proofs.statement import digest_of
 from safestart.proofs.strict import ProofRejected
 from safestart.runtime.plain_json import loads
+from tests.fuzzing.abort.decided import truth_of_drifts
+from tests.fuzzing.abort.made import MADE as OF_BURNS
+from tests.fuzzing.abort.printed import printed as printed_drifts
 from tests.fuzzing.arrived import truth_after
 from tests.fuzzing.decided import truth
 from tests.fuzzing.disturbed import truth_against
 from tests.fuzzing.mutants import known_fields, mutants, paths
 from tests.fuzzing.printed import printed
+from tests.fuzzing.space.decided import truth_in_space
+from tests.fuzzing.space.made import MADE as IN_SPACE
+from tests.fuzzing.space.printed import printed as printed_in_space
 
 Document = dict[str, Any]
 SHAPE = CorridorShape(1.2, 0.7, 3.0, 2.0, 0.75)
@@ -96,6 +103,8 @@ MAKERS: dict[str, Callable[[], Document]] = {
         Question(_scenario(0.05, 0.1), 0.5, 2, 3), Disturbance(0.01), 1.0, 6.0, 0.5, 0.1, -0.2, 0.05
     ),
     "family-no-go": lambda: _all((7.0, 6.0, 0.5, 0.0), 0.1),
+    **IN_SPACE,
+    **OF_BURNS,
 }
 KINDS = tuple(MAKERS)
 
@@ -104,7 +113,8 @@ KINDS = tuple(MAKERS)
 def original(kind: str) -> str:
     """The document as text, small enough for a mutant to be checked in milliseconds."""
     made = MAKERS[kind]()
-    assert made["verdict"] == ("NO_GO" if "no-go" in kind else "GO"), kind
+    wanted = "PROVED" if kind in OF_BURNS else "NO_GO" if "no-go" in kind else "GO"
+    assert made["verdict"] == wanted, kind
     return json.dumps(made)
 
 
@@ -177,6 +187,20 @@ def _once(
     return seen[text]
 
 
+def decided(found: Verified, document: Document, rng: Random) -> str:
+    """Whether what the checker says of a document is true, by solvers of another kind."""
+    if document["schema"] == "safestart-proof/2":
+        return truth_in_space(printed_in_space(found.verdict, found.margin_m, found.statement), document, rng)
+    if found.verdict == "PROVED":
+        said = printed_drifts(found.statement)
+        return "false" if said.least != found.margin_m else truth_of_drifts(said, rng)
+    claim = printed(found.verdict, found.margin_m, found.statement)
+    answer = truth_against(claim, document, rng) if claim.who == "against" else truth(claim, rng)
+    if claim.stop is not None and answer != "false":
+        answer = "false" if truth_after(claim, document) == "false" else answer
+    return answer
+
+
 def _outcome(mutant: Any, known: dict[tuple[str, tuple[str, ...]], float], rng: Random) -> str:
     try:
         # As a file would give it, where it can be one.
@@ -191,15 +215,12 @@ def _outcome(mutant: Any, known: dict[tuple[str, tuple[str, ...]], float], rng: 
         return "accepted: unread"
     key = found.verdict, found.statement
     if key in known:
-        implied = found.margin_m <= known[key] if found.verdict == "GO" else found.margin_m >= known[key]
+        implied = found.margin_m >= known[key] if found.verdict == "NO_GO" else found.margin_m <= known[key]
         if implied:
             return (
                 "accepted: the same statement" if found.margin_m == known[key] else "accepted: a weaker claim"
             )
-    claim = printed(found.verdict, found.margin_m, found.statement)
-    answer = truth_against(claim, mutant, rng) if claim.who == "against" else truth(claim, rng)
-    if claim.stop is not None and answer != "false":
-        answer = "false" if truth_after(claim, mutant) == "false" else answer
+    answer = decided(found, mutant, rng)
     if answer == "true" and key not in known:
         known[key] = found.margin_m
     return f"accepted: {answer}"

@@ -93,7 +93,10 @@ def _model(asked: Asked) -> str:
     n = f"mean motion {_double(asked.n)!r} rad/s"
     if asked.radius is None:
         return f"model: linear (CWH) about a circular orbit, {n}"
-    return f"model: nonlinear, two point masses, circular orbit of {_double(asked.radius)!r} m, {n}"
+    return (
+        f"model: nonlinear, two point masses, circular orbit of {_double(asked.radius)!r} m, {n}; the plan's states before "
+        "its burns are those of CWH motion from the start"
+    )
 
 
 def _double(value: fmpq) -> float:
