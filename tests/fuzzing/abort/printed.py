@@ -66,8 +66,8 @@ def printed(lines: tuple[str, ...]) -> Printed:
     earth: dict[str, Any] | None = None
     if model.startswith("model: earth"):
         j2, mu, size, place, velocity = _taken(
-            rf"model: earth, both bodies about the Earth with J2 = ({_N}) \(mu ({_N}) m\^3/s\^2, radius ({_N}) m\); the "
-            rf"target at ({_V}) m, ({_V}) m/s, inertial, at the first burn; no drag, no other force",
+            rf"model: earth, both bodies about the Earth with J2 = ({_N}) \(mu ({_N}) m\^3/s\^2, radius ({_N}) m\); "
+            rf"the target at ({_V}) m, ({_V}) m/s, inertial, at the first burn; no drag, no other force",
             model,
         )
         state = np.array(ast.literal_eval(place) + ast.literal_eval(velocity))
@@ -80,8 +80,8 @@ def printed(lines: tuple[str, ...]) -> Printed:
         radius, n = map(
             float,
             _taken(
-                rf"model: nonlinear, two point masses, circular orbit of ({_N}) m, mean motion ({_N}) rad/s; the plan's "
-                r"states before its burns are those of CWH motion from the start",
+                rf"model: nonlinear, two point masses, circular orbit of ({_N}) m, mean motion ({_N}) rad/s; the "
+                r"plan's states before its burns are those of CWH motion from the start",
                 model,
             ),
         )

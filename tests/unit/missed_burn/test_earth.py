@@ -228,3 +228,12 @@ def test_refusals() -> None:
     errors = Errors((0.1,) * 3, (1e-4,) * 3, at_each_burn=False)
     with pytest.raises(InvalidInput, match="at_each_burn"):
         Question(plan, 50.0, ORBIT, errors, earth=Earth.of(plan, A))
+
+
+def test_the_start_of_a_document_is_the_state_before_the_first_burn() -> None:
+    """The statement prints the states before the burns; another start would be believed though nothing reads it."""
+    made = json.loads(json.dumps(document_of(prove(_asked(40.0, 0.01, horizon=200.0, failures=Failures())))))
+    made["question"]["start"]["position_m"][0] += 1.0
+    made["digest"] = digest_of({k: v for k, v in made.items() if k != "digest"})
+    with pytest.raises(ProofRejected, match="before the first burn"):
+        check(made)

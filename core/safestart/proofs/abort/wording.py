@@ -94,8 +94,8 @@ def _model(asked: Asked) -> str:
     if asked.radius is None:
         return f"model: linear (CWH) about a circular orbit, {n}"
     return (
-        f"model: nonlinear, two point masses, circular orbit of {_double(asked.radius)!r} m, {n}; the plan's states before "
-        "its burns are those of CWH motion from the start"
+        f"model: nonlinear, two point masses, circular orbit of {_double(asked.radius)!r} m, {n}; the plan's states "
+        "before its burns are those of CWH motion from the start"
     )
 
 
