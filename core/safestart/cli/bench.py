@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 import sys
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import typer
 
@@ -19,9 +19,24 @@ def register(app: typer.Typer) -> None:
     """Add the command."""
 
     @app.command("bench")
-    def bench(as_json: Json = False) -> None:
+    def bench(
+        as_json: Json = False,
+        curves: Annotated[
+            Path | None,
+            typer.Option(
+                help="Measure instead how time and memory grow with starts, horizon, nodes, flights and jobs; "
+                "writes curves.json, curves.png and curves.md into this folder.",
+                file_okay=False,
+            ),
+        ] = None,
+    ) -> None:
         """Time each engine beside its peer on this machine (a checkout is needed: the peers are not shipped)."""
         suite = _suite()
+        if curves is not None:
+            found = importlib.import_module("benchmarks.curves.written").write(curves, say=err.print)
+            if as_json:
+                print_json(found)
+            return
         ratios: dict[str, float] = {}
         times: dict[str, float] = {}
         for name in suite.BENCHMARKS:

@@ -118,5 +118,6 @@ if __name__ == "__main__":
     where = Path(sys.argv[1])
     for package in (safestart, safestart_service):
         assert Path(str(package.__file__)).is_relative_to(where), "the copy is asked"
-    with service(where) as asked:
+    # The copy's kernels are compiled anew, which takes long on a busy machine.
+    with service(where, answer_timeout_s=300) as asked:
         print(json.dumps({part.__name__: part(asked, where) for part in (process, method, controller, form)}))
