@@ -26,6 +26,7 @@ from safestart.proofs.checker import check
 from safestart.proofs.single import Verified
 from safestart.proofs.statement import digest_of
 from safestart.proofs.strict import ProofRejected
+from safestart.proofs.wording import question_shown
 from safestart.runtime.plain_json import loads
 from tests.fuzzing.abort.decided import truth_of_drifts
 from tests.fuzzing.abort.made import MADE as OF_BURNS
@@ -40,6 +41,7 @@ from tests.fuzzing.space.made import MADE as IN_SPACE
 from tests.fuzzing.space.printed import printed as printed_in_space
 
 Document = dict[str, Any]
+Claim = tuple[str, tuple[str, ...]]
 SHAPE = CorridorShape(1.2, 0.7, 3.0, 2.0, 0.75)
 GOAL = Goal(0.5, 0.05, (0.0, 1.5))
 
@@ -135,9 +137,10 @@ def run(kind: str, number: int, seed: int) -> Run:
     fields = known_fields(*(json.loads(original(other)) for other in KINDS))
     first = check(document)
     known = {(first.verdict, first.statement): first.margin_m}
+    told = {(first.verdict, first.statement): _question(document)}
     made = _sealed(mutants(document, fields, rng, number), rng)
     seen: dict[str, str] = {}
-    return tally((done, mutant, _once(mutant, seen, known, rng)) for done, mutant in made)
+    return tally((done, mutant, _once(mutant, seen, known, told, rng)) for done, mutant in made)
 
 
 def tally(outcomes: Iterable[tuple[str, Any, str]]) -> Run:
@@ -172,7 +175,7 @@ def _sealed(made: Iterator[tuple[str, Any]], rng: Random) -> Iterator[tuple[str,
 
 
 def _once(
-    mutant: Any, seen: dict[str, str], known: dict[tuple[str, tuple[str, ...]], float], rng: Random
+    mutant: Any, seen: dict[str, str], known: dict[Claim, float], told: dict[Claim, str], rng: Random
 ) -> str:
     """The outcome, looked up where the same document was made before: many changes change nothing."""
     try:
@@ -180,7 +183,7 @@ def _once(
     except (TypeError, ValueError):
         return "no JSON"
     if text not in seen:
-        outcome = _outcome(mutant, known, rng)
+        outcome = _outcome(mutant, known, told, rng)
         if not outcome.startswith("accepted"):
             return outcome
         seen[text] = outcome
@@ -201,7 +204,33 @@ def decided(found: Verified, document: Document, rng: Random) -> str:
     return answer
 
 
-def _outcome(mutant: Any, known: dict[tuple[str, tuple[str, ...]], float], rng: Random) -> str:
+def _question(document: Document) -> str:
+    """Question and start as they are shown, numbers that are equal alike."""
+    shown = question_shown(document)
+    table = shown["question"].get("attitude", {}).get("times_s")
+    if table is not None:
+        # Entries beyond the horizon say nothing.
+        horizon = shown["question"]["dt_s"] * shown["question"]["steps"]
+        first = max(k for k, t in enumerate(table) if t <= 0)
+        last = min(k for k, t in enumerate(table) if t >= horizon)
+        used = {
+            key: shown["question"]["attitude"][key][first : last + 1] for key in ("times_s", "attitude_wxyz")
+        }
+        attitude = shown["question"]["attitude"] | used
+        shown = shown | {"question": shown["question"] | {"attitude": attitude}}
+    return json.dumps(_floats(shown), sort_keys=True)
+
+
+def _floats(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _floats(inside) for key, inside in value.items()}
+    if isinstance(value, list):
+        return [_floats(inside) for inside in value]
+    whole = isinstance(value, int | float) and not isinstance(value, bool)
+    return float(value) + 0.0 if whole else value
+
+
+def _outcome(mutant: Any, known: dict[Claim, float], told: dict[Claim, str], rng: Random) -> str:
     try:
         # As a file would give it, where it can be one.
         mutant = loads(json.dumps(mutant))
@@ -214,6 +243,10 @@ def _outcome(mutant: Any, known: dict[tuple[str, tuple[str, ...]], float], rng: 
     if not names(mutant) <= _known_names():
         return "accepted: unread"
     key = found.verdict, found.statement
+    if key in told and told[key] != _question(mutant):
+        # Two questions that read alike: what tells them apart is not printed.
+        return "accepted: unread"
+    told[key] = _question(mutant)
     if key in known:
         implied = found.margin_m >= known[key] if found.verdict == "NO_GO" else found.margin_m <= known[key]
         if implied:

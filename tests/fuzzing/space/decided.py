@@ -33,7 +33,7 @@ def truth_in_space(claim: SpacePrinted, document: Any, rng: Random) -> Truth:
     """ "true" means: nothing was found against it; "open": the program has no answer."""
     if (claim.margin > 0.0) is not (claim.verdict == "GO"):
         return "false"
-    return _go(claim, document, rng) if claim.verdict == "GO" else _no_go(claim, document)
+    return _go(claim, document, rng) if claim.verdict == "GO" else _no_go(claim)
 
 
 def _slack(claim: SpacePrinted) -> float:
@@ -45,18 +45,18 @@ def _go(claim: SpacePrinted, document: Any, rng: Random) -> Truth:
     history = np.array(document["thrust_m_s2" if "ball" in claim.said else "throttle"], dtype=np.float64)
     if not claim.first <= len(history) <= claim.steps or not admissible(claim, history):
         return "false"
-    plain, _ = attitude(claim, document, NONE)
+    plain, _ = attitude(claim, NONE)
     pushes = [m @ u for m, u in zip(unit_thrusts(claim, plain), history, strict=False)]
     for member in members(claim, rng, _MEMBERS):
-        turns, rates = attitude(claim, document, member)
+        turns, rates = attitude(claim, member)
         flown = states(claim, pushes, member)
         if least(claim, flown, turns, rates, pushes) < claim.margin - _slack(claim):
             return "false"
     return "true"
 
 
-def _no_go(claim: SpacePrinted, document: Any) -> Truth:
-    turns, rates = attitude(claim, document, NONE)
+def _no_go(claim: SpacePrinted) -> Truth:
+    turns, rates = attitude(claim, NONE)
     if "violated" in claim.said:
         return "true" if _start_margin(claim, turns) <= claim.margin + _slack(claim) else "false"
     for end in range(claim.first, claim.steps + 1):

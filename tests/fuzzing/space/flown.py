@@ -123,7 +123,7 @@ def motion_of(claim: SpacePrinted) -> tuple[Any, Any, Any, Any]:
     return motion(float(orbit["n"]), float(orbit["e"]), float(orbit["nu"]), claim.dt, claim.steps)
 
 
-def attitude(claim: SpacePrinted, document: Any, member: Member) -> tuple[Any, Any]:
+def attitude(claim: SpacePrinted, member: Member) -> tuple[Any, Any]:
     """C (steps, S, 3, 3) from LVLH to the body, and the body's rate against LVLH in body axes (steps, S, 3)."""
     said = claim.said
     times, _, _, angles = motion_of(claim)
@@ -138,7 +138,7 @@ def attitude(claim: SpacePrinted, document: Any, member: Member) -> tuple[Any, A
         rate = np.broadcast_to(w, (len(flat), 3))
         seen = said["spin"]["seen"] != "LVLH"
     elif "table" in said:
-        own, rate = _tabulated(document["question"]["attitude"], flat, member, first)
+        own, rate = _tabulated(said["entry"], flat, member, first)
         seen = said["table"]["seen"] != "LVLH"
     else:
         own, rate = _free(said, flat, member, first)
@@ -158,8 +158,8 @@ def attitude(claim: SpacePrinted, document: Any, member: Member) -> tuple[Any, A
 
 
 def _tabulated(said: Any, flat: Any, member: Member, first: Any) -> tuple[Any, Any]:
-    knots = np.array(said["times_s"], dtype=np.float64)
-    quaternions = np.array(said["attitude_wxyz"], dtype=np.float64)
+    knots = np.array([float(one["time"]) for one in said])
+    quaternions = np.array([vector(one["q"]) for one in said])
     active = Rotation.from_quat(quaternions[:, [1, 2, 3, 0]])
     plain = Slerp(knots, active)(np.clip(flat, knots[0], knots[-1])).as_matrix().transpose(0, 2, 1)
     turns = (active[:-1].inv() * active[1:]).as_rotvec() / np.diff(knots)[:, None]

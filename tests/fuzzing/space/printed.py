@@ -45,8 +45,9 @@ _LINES = {
     "free": rf"attitude: torque-free, inertia \[(?P<rows>{_V}(?:; {_V})*)\] kg m\^2, from LVLH at t = 0 by the "
     rf"quaternion \(scalar first\) (?P<q>{_V})",
     "turning": rf"body rate against inertial axes at t = 0: (?P<w>{_V}) rad/s",
-    "table": r"attitude: against (?P<seen>inertial axes, those of LVLH at t = 0|LVLH), by slerp between (?P<count>\d+) "
-    rf"quaternions from (?P<begin>{_N}) s to (?P<until>{_N}) s",
+    "table": r"attitude: against (?P<seen>inertial axes, those of LVLH at t = 0|LVLH), by slerp between these "
+    r"quaternions \(scalar first\), as far as they are needed",
+    "entry": rf"attitude at (?P<time>{_N}) s: (?P<q>{_V})",
     "orbit": rf"orbit: mean motion (?P<n>{_N}) rad/s, eccentricity (?P<e>{_N}), true anomaly (?P<nu>{_N}) "
     rf"rad{_BRACKET} at t = 0",
     "ball": rf"thrust: at most (?P<bound>{_N}) m/s\^2 in any direction(?P<still>, no disturbance)?",
@@ -64,7 +65,7 @@ _LINES = {
     "position": rf"start, position in LVLH: (?P<at>{_V})(?: \+- (?P<wide>{_V}))? m",
     "velocity": rf"start, velocity in LVLH: (?P<at>{_V})(?: \+- (?P<wide>{_V}))? m/s",
 }
-_MANY = ("face", "sphere", "box")
+_MANY = ("face", "sphere", "box", "entry")
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,6 +106,7 @@ def printed(verdict: str, margin: float, lines: tuple[str, ...]) -> SpacePrinted
     assert ("synchronize" in said) is ("end" in said) is not ("stay" in said), lines
     assert sum(kind in said for kind in ("spin", "free", "table")) == 1, lines
     assert ("free" in said) is ("turning" in said), lines
+    assert ("table" in said) is bool(said["entry"]), lines
     assert sum(kind in said for kind in ("ball", "cube", "thrusters")) == 1, lines
     assert {"held", "orbit", "position", "velocity"} <= set(said), lines
     wide = [

@@ -25,7 +25,7 @@ def lines(stated: SpaceStated) -> tuple[str, ...]:
             for name, face in stated.faces.items()
         ),
         *_demands(stated),
-        *_attitude(stated.attitude),
+        *_attitude(stated.attitude, stated.dt * stated.steps),
         f"orbit: mean motion {_number(stated.mean_motion)} rad/s, eccentricity {_number(stated.eccentricity)}, true "
         f"anomaly {_number(stated.true_anomaly)} rad ({_degrees(stated.true_anomaly)} deg) at t = 0",
         _thrust(stated),
@@ -127,7 +127,7 @@ def _around(half: list[fmpq]) -> str:
     return f" +- {_vector(half)}" if any(half) else ""
 
 
-def _attitude(said: Attitude) -> list[str]:
+def _attitude(said: Attitude, horizon: fmpq) -> list[str]:
     seen = "inertial axes, those of LVLH at t = 0" if said.inertial else "LVLH"
     if said.kind == "spin":
         return [
@@ -141,9 +141,15 @@ def _attitude(said: Attitude) -> list[str]:
             f"{_vector(said.quaternions[0])}",
             f"body rate against inertial axes at t = 0: {_vector(said.rate_vector)} rad/s",
         ]
+    # All entries that [0, horizon] touches: a table that is not printed would be any table.
+    first = max(k for k, t in enumerate(said.times) if t <= 0)
+    last = min(k for k, t in enumerate(said.times) if t >= horizon)
     return [
-        f"attitude: against {seen}, by slerp between {len(said.times)} quaternions from {_number(said.times[0])} s to "
-        f"{_number(said.times[-1])} s"
+        f"attitude: against {seen}, by slerp between these quaternions (scalar first), as far as they are needed",
+        *(
+            f"attitude at {_number(said.times[k])} s: {_vector(said.quaternions[k])}"
+            for k in range(first, last + 1)
+        ),
     ]
 
 
