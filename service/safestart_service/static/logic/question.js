@@ -148,7 +148,7 @@ export function proved(verdict, values) {
 export function flownWords(verdict, values) {
   const where = spread(values) ? " at the nominal values, undisturbed" : "";
   if (verdict === "GO") return `Flown: the proof's thrust history, to ${required(values)}${where}`;
-  if (values.question === "stay") return `Flown: the best attempt to ${staying(values)}${where}; ${verdict === "NO_GO" ? "no thrust held over the steps can" : "whether one can is undecided"}`;
+  if (values.question === "stay") return `Flown: the best attempt to ${staying(values)}${where}; ${verdict === "NO_GO" ? "no thrust history can" : "whether one can is undecided"}`;
   return `Flown: the best attempt to ${staying(values)}${where}, as none is known to ${required(values)}`;
 }
 

@@ -89,7 +89,7 @@ function card(found, old, values) {
     proved && !old && values ? el("p", { id: "proof" }, download(call, proofAddress(startQuestion(values)), "proof.json", "Download the proof"), " (checked by ", el("code", {}, "safestart verify"), ")") : null);
 }
 
-const NONE = { NO_GO: "No flight: no thrust held over the steps does what is asked.", UNDECIDED: "No flight is known that does what is asked." };
+const NONE = { NO_GO: "No flight: no thrust history does what is asked.", UNDECIDED: "No flight is known that does what is asked." };
 
 function showFlight({ state, answer }) {
   const flown = answer?.flight?.[0];
