@@ -52,9 +52,9 @@ def _unknowns(stated: SpaceStated) -> list[str]:
     said = stated.unknowns
     if said is None:
         return []
-    if stated.verdict == "NO_GO":
-        return ["the member that is as stated: what is not known counts for no NO_GO"]
     out = ["for every member: the same thrust history keeps the margin whatever is not known"]
+    if stated.verdict == "NO_GO":
+        out = ["the member that is as stated: what is not known counts for no NO_GO"]
     if said.angle > 0:
         out.append(
             f"not known: the attitude at t = 0, within {_number(said.angle)} rad ({_degrees(said.angle)} deg)"
