@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from safestart.errors import invalid
+from safestart.interchange.attitude_course import Window
 from safestart.interchange.covariance import Covariance
 from safestart.interchange.epochs import Nanoseconds, system_of, text_of
 from safestart.interchange.frames import frame_of
@@ -22,8 +23,10 @@ class Ephemeris:
     """``states`` (K, 6), m and m/s, in ``frame`` at ascending TAI ``epochs`` (K,), ns.
 
     ``time_system`` is that of the file's epochs; ``covariances`` have their own epochs. ``pieces`` (S,) are
-    the indices at which a new segment begins, 0 first: nothing is interpolated from one to the next. Raises
-    ``InvalidInput`` for epochs that do not rise, non-finite states, and states of no orbit of the Earth (wrong units).
+    the indices at which a new segment begins, 0 first: nothing is interpolated from one to the next. Where one begins
+    at the epoch at which the last ends (a burn), both states are there. ``useable`` has the first and last useable
+    epoch of each segment, or None, or is empty: states outside only help to interpolate. Raises ``InvalidInput`` for
+    epochs that do not rise, non-finite states, and states of no orbit of the Earth (wrong units).
     """
 
     name: str
@@ -35,6 +38,7 @@ class Ephemeris:
     covariances: tuple[Covariance, ...] = ()
     pieces: tuple[int, ...] = (0,)
     center: str = field(default="EARTH")
+    useable: tuple[Window | None, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "frame", frame_of(self.frame))
@@ -47,6 +51,8 @@ class Ephemeris:
                 "states", f"1 to {MOST_STATES} epochs and as many states of 6 numbers", self.states.shape
             )
         steps = np.diff(self.epochs)
+        joints = [piece - 1 for piece in self.pieces[1:]]
+        steps[joints] += steps[joints] == 0
         if (steps <= 0).any():
             k = int(np.argmax(steps <= 0))
             before, after = text_of(self.epochs[k : k + 2], self.time_system)

@@ -1,4 +1,4 @@
-"""MATLAB 5 files: named arrays in and out; equal arrays are equal bytes."""
+"""MATLAB 5 files from named arrays; equal arrays are equal bytes."""
 
 from __future__ import annotations
 
@@ -7,8 +7,6 @@ from collections.abc import Mapping
 from typing import Any, cast
 
 import numpy as np
-
-from safestart.errors import invalid
 
 _HEAD = 116
 """Bytes of free text at the begin of a file, in which SciPy writes the time."""
@@ -29,30 +27,3 @@ def matlab_of(columns: Mapping[str, Any]) -> bytes:
     # It takes files too, whatever its stubs say.
     savemat(cast(Any, sink), found, do_compression=True, long_field_names=True)
     return b"MATLAB 5.0 MAT-file, safestart".ljust(_HEAD) + sink.getvalue()[_HEAD:]
-
-
-def arrays_in(data: bytes) -> dict[str, list[Any]]:
-    """Numbers or texts of each array, flat; raises ``InvalidInput`` for anything but a MATLAB 5 file."""
-    from scipy.io import loadmat
-
-    try:
-        loaded = loadmat(cast(Any, io.BytesIO(data)), mat_dtype=True)
-    except Exception as error:
-        # The reader raises whatever its parts do on a damaged file.
-        raise invalid(
-            "file", "a MATLAB 5 file", f"one that is not ({type(error).__name__}: {error})"
-        ) from None
-    found: dict[str, list[Any]] = {}
-    for name, array in loaded.items():
-        if name.startswith("__"):
-            continue
-        flat = np.asarray(array).ravel()
-        if flat.dtype == object:
-            found[name] = [str(np.asarray(entry).ravel()[0]) if np.size(entry) else "" for entry in flat]
-        elif flat.dtype.kind == "U":
-            found[name] = [str(entry).rstrip() for entry in flat]
-        elif flat.dtype.kind in "biuf":
-            found[name] = [float(entry) for entry in flat]
-        else:
-            raise invalid(name, "numbers or texts", str(flat.dtype))
-    return found

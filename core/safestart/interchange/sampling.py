@@ -20,17 +20,19 @@ def states_at(ephemeris: Ephemeris, epochs: Nanoseconds) -> tuple[Floats, Bools]
     """GCRF states (K, 6) at TAI ``epochs`` (K,), and where they are known: NaN and False in gaps and outside.
 
     Hermite interpolation through positions and velocities of up to eight neighbours, of one piece and without a gap
-    between them; at an epoch of the file the state of the file.
+    between them; at an epoch of the file the state of the file, where two segments meet that of the later one. Outside
+    of what a segment calls useable nothing is known.
     """
     known = to_gcrf(ephemeris.frame, ephemeris.epochs, ephemeris.states)
     out = np.full((len(epochs), 6), np.nan)
     place = np.searchsorted(ephemeris.epochs, epochs)
-    place_in = np.minimum(place, len(ephemeris.epochs) - 1)
+    # Where two segments meet, the later one's state: the chaser that leaves its course has burnt.
+    place_in = np.maximum(np.searchsorted(ephemeris.epochs, epochs, side="right") - 1, 0)
     exact = ephemeris.epochs[place_in] == epochs
     out[exact] = known[place_in[exact]]
     runs = _runs(ephemeris)
-    run = runs[place_in]
-    between = ~exact & (place > 0) & (place < len(ephemeris.epochs)) & (runs[place - 1] == run)
+    after = np.minimum(place, len(ephemeris.epochs) - 1)
+    between = ~exact & (place > 0) & (place < len(ephemeris.epochs)) & (runs[place - 1] == runs[after])
     windows: dict[int, list[int]] = {}
     for k in np.nonzero(between)[0].tolist():
         windows.setdefault(int(place[k]), []).append(k)
@@ -42,7 +44,19 @@ def states_at(ephemeris: Ephemeris, epochs: Nanoseconds) -> tuple[Floats, Bools]
         zero = int(ephemeris.epochs[right - 1])
         at = seconds_since(ephemeris.epochs[chosen], zero)
         out[indices] = _hermite(at, known[chosen], seconds_since(epochs[indices], zero))
+    out[~_useable(ephemeris, epochs, place_in)] = np.nan
     return out, np.asarray(~np.isnan(out[:, 0]))
+
+
+def _useable(ephemeris: Ephemeris, epochs: Nanoseconds, place: Nanoseconds) -> Bools:
+    """(K,): whether the segment of entry ``place`` (K,) calls ``epochs`` (K,) useable."""
+    out = np.ones(len(epochs), dtype=bool)
+    if ephemeris.useable:
+        piece = np.searchsorted(np.array(ephemeris.pieces), place, side="right") - 1
+        for k, window in enumerate(ephemeris.useable):
+            if window is not None:
+                out[piece == k] = ((epochs >= window[0]) & (epochs <= window[1]))[piece == k]
+    return out
 
 
 def _runs(ephemeris: Ephemeris) -> Nanoseconds:

@@ -14,13 +14,15 @@ from typing import Any
 
 import numpy as np
 
-from safestart.errors import Unavailable, invalid
+from safestart.errors import invalid
 from safestart.interchange.attitude_course import AttitudeCourse
 from safestart.interchange.ccsds.tokens import number
 from safestart.interchange.ephemeris import MOST_STATES, Ephemeris
 from safestart.interchange.epochs import epochs_of, shortened, text_of
 from safestart.interchange.foreign import refuse_foreign
-from safestart.interchange.matlab import arrays_in
+from safestart.interchange.matlab_read import arrays_in
+from safestart.interchange.parquet import columns_in
+from safestart.interchange.source import refuse_many_lines
 from safestart.interchange.source import text_of as decoded
 from safestart.model.scenario import Floats
 
@@ -28,6 +30,9 @@ STATE = ("x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s")
 TURN = ("q_s", "q_x", "q_y", "q_z")
 _OF_STATES = ("object", "object_id", "frame", "time_system")
 _OF_TURNS = ("object", "object_id", "reference", "body", "time_system")
+KNOWN = ("epoch", *STATE, *TURN, *dict.fromkeys((*_OF_STATES, *_OF_TURNS)))
+"""Columns of either kind of table."""
+_LONGEST_LINE = 4096
 Columns = dict[str, list[Any]]
 
 
@@ -87,38 +92,45 @@ def csv_of(columns: Mapping[str, Sequence[Any]]) -> bytes:
     return sink.getvalue().encode()
 
 
-def parquet_of(columns: Mapping[str, Sequence[Any]]) -> bytes:
-    """Parquet; raises ``Unavailable`` without pyarrow."""
-    pa, pq = _arrow()
-    sink = io.BytesIO()
-    pq.write_table(pa.table({name: list(column) for name, column in columns.items()}), sink)
-    return sink.getvalue()
-
-
 def _columns(data: bytes, name: str) -> Columns:
     refuse_foreign(data)
     if data[:4] == b"PAR1":
-        pa, pq = _arrow()
-        try:
-            table = pq.read_table(io.BytesIO(data))
-        except (pa.ArrowException, OSError) as error:
-            raise invalid("file", "Parquet", str(error)) from None
-        found: Columns = table.to_pydict()
+        found: Columns = columns_in(data, KNOWN, MOST_STATES)
     elif data[:6] == b"MATLAB":
-        found = arrays_in(data)
+        found = arrays_in(data, MOST_STATES)
     elif name.lower().endswith(".csv"):
-        rows = list(csv.reader(io.StringIO(decoded(data, "file"), newline="")))
-        if not rows or len(set(rows[0])) != len(rows[0]):
-            raise invalid("file", "a head with every column once", rows[0] if rows else "an empty file")
-        short = next((k for k, row in enumerate(rows) if len(row) != len(rows[0])), None)
-        if short is not None:
-            raise invalid(f"line {short + 1}", f"{len(rows[0])} values", f"{len(rows[short])} (truncated)")
-        found = {column: [row[k] for row in rows[1:]] for k, column in enumerate(rows[0])}
+        found = _csv_in(data)
     else:
         raise invalid("file", "what its name says", f"{name}: {data[:16]!r}")
     lengths = {len(column) for column in found.values()}
     if len(lengths) != 1 or not 1 <= max(lengths) <= MOST_STATES:
         raise invalid("file", f"columns of one length, 1 to {MOST_STATES} rows", sorted(lengths))
+    return found
+
+
+def _csv_in(data: bytes) -> Columns:
+    """Columns of texts; each row is in a line, and none beyond the first that does not fit is read."""
+    text = decoded(data, "file")
+    refuse_many_lines(text, MOST_STATES + 1)
+    found: Columns = {}
+    for place, line in enumerate(io.StringIO(text), 1):
+        if len(line) > _LONGEST_LINE:
+            raise invalid(f"line {place}", f"at most {_LONGEST_LINE} characters", len(line))
+        try:
+            row = next(csv.reader([line], strict=True), [])
+        except csv.Error as error:
+            raise invalid(f"line {place}", "values between commas", str(error)) from None
+        if place == 1:
+            if not row or len(set(row)) != len(row):
+                raise invalid("file", "a head with every column once", row)
+            found = {column: [] for column in row}
+        elif len(row) != len(found):
+            raise invalid(f"line {place}", f"{len(found)} values", f"{len(row)} (truncated)")
+        else:
+            for column, value in zip(found.values(), row, strict=True):
+                column.append(value)
+    if not found:
+        raise invalid("file", "a head with every column once", "an empty file")
     return found
 
 
@@ -152,12 +164,3 @@ def _numbers(columns: Columns, names: Sequence[str]) -> Floats:
     if not np.isfinite(out).all():
         raise invalid("file", "finite numbers", "others")
     return out
-
-
-def _arrow() -> tuple[Any, Any]:
-    try:
-        import pyarrow as pa
-        import pyarrow.parquet as pq
-    except ModuleNotFoundError:
-        raise Unavailable("Parquet requires the package pyarrow", required="the package pyarrow") from None
-    return pa, pq

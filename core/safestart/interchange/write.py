@@ -11,6 +11,7 @@ from safestart.interchange.ccsds import aem, kvn, oem, xml_out
 from safestart.interchange.ccsds.tokens import Token
 from safestart.interchange.ephemeris import Ephemeris
 from safestart.interchange.matlab import matlab_of
+from safestart.interchange.parquet import parquet_of
 
 FORMS = ("kvn", "xml", "csv", "parquet", "mat")
 
@@ -27,7 +28,7 @@ def course_bytes(course: Ephemeris | AttitudeCourse, form: str, created: str) ->
             else aem.tokens_of(course, created)
         )
         return message_bytes(tokens, form)
-    writers = {"csv": tables.csv_of, "parquet": tables.parquet_of, "mat": matlab_of}
+    writers = {"csv": tables.csv_of, "parquet": parquet_of, "mat": matlab_of}
     if form not in writers:
         raise invalid("format", f"one of {', '.join(FORMS)}", form)
     return writers[form](tables.columns_of(course))

@@ -6,9 +6,10 @@ import re
 from collections.abc import Sequence
 from typing import Any, TypeVar
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from safestart.errors import InvalidInput, SafestartError
+from safestart.model.places import placed
 
 _LONGEST = 120
 _LISTED = 5
@@ -36,6 +37,10 @@ _REQUIRED = {
     "string_type": "text",
     "literal_error": "one of {expected}",
     "enum": "one of {expected}",
+    "string_too_short": "at least {min_length} characters",
+    "string_too_long": "at most {max_length} characters",
+    "string_pattern_mismatch": "text of the form {pattern}",
+    "multiple_of": "a multiple of {multiple_of}",
     "too_short": "at least {min_length} items",
     "too_long": "at most {max_length} items",
     "list_type": "an array",
@@ -44,6 +49,8 @@ _REQUIRED = {
     "dataclass_type": "an object",
     "model_attributes_type": "an object",
     "value_error": "{error}",
+    "union_tag_invalid": "one of {expected_tags}",
+    "union_tag_not_found": "a value",
 }
 """Report type -> what was required; the names in braces come from the report's context."""
 
@@ -90,7 +97,14 @@ def error_of(kind: type[Error], reports: Sequence[Any], prefix: str = "", others
 
 
 def _at_its_field(report: Any) -> Any:
-    """A rule about several fields that says "field: what is required" is reported at that field, with its value."""
+    """A rule about several fields that says "field: what is required" is reported at that field, with its value.
+
+    So is a name that chooses between several objects, which pydantic reports at the object.
+    """
+    if report["type"] in ("union_tag_invalid", "union_tag_not_found"):
+        name = str(report.get("ctx", {}).get("discriminator", "")).strip("'")
+        value = report["input"].get(name, _ABSENT) if isinstance(report.get("input"), dict) else _ABSENT
+        return {**report, "input": value, "loc": (*report["loc"], name)}
     if report["type"] != "value_error":
         return report
     name, _, wanted = str(report.get("ctx", {}).get("error", "")).partition(": ")
@@ -98,7 +112,7 @@ def _at_its_field(report: Any) -> Any:
     if not wanted or not _FIELD.fullmatch(name) or not isinstance(given, dict):
         return report
     first, *rest = name.split(".")
-    if first not in given and report["loc"]:
+    if first not in given and first not in report.get("fields", ()) and report["loc"]:
         own = not rest and report["loc"][-1] == first
         return {**report, "ctx": {"error": wanted}} if own else report
     for part in (first, *rest):
@@ -106,6 +120,9 @@ def _at_its_field(report: Any) -> Any:
     return {"type": "value_error", "ctx": {"error": wanted}, "input": given, "loc": (*report["loc"], name)}
 
 
-def validation_error(error: ValidationError, prefix: str = "") -> InvalidInput:
-    """Turn pydantic's error into one of our exceptions."""
-    return refusal(error.errors(include_url=False), prefix)
+def validation_error(
+    error: ValidationError, prefix: str = "", model: type[BaseModel] | None = None
+) -> InvalidInput:
+    """Turn pydantic's error into one of our exceptions; about ``model``, its places are without tags."""
+    reports: list[Any] = error.errors(include_url=False)
+    return refusal(placed(model, reports) if model is not None else reports, prefix)

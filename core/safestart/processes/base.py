@@ -81,7 +81,7 @@ class ProcessSpec:
         try:
             return self.inputs.model_validate(inputs)
         except ValidationError as error:
-            raise validation_error(error) from None
+            raise validation_error(error, model=self.inputs) from None
 
     def check(self, document: dict[str, Any]) -> None:
         """Raise ``UnfitResult`` unless ``document``, in its stored JSON form, matches ``outputs``.

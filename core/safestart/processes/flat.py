@@ -11,6 +11,7 @@ from pydantic import BaseModel, Field, TypeAdapter, ValidationError, create_mode
 from pydantic.fields import FieldInfo
 
 from safestart.errors import invalid
+from safestart.model.places import placed
 from safestart.model.validation import refusal
 from safestart.processes.base import WireModel
 from safestart.runtime.plain_json import loads
@@ -42,6 +43,7 @@ class Flat(Generic[M]):
     """
 
     def __init__(self, model: type[M], opened: Mapping[str, Any]) -> None:
+        self._model = model
         self._validate = TypeAdapter(model).validator.validate_python
         self._opened = dict(opened)
         self._listed = {name for name in opened if get_origin(model.model_fields[name].annotation) is list}
@@ -91,7 +93,7 @@ class Flat(Generic[M]):
             parsed: M = self._validate(top)
             return parsed
         except ValidationError as error:
-            reports = error.errors(include_url=False)
+            reports = placed(self._model, error.errors(include_url=False))
             for report in reports:
                 report["loc"] = self._flat(report["loc"])
             raise refusal(reports) from None
@@ -105,9 +107,7 @@ class Flat(Generic[M]):
     def _flat(self, place: tuple[int | str, ...]) -> tuple[int | str, ...]:
         if not place or place[0] not in self._opened:
             return place
-        inside = place[2:] if place[0] in self._listed else place[1:]
-        # The tag of one type of several stands before the name.
-        return inside[1:] if len(inside) > 1 and inside[0] not in self.parameters else inside
+        return place[2:] if place[0] in self._listed else place[1:]
 
 
 def described(parameters: Mapping[str, Parameter], name: str, doc: str) -> type[BaseModel]:

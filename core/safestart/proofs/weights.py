@@ -16,7 +16,7 @@ AT_END = ("hold", "rest")
 
 @dataclass(frozen=True, slots=True)
 class Weight:
-    """One multiplier; ``pull``, |pull| <= value, for norm limits; ``time`` None means the end."""
+    """One multiplier; ``pull``, |pull| <= value, for norm limits and cones; ``time`` None means the end."""
 
     time: fmpq | None
     face: str
@@ -69,9 +69,18 @@ def limits_of(question: Any, d: int, free: bool) -> Limits:
 
 
 def parts_of(
-    rows: list[Any], ends: tuple[int, int], faces: Collection[str], limits: Limits, horizon: fmpq, d: int
+    rows: list[Any],
+    ends: tuple[int, int],
+    faces: Collection[str],
+    limits: Limits,
+    horizon: fmpq,
+    d: int,
+    cones: Collection[str] = (),
 ) -> list[tuple[int, int, list[Weight]]]:
-    """The parts, which together must cover the ends (first, last) without a gap; ``faces`` by name, d dimensions."""
+    """The parts, which together must cover the ends (first, last) without a gap; ``faces`` by name, d dimensions.
+
+    ``cones`` have a ``pull`` like the limits, the normal of one of their planes, at a time.
+    """
     out, covered = [], ends[0]
     for row in rows:
         fields(row, "parts", ("first_step", "last_step", "multipliers"))
@@ -80,17 +89,20 @@ def parts_of(
             raise ProofRejected(
                 f"parts: required the steps {ends[0]}..{ends[1]} in turn, received {first}..{last}"
             )
-        out.append((first, last, _weights(part(row, "multipliers", list), faces, limits, horizon, d)))
+        made = part(row, "multipliers", list)
+        out.append((first, last, _weights(made, faces, (*limits.norms, *cones), horizon, d)))
         covered = last + 1
     if covered != ends[1] + 1:
         raise ProofRejected(f"parts: required all steps {ends[0]}..{ends[1]}, received up to {covered - 1}")
     return out
 
 
-def _weights(rows: list[Any], faces: Collection[str], limits: Limits, horizon: fmpq, d: int) -> list[Weight]:
+def _weights(
+    rows: list[Any], faces: Collection[str], norms: Collection[str], horizon: fmpq, d: int
+) -> list[Weight]:
     if not 1 <= len(rows) <= _MOST_MULTIPLIERS:
         raise ProofRejected(f"multipliers: required 1..{_MOST_MULTIPLIERS}, received {len(rows)}")
-    norms, out = limits.norms, []
+    out = []
     for row in rows:
         face, value = row.get("face") if isinstance(row, Mapping) else None, number(row, "value", 0.0)
         if not isinstance(face, str) or (face not in faces and face not in norms):

@@ -14,7 +14,7 @@ from safestart.attitude.spin import Spin
 from safestart.attitude.table import LARGEST_STEP, Table
 from safestart.attitude.turning import SmoothAttitude
 from safestart.errors import invalid
-from safestart.interchange.attitude_course import AttitudeCourse
+from safestart.interchange.attitude_course import AttitudeCourse, turns_of
 from safestart.interchange.ephemeris import Ephemeris
 from safestart.interchange.epochs import SECOND, Nanoseconds, seconds_since, text_of
 from safestart.interchange.frames import rotation_to_gcrf, to_gcrf
@@ -54,9 +54,13 @@ class Encounter:
         if isinstance(attitude, AttitudeCourse):
             if attitude.reference != "RTN" and "ITRF" in (self.chaser.frame, self.target.frame):
                 raise invalid("REF_FRAME", "courses in an inertial frame beside an inertial attitude", "ITRF")
-            cosine = np.abs(np.sum(attitude.quaternions[:-1] * attitude.quaternions[1:], axis=1))
-            if len(cosine) and float(cosine.min()) < math.cos(0.5 * LARGEST_STEP):
-                k = int(np.argmin(cosine))
+            turns, seconds = turns_of(attitude.quaternions), np.diff(attitude.epochs)
+            # A step as long as others must not turn too far; in a hole, or from segment to segment, nothing is known.
+            turns[[piece - 1 for piece in attitude.pieces[1:]]] = 0.0
+            if len(turns):
+                turns[seconds > 1.5 * np.median(seconds)] = 0.0
+            if float(turns.max(initial=0.0)) > LARGEST_STEP:
+                k = int(np.argmax(turns))
                 at = text_of(attitude.epochs[k : k + 1], attitude.time_system)[0]
                 raise invalid("attitude", "at most 90 degrees between two entries", f"more after {at}")
         if (self.chaser.frame == "ITRF") != (self.target.frame == "ITRF"):
@@ -95,8 +99,16 @@ class Encounter:
         course = self._course
         if course is None:
             return np.ones(len(epochs), dtype=bool)
-        last = course.epochs[-1] - round(self.horizon * SECOND)
-        return np.asarray((epochs >= course.epochs[0]) & (epochs <= last))
+        spans = self._spans
+        own = np.searchsorted(spans[:, 0], epochs, side="right") - 1
+        last = spans[np.maximum(own, 0), 1] - round(self.horizon * SECOND) if len(spans) else epochs - 1
+        return np.asarray((own >= 0) & (epochs <= last))
+
+    @cached_property
+    def _spans(self) -> Nanoseconds:
+        """(S, 2): where the attitude is known."""
+        assert self._course is not None
+        return self._course.spans()
 
     def turns(self, seen: Relative) -> Floats:
         """(K, 3, 3): LVLH coordinates to body coordinates at the epochs of ``seen``, all :meth:`covered`."""

@@ -12,6 +12,7 @@ from fastapi import Request
 from pydantic import BaseModel, ValidationError
 
 from safestart.errors import InvalidInput, invalid
+from safestart.model.places import placed
 from safestart.model.validation import refusal
 from safestart.runtime.plain_json import NameTwice, TooManyNames, require_unique_names
 from safestart_service.errors import MalformedBody, UnsupportedMediaType
@@ -65,8 +66,9 @@ def parse_body(model: type[Model], body: bytes, most_parts: int = MOST_PARTS) ->
         if whole is not None:
             return parse_body(model, whole, most_parts)
         # The reports name places in the document. pydantic's own copies of the inputs would be one per report.
+        shown = placed(model, reports[:MOST_REPORTS])
         raise refusal(
-            [{**report, "input": value_at(document, report["loc"])} for report in reports[:MOST_REPORTS]],
+            [{**report, "input": value_at(document, report["loc"])} for report in shown],
             others=max(0, len(reports) - MOST_REPORTS),
         ) from None
 

@@ -121,7 +121,7 @@ def test_the_short_form_stays_and_the_two_do_not_mix(client: TestClient) -> None
     query = START | SPIN | {"corridor": {"faces": [{"name": "a", "normal": [0, -1, 0], "offset_m": -1}]}}
     assert client.get("/go-no-go", params=flat(**query)).json()["faces"] == ["a"]
     for more, field in (
-        ({"corridor": {"c_x": -1}}, "corridor.five.c_x"),
+        ({"corridor": {"c_x": -1}}, "corridor.c_x"),
         ({"corridor": None, "c_x": -1}, "c_x"),
         ({"velocity_m_s": "[1,2"}, "velocity_m_s"),
         ({"attitude": TUMBLE}, "attitude"),

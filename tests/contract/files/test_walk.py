@@ -89,7 +89,8 @@ def test_the_notebook_says_the_same(
     exec(compile(cell, "files.md", "exec"), {})
     found = json.loads((folder / "timeline.json").read_text())["outputs"]["intervals"]
     lines = [f"{one['begin']} {one['end']} {one['verdict']} {one['margin_m']}" for one in found]
-    assert capsys.readouterr().out.splitlines() == lines
+    assert len(cell.splitlines()) <= 15
+    assert capsys.readouterr().out.splitlines() == [*lines, found[0]["verdict"]]
 
 
 @pytest.mark.parametrize(

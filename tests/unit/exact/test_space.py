@@ -169,7 +169,7 @@ def test_a_start_outside_is_refused_a_go_at_once() -> None:
         ({"faces": ()}, "faces"),
         ({"faces": (*CORRIDOR, CORRIDOR[0])}, "faces"),
         ({"faces": (*CORRIDOR, Face("back", (0.0, 1.0, 0.0), -1.0))}, "faces"),
-        ({"faces": (Face("none", (0.0, 0.0, 0.0), 1.0),)}, "normal"),
+        ({"faces": (Face("none", (0.0, 0.0, 0.0), 1.0),)}, "faces.0.normal"),
         ({"faces": tuple(Face(str(k), (1.0, 0.0, 0.0), 1.0) for k in range(33))}, "faces"),
         ({"attitude": Table((0.0, 30.0), ((1, 0, 0, 0), (1, 0, 0, 0)))}, "times"),
         ({"steps": 0}, "steps"),

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from benchmarks.peers.space_limits import Dense
 from safestart.attitude.in_lvlh import torque_free
 from safestart.attitude.spin import Spin
 from safestart.constraints.thrust_limit import ThrustLimit, ball
@@ -16,8 +17,9 @@ from safestart.errors import InvalidInput
 from safestart.exact.answer import Answer, Verdict
 from safestart.exact.question import Goal
 from safestart.exact.space.decide import decide_in_space
+from safestart.exact.space.demands.demanded import lost_at_start
 from safestart.exact.space.demands.rules import Demands, FieldOfView, KeepOut, Plume
-from safestart.exact.space.question import SpaceQuestion, five_faces
+from safestart.exact.space.question import Face, SpaceQuestion, five_faces
 from safestart.exact.space.start_box import decide_from_box
 from safestart.exact.space.watch import space_watch_of
 from safestart.model.orbit import KeplerOrbit
@@ -159,7 +161,7 @@ def test_the_plume_rule_binds() -> None:
 
 
 def test_random_cases_claim_nothing_false() -> None:
-    """GO keeps the demand; NO_GO is the question's without demands, or the start's; the others are UNDECIDED."""
+    """GO keeps the demand; NO_GO is the question's without demands, the start's or the cone's; others are UNDECIDED."""
     rng, seen = np.random.default_rng(3), set()
     for _ in range(40):
         axis = rng.normal(size=3)
@@ -185,14 +187,65 @@ def test_random_cases_claim_nothing_false() -> None:
         seen.add(answer.verdict)
         if answer.verdict is Verdict.GO:
             assert least(asked, state, answer) >= answer.lower - 1e-9
-        elif answer.verdict is Verdict.NO_GO and answer.multipliers[0].face not in demands.names:
-            assert free.verdict is Verdict.NO_GO
+        elif answer.verdict is Verdict.NO_GO and not lost_at_start(demands, answer):
+            by_cone = {row.face for row in answer.multipliers if row.pull} == {"field_of_view"}
+            assert by_cone or free.verdict is Verdict.NO_GO
         elif answer.verdict is Verdict.NO_GO:
             turn = body.rotation(np.zeros(1))[0]
             assert min(room for _, room in demands.rooms(state[:3], turn @ state[:3])) == answer.upper < 0.0
         else:
             assert "is open" in answer.reason
-    assert seen == set(Verdict)
+    # The field of view alone left some open, before planes around its cone could refute.
+    assert seen == {Verdict.GO, Verdict.NO_GO}
+
+
+@pytest.mark.parametrize("frame", ["lvlh", "body"])
+@pytest.mark.parametrize("seed", range(4))
+def test_the_cone_is_refuted_where_no_flight_keeps_it(seed: int, frame: Any) -> None:
+    """Beside a dense program with 26 planes inside of the cone, and with 26 around it."""
+    rng, seen = np.random.default_rng([seed, frame == "body"]), []
+    for _ in range(5):
+        state = np.concatenate([rng.uniform([-2, 20, -2], [2, 30, 2]), rng.normal(scale=0.25, size=3)])
+        plain = question(Demands(), steps=10, thrust=ball(rng.choice([0.01, 0.03])))
+        angle, point = math.radians(rng.uniform(4.0, 20.0)), tuple(rng.normal(size=3).tolist())
+        at = plain.attitude.rotation(np.zeros(1))[0] @ state[:3] if frame == "body" else state[:3]
+        view = FieldOfView(tuple((point - at).tolist()), angle, point, frame)
+        answer = decide_in_space(replace(plain, demands=Demands(view=view)), state)
+        axis = (point - at) / np.linalg.norm(point - at)
+        side = np.cross(axis, [0.3, 0.5, 0.8])
+        side /= np.linalg.norm(side)
+        margins = []
+        for slope in (math.tan(angle) * math.cos(math.pi / 26), math.tan(angle)):
+            turns = 2.0 * math.pi * np.arange(26) / 26
+            across = np.outer(np.cos(turns), side) + np.outer(np.sin(turns), np.cross(axis, side))
+            normals = slope * axis - across
+            faces = [
+                Face(f"plane {k}", tuple(normal.tolist()), float(normal @ point), frame)
+                for k, normal in enumerate(normals)
+            ]
+            asked = replace(plain, faces=(*plain.faces, *faces))
+            margins.append(Dense(asked, state, np.zeros(6)).margin(inside=slope < math.tan(angle)))
+        inner, outer = margins
+        seen.append(answer.verdict)
+        if answer.verdict is Verdict.GO:
+            assert outer > answer.lower - 1e-3
+        elif answer.verdict is Verdict.NO_GO:
+            assert inner < min(answer.upper, 0.0) + 1e-3
+        if outer < -0.05:
+            assert answer.verdict is Verdict.NO_GO
+    assert Verdict.UNDECIDED not in seen
+
+
+def test_an_arrival_that_leaves_the_cone_is_refuted() -> None:
+    """0.5 m/s across the line of sight take 0.5^2 / 2 / 0.02 = 6.25 m to stop; 5 degrees at 35 m are 3.1 m."""
+    view = FieldOfView((0.0, -1.0, 0.0), math.radians(5.0))
+    still = {"orbit": KeplerOrbit(0.0), "attitude": Spin(0.0), "thrust": ball(0.02)}
+    asked = question(Demands(view=view), **still)
+    lost, kept = (decide_in_space(asked, np.array([0.0, 25.0, 0.0, v, 0.0, 0.0])) for v in (0.5, 0.2))
+    assert (lost.verdict, kept.verdict) == (Verdict.NO_GO, Verdict.GO)
+    assert any(row.face == "field_of_view" for row in lost.multipliers)
+    free = decide_in_space(replace(asked, demands=Demands()), np.array([0.0, 25.0, 0.0, 0.5, 0.0, 0.0]))
+    assert free.verdict is Verdict.GO
 
 
 def test_what_is_not_found_is_undecided() -> None:

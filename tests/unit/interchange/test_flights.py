@@ -12,7 +12,7 @@ from safestart.errors import InvalidInput
 from safestart.interchange.ccsds import parameters
 from safestart.interchange.ccsds.message import message_of
 from safestart.interchange.flights import BEGIN, courses_of
-from safestart.interchange.matlab import arrays_in
+from safestart.interchange.matlab_read import arrays_in
 from safestart.interchange.read import attitude_from, ephemeris_from
 from safestart.interchange.relative import relative_states
 from safestart.interchange.sampling import quaternions_at
@@ -83,7 +83,7 @@ def test_the_service_gives_them_too(flown: Execution, files: dict[str, bytes]) -
     with zipfile.ZipFile(io.BytesIO(BY_NAME["zip"].encode(record, None))) as bundle:
         assert {name: bundle.read(name) for name in bundle.namelist()} == files
     assert BY_NAME["czml"].encode(record, None) == files["flight.czml"]
-    arrays = arrays_in(BY_NAME["mat"].encode(record, None))
+    arrays = arrays_in(BY_NAME["mat"].encode(record, None), 10_000)
     np.testing.assert_array_equal(arrays["time_s"], record["outputs"]["time_s"])
     np.testing.assert_array_equal(arrays["lvlh_m"], np.ravel(record["outputs"]["lvlh_m"]))
     assert BY_NAME["mat"].encode(record, None) == BY_NAME["mat"].encode(record, None)

@@ -93,7 +93,7 @@ def test_flights_stay_within_their_strays() -> None:
     question = _asked(90.0, 0.05, STUDY.scaled(20.0), Failures())
     rng = np.random.default_rng(2)
     for case in cases_of(question)[::2]:
-        drift = drift_after(question, case.kind, case.burn)
+        drift = drift_after(question, case.burn, case.share)
         strays, _ = strays_along(case, question, drift)
         for _ in range(4):
             flight, _ = _flown(question, case.kind, case.burn, rng)
@@ -198,7 +198,7 @@ def test_the_remainder_counts(monkeypatch: pytest.MonkeyPatch) -> None:
     proof = prove(question)
     document = json.loads(json.dumps(document_of(proof)))
     case = proof.findings[0].case
-    strays, trials = strays_along(case, question, drift_after(question, case.kind, case.burn))
+    strays, trials = strays_along(case, question, drift_after(question, case.burn, case.share))
     document["cases"][0]["radii_m"][-1] = float(trials[-1] - 0.5 * strays[-1])
     with pytest.raises(ProofRejected, match="radii_m"):
         check(_sealed(document))

@@ -78,7 +78,7 @@ def test_frames_and_rest_are_those_of_the_starts(frame: str, rest: str) -> None:
     """Against the turning body in its axes start-in-space says the same; at rest in LVLH the velocity is 0 there."""
     question = stay_in(SPEC.parse(SPEC.example), 60.0)
     said = PlaneInput.model_validate(TILTED | {"frame": frame, "rest": rest, "velocity_m_s": [0, 0, 0]})
-    plane = plane_of(said, question, "plane")
+    plane = plane_of(said, question)
     state = plane.states(np.array([7.0, 0.0]))
     position = np.array([1.0, 30.0, 2.0]) + 7.0 * np.array([1.0, 0.0, 1.0]) / np.sqrt(2.0)
     turn = question.attitude.rotation(np.zeros(1))[0]
@@ -92,7 +92,7 @@ def test_frames_and_rest_are_those_of_the_starts(frame: str, rest: str) -> None:
 def test_coordinate_planes_pass_through_their_centre() -> None:
     question = stay_in(SPEC.parse(SPEC.example), 60.0)
     for said in coordinate_planes([1.0, 20.0, 3.0], 5.0):
-        where, at = plane_of(said, question, "plane"), dict(zip("xyz", (1.0, 20.0, 3.0), strict=True))
+        where, at = plane_of(said, question), dict(zip("xyz", (1.0, 20.0, 3.0), strict=True))
         np.testing.assert_allclose(0.5 * (where.low + where.high), [at[name] for name in said.name])
         turn = question.attitude.rotation(np.zeros(1))[0]
         body = turn @ where.states(0.5 * (where.low + where.high))[:3]
@@ -121,9 +121,15 @@ def test_coordinate_planes_pass_through_their_centre() -> None:
                     TILTED | {"second": {"kind": "velocity", "direction": [1, 0, 0], "low": 1, "high": 0}}
                 ]
             },
-            "planes.0.first.low",
-            "required",
+            "planes.0.second.low",
+            "less than high",
         ),
+        (
+            {"planes": [TILTED | {"second": {"direction": [2, 0, 2], "low": 0, "high": 1}}]},
+            "planes.0.second.direction",
+            "another direction",
+        ),
+        ({"planes": [TILTED | {"origin_m": [1e8, 0, 0]}]}, "planes.0.origin_m.0", "<= 10000"),
         ({"attitude": None}, "attitude", "neither"),
         ({"thrust": {"kind": "ball", "a_max_m_s2": 1}}, "thrust", "both"),
     ],

@@ -76,7 +76,7 @@ def test_names_go_where_they_belong() -> None:
         (FLAT, {"thrust": "2", "corridor": "{}"}, "corridor"),
         (FLAT, {"thrust": "2", "y_m": "1"}, "y_m"),
         (FLAT, {"thrust": "2", "attitude": "{"}, "attitude"),
-        (FLAT, {"thrust": "2", "attitude": '{"kind": "spin", "axis": ["x"]}'}, "attitude.spin.axis.0"),
+        (FLAT, {"thrust": "2", "attitude": '{"kind": "spin", "axis": ["x"]}'}, "attitude.axis.0"),
         (SHORT, {}, "x_m"),
         (SHORT, {"x_m": "101"}, "x_m"),
         (SHORT, {"states": "[]"}, "states"),

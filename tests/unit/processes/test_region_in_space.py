@@ -26,7 +26,7 @@ def test_it_is_the_atlas_s_and_its_polygons_hold() -> None:
     inputs = SPEC.parse(asked)
     question = stay_in(inputs, inputs.horizon_s)
     for said, found in zip(inputs.asked(), planes, strict=True):
-        plane = plane_of(said, question, "planes")
+        plane = plane_of(said, question)
         middle = np.mean(found["inner_polygon"], axis=0)
         assert decide_in_space(question, plane.states(middle)).verdict is Verdict.GO
         beyond = middle + 1.05 * (np.array(found["outer_polygon"][0]) - middle)

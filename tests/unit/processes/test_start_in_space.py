@@ -145,10 +145,18 @@ FREE = {"kind": "torque_free", "inertia_kg_m2": BODY, "body_rate_deg_s": [1, 0, 
             "attitude.axis",
         ),
         ({"orbit": {"semi_major_axis_m": 7.0e6, "eccentricity": 0.5}}, "orbit.eccentricity"),
-        ({"orbit": {"semi_major_axis_m": 7.0e7, "eccentricity": 0.85}}, "orbit.elliptic.eccentricity"),
-        ({"corridor": {"faces": []}}, "corridor.faces.faces"),
+        ({"orbit": {"semi_major_axis_m": 7.0e7, "eccentricity": 0.85}}, "orbit.eccentricity"),
+        ({"corridor": {"faces": []}}, "corridor.faces"),
         ({"corridor": {"faces": [{"name": "a", "normal": [0, 0, 1], "offset_m": 9}] * 2}}, "corridor.faces"),
         ({"corridor": {"axis": [0, 0, 0]}}, "corridor.axis"),
+        (
+            {
+                "corridor": {
+                    "faces": [{"name": n, "normal": [0, 0, int(n == "a")], "offset_m": 9} for n in "ab"]
+                }
+            },
+            "corridor.faces.1.normal",
+        ),
         (
             {
                 "a_max_m_s2": None,
@@ -158,15 +166,15 @@ FREE = {"kind": "torque_free", "inertia_kg_m2": BODY, "body_rate_deg_s": [1, 0, 
         ),
         ({"a_max_m_s2": None, "thrust": {"kind": "box", "a_max_m_s2": [0, 0, 0]}}, "thrust.a_max_m_s2"),
         ({"starts": [{"position_m": [1, 2]}]}, "starts.0.position_m"),
-        ({"keep_outs": [{"name": "a", "radius_m": 0}]}, "keep_outs.0.sphere.radius_m"),
-        ({"keep_outs": [{"name": "a", "half_widths_m": [1, 2]}]}, "keep_outs.0.box.half_widths_m"),
+        ({"keep_outs": [{"name": "a", "radius_m": 0}]}, "keep_outs.0.radius_m"),
+        ({"keep_outs": [{"name": "a", "half_widths_m": [1, 2]}]}, "keep_outs.0.half_widths_m"),
         (
             {"keep_outs": [{"name": "a", "radius_m": 1, "half_widths_m": [1, 2, 3]}]},
-            "keep_outs.0.sphere.half_widths_m",
+            "keep_outs.0.half_widths_m",
         ),
         ({"keep_outs": [{"name": "a", "radius_m": 1}] * 2}, "keep_outs"),
         ({"keep_outs": [{"name": "left", "radius_m": 1}]}, "keep_outs"),
-        ({"keep_outs": [{"name": "a", "radius_m": 1, "centre_m": [1e6, 0, 0]}]}, "keep_outs.centre_m"),
+        ({"keep_outs": [{"name": "a", "radius_m": 1, "centre_m": [1e6, 0, 0]}]}, "keep_outs.0.centre_m"),
         ({"field_of_view": {"axis": [0, 0, 0], "half_angle_deg": 10}}, "field_of_view.axis"),
         ({"field_of_view": {"axis": [0, 1, 0], "half_angle_deg": 90}}, "field_of_view.half_angle_deg"),
         (
@@ -177,7 +185,15 @@ FREE = {"kind": "torque_free", "inertia_kg_m2": BODY, "body_rate_deg_s": [1, 0, 
         ({"plume": {"half_angle_deg": 20}}, "plume.range_m"),
         ({"plume": {"half_angle_deg": 20, "range_m": 10}, "position_half_width_m": 1}, "question"),
         ({"plume": {"half_angle_deg": 20, "range_m": 10}, "method": "tracking"}, "plume"),
-        ({"starts": [{"position_m": [1, 20_000, 0]}]}, "starts"),
+        ({"starts": [{"position_m": [1, 20_000, 0]}]}, "starts.0.position_m.1"),
+        ({"starts": [{"position_m": [1, 2, 0], "velocity_m_s": [0, 0, 2000]}]}, "starts.0.velocity_m_s.2"),
+        ({"omega_t_deg_s": None, "attitude": {"kind": "euler"}}, "attitude.kind"),
+        ({"omega_t_deg_s": None, "attitude": {"axis": [0, 0, 1]}}, "attitude.kind"),
+        ({"orbit": {}}, "orbit.mean_motion_rad_s"),
+        (
+            {"corridor": {"faces": [{"name": "", "normal": [0, 0, 1], "offset_m": 9}]}},
+            "corridor.faces.0.name",
+        ),
     ],
 )
 def test_refusals_name_the_field(changes: dict[str, Any], field: str) -> None:

@@ -12,13 +12,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from safestart.constraints.thrust_limit import ThrustLimit
+from safestart.attitude.spin import Spin
+from safestart.constraints.thrust_limit import ThrustLimit, ball
 from safestart.exact.answer import Answer, Verdict
 from safestart.exact.question import Goal
 from safestart.exact.space.decide import decide_in_space
 from safestart.exact.space.demands.rules import Demands, FieldOfView, KeepOut, Plume
 from safestart.exact.space.prove import proof_in_space
 from safestart.exact.space.question import SpaceQuestion
+from safestart.model.orbit import KeplerOrbit
 from safestart.proofs.checker import check
 from safestart.proofs.strict import ProofRejected
 from tests.unit.exact.test_space_demands import BOX, PANEL, RULE, SIX, START, VIEW, flown, question
@@ -37,17 +39,41 @@ ASKED: dict[str, SpaceQuestion] = {
         goal=Goal(hold=(0.0, 4.0, 0.0)),
         steps=40,
     ),
+    "view lost": question(
+        Demands(view=replace(VIEW, half_angle=math.radians(5.0))),
+        orbit=KeplerOrbit(1e-3),
+        attitude=Spin(0.01),
+        thrust=ball(0.02),
+        steps=15,
+    ),
+    "view lost in the body": question(
+        Demands((PANEL,), replace(VIEW, half_angle=math.radians(4.0), frame="body")),
+        orbit=KeplerOrbit(1e-3),
+        attitude=Spin(0.01),
+        thrust=ThrustLimit("thrusters", (0.02,) * 6, SIX, "body"),
+        steps=10,
+    ),
+    "view lost before the hold": question(
+        Demands(view=replace(VIEW, half_angle=math.radians(5.0))),
+        thrust=ball(0.02),
+        attitude=Spin(0.0),
+        goal=Goal(hold=(9.0, 25.0, -1.0), earliest=14, radius=3.0, rest=0.3),
+        steps=18,
+    ),
     "sphere at the start": question(Demands((replace(PANEL, size=(20.0,)),)), steps=12),
     "box at the start": question(Demands((replace(BOX, size=(6.0, 30.0, 3.0)),)), steps=12),
     "view at the start": question(Demands(view=replace(VIEW, axis=(1.0, 1.0, 0.0))), steps=12),
 }
 
 
+LOST = np.array([0.5, 25.0, 0.3, 0.6, 0.0, -0.1])
+
+
 @cache
 def made(kind: str) -> str:
-    asked = ASKED[kind]
-    answer = decide_in_space(asked, START)
-    return json.dumps(proof_in_space(asked, START, answer))
+    asked, start = ASKED[kind], LOST if "lost" in kind else START
+    answer = decide_in_space(asked, start)
+    return json.dumps(proof_in_space(asked, start, answer))
 
 
 def document(kind: str) -> Document:
@@ -58,7 +84,7 @@ def document(kind: str) -> Document:
 @pytest.mark.parametrize("kind", sorted(ASKED))
 def test_every_answer_is_accepted_and_said_in_full(kind: str) -> None:
     found = check(document(kind))
-    assert found.verdict == ("NO_GO" if "start" in kind else "GO")
+    assert found.verdict == ("NO_GO" if "start" in kind or "lost" in kind else "GO")
     said = "\n".join(found.statement)
     for name in ASKED[kind].demands.names:
         assert name in said
@@ -122,6 +148,52 @@ def test_another_demand_is_not_proved(kind: str, key: str, value: Any) -> None:
         inside = inside[part]
     inside[parts[-1]] = value
     with pytest.raises(ProofRejected):
+        check(sealed(forged))
+
+
+@pytest.mark.parametrize("kind", [name for name in sorted(ASKED) if "lost" in name])
+def test_planes_hold_the_cone(kind: str) -> None:
+    """A row of the field of view is a plane against which the cone lies on one side; no other vector passes."""
+    whole = document(kind)
+    rows = [row for part in whole.get("parts", [whole]) for row in part["multipliers"]]
+    planes = [row for row in rows if row["face"] == "field_of_view"]
+    assert planes
+    assert all(set(row) == {"face", "pull", "time_s", "value"} for row in planes)
+    strongest = max(planes, key=lambda row: row["value"])
+    size = float(np.linalg.norm(strongest["pull"]))
+    assert size == pytest.approx(strongest["value"], rel=1e-12)
+    axis = np.array(whole["question"]["field_of_view"]["axis"])
+    kept = list(strongest["pull"])
+    for forged, said in (
+        ((np.array(kept) - 1e-6 * size * axis).tolist(), "leaves the cone on one side"),
+        ((-np.array(kept)).tolist(), "leaves the cone on one side"),
+        ((np.array(kept) * 1.001).tolist(), "pull"),
+        ([0.0, 0.0, 0.0], "sum of weighted margins"),
+        (kept[:2], "pull"),
+    ):
+        strongest["pull"] = forged
+        with pytest.raises(ProofRejected, match=said):
+            check(sealed(copy.deepcopy(whole)))
+    strongest["pull"] = kept
+    del whole["question"]["field_of_view"]
+    with pytest.raises(ProofRejected, match="a face of the question"):
+        check(sealed(whole))
+
+
+def test_a_wider_cone_is_not_refuted_by_the_same_planes() -> None:
+    forged = document("view lost")
+    forged["question"]["field_of_view"]["half_angle_rad"] = math.radians(5.01)
+    with pytest.raises(ProofRejected, match="leaves the cone on one side"):
+        check(sealed(forged))
+    # Any narrower cone lies within these planes, too.
+    forged["question"]["field_of_view"]["half_angle_rad"] = math.radians(4.0)
+    assert check(sealed(forged)).verdict == "NO_GO"
+
+
+def test_no_face_takes_the_name_of_the_field_of_view() -> None:
+    forged = document("view lost")
+    forged["question"]["faces"][0]["name"] = "field_of_view"
+    with pytest.raises(ProofRejected, match="names other than field_of_view"):
         check(sealed(forged))
 
 

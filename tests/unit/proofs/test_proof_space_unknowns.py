@@ -10,8 +10,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from safestart.attitude.spin import Spin
+from safestart.constraints.thrust_limit import ball
 from safestart.exact.space.prove import proof_in_space
+from safestart.exact.space.question import Face, SpaceQuestion
 from safestart.exact.space.start_box import decide_from_box
+from safestart.exact.space.unknowns import Unknowns
+from safestart.model.orbit import KeplerOrbit
 from safestart.proofs.checker import check
 from safestart.proofs.strict import ProofRejected
 from tests.unit.exact.test_space_unknowns import drawn
@@ -113,3 +118,36 @@ def test_what_is_not_proved_together_is_refused(change: Document, said: str) -> 
     made["question"] |= change
     with pytest.raises(ProofRejected, match=said):
         check(sealed(made))
+
+
+def test_a_force_is_bounded_within_a_step() -> None:
+    """The nearest moment lies within a step of 2 s, where a chord of the force's drift is off by W h^2 / 8 = 5 mm."""
+    wall = SpaceQuestion(
+        KeplerOrbit(0.0),
+        Spin(0.0),
+        (Face("wall", (1.0, 0.0, 0.0), 20.0, "lvlh"),),
+        ball(0.1),
+        steps=3,
+        unknowns=Unknowns(disturbance=0.01),
+    )
+    start = np.array([19.0, 5.0, 0.0, 0.1, 0.0, 0.0])
+    answer = decide_from_box(wall, start, np.zeros(6))
+    # 0.1 t - 0.09 t^2 / 2 is largest at t = 1.11 s: 1 - 0.0556 m, less the reserve.
+    assert 0.943 < answer.lower < 0.9444
+    assert check(json.loads(json.dumps(proof_in_space(wall, start, answer)))).verdict == "GO"
+
+
+def test_a_box_of_starts_is_bounded_between_the_ends_of_a_part() -> None:
+    """|r| around one value of it: a wide box and a fast flight cost more than either alone."""
+    plane = SpaceQuestion(
+        KeplerOrbit(0.0),
+        Spin(0.0),
+        (Face("wall", (0.0, 1.0, 0.0), 100.0), Face("back", (-1.0, 0.0, 0.0), 60.0)),
+        ball(0.02),
+        steps=2,
+        unknowns=Unknowns(angle=0.6),
+    )
+    start, half = np.array([100.0, 0.0, 0.0, 2.0, 0.0, 0.0]), np.array([2.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+    answer = decide_from_box(plane, start, half)
+    assert answer.verdict == "GO"
+    assert check(json.loads(json.dumps(proof_in_space(plane, start, answer, half)))).verdict == "GO"

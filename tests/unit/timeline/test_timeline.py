@@ -3,6 +3,7 @@
 import itertools
 import json
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ from safestart.model.scenario import CorridorShape
 from safestart.processes.execute import Execution, execute
 from safestart.processes.side_by_side import execute_side_by_side
 from safestart.proofs.checker import check
+from safestart.timeline.encounter import Encounter
 from tests.unit.interchange.sample import kepler
 from tests.unit.timeline.approach import attitude, pair, states, text
 
@@ -187,7 +189,7 @@ def test_an_elliptic_orbit_and_a_tumble_about_a_slanted_axis() -> None:
         ({"stop": "2027-03-01T12:03:00"}, "step_s", "at most 100000 instants"),
         ({"start": "soon"}, "start", "start"),
         ({"corridors": [{}, {}]}, "corridors", "names that differ"),
-        ({"corridors": [{"axis": [0, 0, 0]}]}, "axis", "not all 0"),
+        ({"corridors": [{"axis": [0, 0, 0]}]}, "corridors.0.axis", "not all 0"),
         ({"horizon_s": 31}, "horizon_s", "horizon_s"),
         ({"other": 1}, "other", "no field of this name"),
     ],
@@ -213,3 +215,17 @@ def test_attitudes_that_are_refused() -> None:
         )
     with pytest.raises(InvalidInput, match="both courses in ITRF"):
         execute("commit-timeline", asked(chaser=text(both[0])))
+
+
+def test_a_hole_of_the_attitude_is_undecided() -> None:
+    """At 1 deg/s a hole of 250 s looks like 110 degrees the other way round; slerp gave a GO or a NO_GO in it."""
+    whole = attitude(Spin(math.radians(1.0)), 400.0, step=10.0)
+    kept = (whole.epochs <= whole.epochs[5]) | (whole.epochs >= whole.epochs[30])
+    holed = replace(whole, epochs=whole.epochs[kept], quaternions=whole.quaternions[kept])
+    encounter = Encounter(*pair(400.0), holed, int(whole.epochs[0]), 20.0)
+    known = encounter.covered(whole.epochs)
+    expected = [(k <= 3) or (30 <= k <= 38) for k in range(41)]
+    assert known.tolist() == expected
+    parts = replace(whole, pieces=(0, 20))
+    known = Encounter(*pair(400.0), parts, int(whole.epochs[0]), 20.0).covered(whole.epochs)
+    assert known.tolist() == [(k <= 17) or (20 <= k <= 38) for k in range(41)]

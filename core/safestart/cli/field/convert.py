@@ -44,13 +44,13 @@ def register(app: typer.Typer) -> None:
             raise invalid("--sense", "rotating or inertial", sense)
         form = _FORMS[to.suffix.lower()]
         course = course_from(bytes_of(source), source.name, sense)  # type: ignore[arg-type]
-        if (
-            isinstance(course, Ephemeris)
-            and (course.covariances or len(course.pieces) > 1)
-            and form not in ("kvn", "xml")
-        ):
+        plain = len(course.pieces) == 1 and not course.useable
+        if isinstance(course, Ephemeris):
+            plain = plain and not course.covariances
+        if not plain and form not in ("kvn", "xml"):
             raise InvalidInput(
-                "to: required a message for covariances and segments, received a table", field="to"
+                "to: required a message for covariances, segments and useable times, received a table",
+                field="to",
             )
         with target("to", to) as file:
             assert file is not None

@@ -101,7 +101,7 @@ def register(app: typer.Typer) -> None:
 
 def _workers(inputs: dict[str, Any]) -> int | None:
     """1 for a span so short that other processes would not have started before it is done; None: as many as cores."""
-    from safestart.processes.commit_timeline.run import encounter_of
+    from safestart.processes.commit_timeline.courses import encounter_of
     from safestart.processes.commit_timeline.spec import SPEC, CommitTimelineInputs
 
     parsed = SPEC.parse(inputs)

@@ -9,7 +9,7 @@ import numpy as np
 from safestart.errors import invalid
 from safestart.model.scenario import Floats
 
-_LEAST_SPAN, _MOST_SPAN = 1e-3, 1e5
+LEAST_SPAN, MOST_SPAN = 1e-3, 1e5
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,8 +28,8 @@ class Plane:
         if not (np.isfinite(self.origin).all() and np.isfinite(self.columns).all()):
             raise invalid("plane", "finite numbers", "others")
         span = self.high - self.low
-        if not ((span >= _LEAST_SPAN) & (span <= _MOST_SPAN)).all():
-            raise invalid("low", f"less than high by {_LEAST_SPAN:g} to {_MOST_SPAN:g}", self.low)
+        if not ((span >= LEAST_SPAN) & (span <= MOST_SPAN)).all():
+            raise invalid("low", f"less than high by {LEAST_SPAN:g} to {MOST_SPAN:g}", self.low)
         if np.linalg.matrix_rank(self.columns / np.linalg.norm(self.columns, axis=0), 1e-6) < 2:
             raise invalid("direction", "two directions that differ", self.columns.T)
 

@@ -14,6 +14,7 @@ from safestart.attitude.turning import SmoothAttitude
 from safestart.errors import invalid
 from safestart.exact.answer import Answer, Verdict
 from safestart.exact.prove import GO_STAND_BACK_M, NO_GO_STAND_BACK_M, limits_of, refuted_by
+from safestart.exact.space.demands.demanded import lost_at_start
 from safestart.exact.space.demands.rules import PLUME, VIEW, Demands
 from safestart.exact.space.question import SpaceQuestion
 from safestart.exact.space.unknowns import Unknowns
@@ -47,8 +48,8 @@ def proof_in_space(
         document["thrust_m_s2" if question.thrust.kind == "ball" else "throttle"] = answer.thrust.tolist()
     elif answer.verdict is Verdict.NO_GO:
         document["margin_m"] = min(answer.upper + NO_GO_STAND_BACK_M, 0.5 * answer.upper)
-        at_start = answer.multipliers[0].face if answer.multipliers else ""
-        if at_start in question.demands.names:
+        at_start = lost_at_start(question.demands, answer)
+        if at_start:
             document["violated"] = at_start
         else:
             document |= refuted_by(answer, question.latest, free=question.goal is not None)

@@ -194,12 +194,12 @@ def _check_faces(faces: tuple[Face, ...]) -> None:
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice or not all(isinstance(name, str) and 0 < len(name) <= 40 for name in names):
         raise invalid("faces", "names of 1 to 40 characters, each once", twice or names)
-    for face in faces:
+    for k, face in enumerate(faces):
         if face.frame not in ("lvlh", "body"):
-            raise invalid("frame", "lvlh or body", face.frame)
+            raise invalid(f"faces.{k}.frame", "lvlh or body", face.frame)
         if len(face.normal) != 3 or not 1e-6 <= math.hypot(*face.normal) <= 1e6:
-            raise invalid("normal", "three numbers of a length in [1e-6, 1e6]", face.normal)
-        number("offset", face.offset, -MAX_RANGE * 1e6, MAX_RANGE * 1e6)
+            raise invalid(f"faces.{k}.normal", "three numbers of a length in [1e-6, 1e6]", face.normal)
+        number(f"faces.{k}.offset", face.offset, -MAX_RANGE * 1e6, MAX_RANGE * 1e6)
     for frame in ("lvlh", "body"):
         chosen = [face for face in faces if face.frame == frame]
         if chosen and not _meet(chosen):

@@ -122,8 +122,9 @@ def decide_from_box(
     worst = Search(_Worst(tight, half), state)
     bounded = not isinstance(tight, TightenedWatch) or math.isfinite(tight.widest)
     if bounded and worst.distance_now >= -GUARD:
-        worst.narrow(max(tolerance, tight.reserve(half)) if isinstance(tight, TightenedWatch) else tolerance)
-        lower = worst.lower - (tight.reserve(half) if isinstance(tight, TightenedWatch) else 0.0)
+        unknown = tight if isinstance(tight, TightenedWatch) else None
+        worst.narrow(tolerance if unknown is None else max(tolerance, unknown.reserve(half, state, None)))
+        lower = worst.lower - (0.0 if unknown is None else unknown.reserve(half, state, worst.thrust))
         if lower > GUARD:
             return Answer(Verdict.GO, lower, lower, worst.upper, worst.thrust, (), worst.rounds)
     best = Search(_Best(watch, half), state)

@@ -59,14 +59,16 @@ class TightenedWatch(SpaceWatch):
             parts.append(f"forces may move the chaser by {self._drift[-1]:.2g} m")
         return f"at the end {' and '.join(parts)}: by these bounds none keeps all faces for every member"
 
-    def reserve(self, half: Floats) -> float:
+    def reserve(self, half: Floats, state: Floats, thrust: Floats | None) -> float:
         """What a proof's bound on |r| may take beyond this watch's, m: it is quadratic in what moves the flight.
 
-        ``half`` (6,): half-widths of the starts around the remembered flight.
+        ``half`` (6,): half-widths of the starts around the flight from ``state`` (6,) under ``thrust`` (N, channels),
+        which the proof takes the bound around; None: around the remembered flight.
         """
         still = np.zeros((self.question.steps, self.question.channels))
         moved = np.stack([self.flown(column, still)[:, :3] for column in np.diag(half)])
-        away = np.maximum(np.sqrt(np.square(self._course).sum(axis=1)), _NEAREST_M)
+        course = self._course if thrust is None else self.flown(state, thrust)[:, :3]
+        away = np.maximum(np.sqrt(np.square(course).sum(axis=1)), _NEAREST_M)
         wide = np.count_nonzero(half) * np.square(moved).sum(axis=(0, 2)) / (2.0 * away)
         return _RESERVE_M + 1.05 * float((self._angle * wide).max())
 

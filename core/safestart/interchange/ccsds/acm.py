@@ -6,16 +6,20 @@ and so are the other blocks: covariances of attitudes, manoeuvres, the body, how
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from safestart.errors import invalid
-from safestart.interchange.attitude_course import AttitudeCourse
+from safestart.interchange.attitude_course import AttitudeCourse, require_dense
 from safestart.interchange.ccsds.message import Block, Message
 from safestart.interchange.ccsds.ocm import times_of
 from safestart.interchange.ccsds.tokens import number, refused
 
 _ATT = ("ATT_ID", "ATT_PREV_ID", "ATT_BASIS", "ATT_BASIS_ID", "EULER_ROT_SEQ")
 _OTHERS = ("PHYS", "COV", "MAN", "AD", "USER")
+_UNITS = {"ANGVEL": math.radians(1.0), "Q_DOT": 2.0}
+"""rad/s for one of theirs: deg/s, and a quaternion's derivative, which is half as long."""
 _RATES = {"NONE": 0, "": 0, "ANGVEL": 3, "Q_DOT": 4, "EULER_RATE": 3, "GYRO_BIAS": 3}
 
 
@@ -29,6 +33,7 @@ def attitude_of(message: Message) -> AttitudeCourse:
     frames: tuple[str, str] | None = None
     epochs: list[int] = []
     turns: list[list[float]] = []
+    pieces: list[int] = []
     for one in message.blocks():
         if one.name == "META":
             meta = one
@@ -41,8 +46,10 @@ def attitude_of(message: Message) -> AttitudeCourse:
             frames = own
             if not one.rows:
                 raise refused(one.fields.line, "attitudes in ATT", "none (truncated)")
-            epochs += times_of(meta, one.rows)
-            turns += _turns(one)
+            own_epochs = times_of(meta, one.rows)
+            pieces.append(len(epochs))
+            epochs += own_epochs
+            turns += _turns(one, own_epochs)
         elif one.name not in _OTHERS:
             raise refused(one.fields.line, f"a block of ACM: ATT, {', '.join(_OTHERS)}", one.name or "data")
     if meta is None or frames is None:
@@ -63,10 +70,11 @@ def attitude_of(message: Message) -> AttitudeCourse:
         meta.fields.get("TIME_SYSTEM"),
         np.array(epochs, dtype=np.int64),
         np.array(turns),
+        tuple(pieces),
     )
 
 
-def _turns(one: Block) -> list[list[float]]:
+def _turns(one: Block, epochs: list[int]) -> list[list[float]]:
     """Quaternions of the rows, scalar first."""
     kind, rate = one.fields.get("ATT_TYPE").upper(), one.fields.get("RATE_TYPE", "").upper()
     if kind != "QUATERNION":
@@ -77,11 +85,14 @@ def _turns(one: Block) -> list[list[float]]:
     if states != str(width):
         raise refused(one.fields.line, f"NUMBER_STATES {width} of quaternion and {rate or 'no rate'}", states)
     one.fields.done(_ATT)
-    turns = []
+    turns, rates = [], []
     for row in one.rows:
         _, *values = row.value.split()
         if len(values) != width:
             raise refused(row.line, f"a time and {width} numbers", f"{len(values)} numbers")
         x, y, z, scalar = (number(text, row.line, "quaternion") for text in values[:4])
         turns.append([scalar, x, y, z])
+        rates.append(math.hypot(*(number(text, row.line, rate) for text in values[4:])))
+    if rate in _UNITS:
+        require_dense(np.array(epochs), _UNITS[rate] * np.array(rates))
     return turns

@@ -6,15 +6,18 @@ import re
 from collections.abc import Iterable, Iterator
 
 from safestart.interchange.ccsds.tokens import Kind, Token, refused
+from safestart.interchange.source import refuse_many_lines
 
 _PAIR = re.compile(r"([A-Z][A-Z0-9_]*)\s*=\s*(.*?)\s*(?:\[([^\[\]]*)\])?", re.ASCII)
 _MARK = re.compile(r"([A-Z][A-Z0-9_]*)_(START|STOP)", re.ASCII)
 _ROW = re.compile(r"[-+.0-9][-+.:0-9A-Za-z]*(?:\s+\S+)*", re.ASCII)
 _LONGEST_LINE = 4096
+_MOST_LINES = 2_000_000
 
 
 def tokens_of(text: str) -> Iterator[Token]:
     """The tokens of a KVN text; raises ``InvalidInput`` with the line of an invalid token."""
+    refuse_many_lines(text, _MOST_LINES)
     for line, raw in enumerate(text.splitlines(), 1):
         if len(raw) > _LONGEST_LINE:
             raise refused(line, f"at most {_LONGEST_LINE} characters in a line", len(raw))

@@ -7,10 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from safestart.errors import invalid
+from safestart.interchange.attitude_course import Window
 from safestart.interchange.ccsds.message import Block, Message, block, header_of, key
 from safestart.interchange.ccsds.oem import triangle
 from safestart.interchange.ccsds.parameters import Manoeuvre
 from safestart.interchange.ccsds.tokens import Kind, Token, decimal, number, refused
+from safestart.interchange.ccsds.useable import useable_keys, window_of
 from safestart.interchange.covariance import Covariance, Sense, covariance_frame
 from safestart.interchange.ephemeris import Ephemeris
 from safestart.interchange.epochs import SECOND, epochs_of, shortened, text_of
@@ -27,21 +29,25 @@ def ephemeris_of(message: Message, sense: Sense | None = None) -> Ephemeris:
     """
     meta: Block | None = None
     frame = center = ""
+    latest = -(2**62)
     pieces: list[int] = []
     epochs: list[int] = []
     states: list[list[float]] = []
     covariances: list[Covariance] = []
+    useable: list[Window | None] = []
     for one in message.blocks():
         if one.name == "META":
             meta = one
         elif meta is None:
             raise refused(one.fields.line, "META_START before data", one.name or "data")
         elif one.name == "TRAJ":
+            latest = max([latest, *times_of(meta, one.rows)])
             named = one.fields.get("TRAJ_REF_FRAME"), one.fields.get("CENTER_NAME")
             if frame and named != (frame, center):
                 raise refused(one.fields.line, "trajectories in one frame", named)
             frame, center = named
             pieces.append(len(epochs))
+            useable.append(_useable(meta, one))
             width = _one_of(one, "TRAJ_TYPE", _TRAJECTORIES)
             _refuse_units(one, "TRAJ_UNITS", "km,km,km,km/s,km/s,km/s")
             if not one.rows:
@@ -50,7 +56,10 @@ def ephemeris_of(message: Message, sense: Sense | None = None) -> Ephemeris:
             states += [
                 [number(text, row.line, "state", 3) for text in _columns(row, width)[:6]] for row in one.rows
             ]
-        elif one.name == "COV":
+        elif one.name in ("COV", "MAN"):
+            latest = max([latest, *times_of(meta, one.rows)])
+            if one.name == "MAN":
+                continue
             _one_of(one, "COV_TYPE", {"CARTPV": 6})
             _one_of(one, "COV_ORDERING", {"LTM": 21})
             _refuse_units(one, "COV_UNITS", "km**2")
@@ -64,10 +73,34 @@ def ephemeris_of(message: Message, sense: Sense | None = None) -> Ephemeris:
     name = meta.fields.get("OBJECT_NAME", "UNKNOWN")
     designator = meta.fields.get("OBJECT_DESIGNATOR", meta.fields.get("INTERNATIONAL_DESIGNATOR", "UNKNOWN"))
     system = meta.fields.get("TIME_SYSTEM")
+    _refuse_truncated(meta, max(latest, epochs[-1]))
     at_all = np.array(epochs, dtype=np.int64)
     return Ephemeris(
-        name, designator, frame, system, at_all, np.array(states), tuple(covariances), tuple(pieces), center
+        name,
+        designator,
+        frame,
+        system,
+        at_all,
+        np.array(states),
+        tuple(covariances),
+        tuple(pieces),
+        center,
+        tuple(useable) if any(useable) else (),
     )
+
+
+def _useable(meta: Block, one: Block) -> Window | None:
+    names = ("USEABLE_START_TIME", "USEABLE_STOP_TIME")
+    begin, end = (
+        times_of(meta, [one.fields.values[name]])[0] if one.fields.has(name) else None for name in names
+    )
+    return window_of(begin, end, one.fields.line)
+
+
+def _refuse_truncated(meta: Block, last: int) -> None:
+    if meta.fields.has("STOP_TIME") and last < times_of(meta, [meta.fields.values["STOP_TIME"]])[0]:
+        stop = meta.fields.get("STOP_TIME")
+        raise refused(meta.fields.line, f"data up to STOP_TIME {stop}", "less (truncated)")
 
 
 def manoeuvres_of(message: Message) -> tuple[Manoeuvre, ...]:
@@ -159,7 +192,9 @@ def tokens_of(
             )
             for k in range(begin, end)
         ]
+        window = ephemeris.useable[ephemeris.pieces.index(begin)] if ephemeris.useable else None
         head = {"CENTER_NAME": ephemeris.center, "TRAJ_REF_FRAME": ephemeris.frame, "TRAJ_TYPE": "CARTPV"}
+        head |= useable_keys(window, system)
         out += block("TRAJ", [*(key(*pair) for pair in head.items()), *rows])
     for one in ephemeris.covariances:
         at = shortened(text_of(np.array([one.epoch]), system)[0])

@@ -7,8 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from safestart.errors import invalid
+from safestart.interchange.attitude_course import Window
 from safestart.interchange.ccsds.message import Block, Message, block, header_of, key
 from safestart.interchange.ccsds.tokens import Kind, Token, decimal, number, refused
+from safestart.interchange.ccsds.useable import useable_keys, useable_of
 from safestart.interchange.covariance import Covariance, Sense, covariance_frame
 from safestart.interchange.ephemeris import Ephemeris
 from safestart.interchange.epochs import epochs_of, shortened, text_of
@@ -31,6 +33,7 @@ def ephemeris_of(message: Message, sense: Sense | None = None) -> Ephemeris:
     texts: list[str] = []
     states: list[list[float]] = []
     covariances: list[Covariance] = []
+    useable: list[Window | None] = []
     for one in message.blocks():
         if one.name == "META":
             meta, given = one, _same(one)
@@ -39,6 +42,7 @@ def ephemeris_of(message: Message, sense: Sense | None = None) -> Ephemeris:
                 raise refused(one.fields.line, "segments of one object in one frame and time system", given)
             same = given
             pieces.append(len(texts))
+            useable.append(useable_of(one, same["TIME_SYSTEM"]))
         elif meta is None:
             raise refused(one.fields.line, "META_START before data", one.name or "data")
         elif one.name == "COVARIANCE":
@@ -70,6 +74,7 @@ def ephemeris_of(message: Message, sense: Sense | None = None) -> Ephemeris:
         tuple(covariances),
         tuple(pieces),
         same["CENTER_NAME"],
+        tuple(useable) if any(useable) else (),
     )
 
 
@@ -123,7 +128,8 @@ def tokens_of(ephemeris: Ephemeris, created: str, originator: str = "SAFESTART")
         for epoch, state in zip(texts, ephemeris.states.tolist(), strict=True)
     ]
     ends = [*ephemeris.pieces[1:], len(rows)]
-    for begin, end in zip(ephemeris.pieces, ends, strict=True):
+    for k, (begin, end) in enumerate(zip(ephemeris.pieces, ends, strict=True)):
+        window = ephemeris.useable[k] if ephemeris.useable else None
         meta = {
             "OBJECT_NAME": ephemeris.name,
             "OBJECT_ID": ephemeris.object_id,
@@ -131,6 +137,7 @@ def tokens_of(ephemeris: Ephemeris, created: str, originator: str = "SAFESTART")
             "REF_FRAME": ephemeris.frame,
             "TIME_SYSTEM": system,
             "START_TIME": texts[begin],
+            **useable_keys(window, system),
             "STOP_TIME": texts[end - 1],
         }
         out += block("META", [key(*pair) for pair in meta.items()])

@@ -1,11 +1,13 @@
 """The XML form of CCSDS messages (505.0-B-3) as the tokens of KVN, and back.
 
-Document types are refused: declarations of entities, and so entity bombs and external files, raise an error.
+Document types are refused: declarations of entities, and so entity bombs and external files, raise an error. What
+parsing costs is bounded by what the bytes hold, before they are parsed.
 """
 
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Iterator
 from xml.etree.ElementTree import Element, ParseError
 
@@ -46,6 +48,10 @@ _UNITS = {
 }
 _LINES = {"trajLine", "attLine", "covLine", "manLine"}
 _LARGEST_DEPTH = 12
+_MOST_TAGS = 6_000_000
+"""Begins and ends of elements: as many as 64 MB of numbers have, each in tags of its own."""
+_LONG_TAG = re.compile(rb"<[^<>]{4096}")
+"""The parser's time grows with the square of a tag's attributes."""
 
 
 def tokens_of(data: bytes) -> Iterator[Token]:
@@ -68,6 +74,11 @@ def _root(data: bytes) -> Element:
         raise Unavailable(
             "XML requires the package defusedxml (extra files)", required="defusedxml"
         ) from None
+    tags = data.count(b"<")
+    if tags > _MOST_TAGS:
+        raise invalid("file", f"at most {_MOST_TAGS} tags", tags)
+    if _LONG_TAG.search(data):
+        raise invalid("file", "tags of at most 4096 characters", "a longer one")
     try:
         root = parse(io.BytesIO(data), forbid_dtd=True).getroot()
     except DefusedXmlException as error:

@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 from safestart.model.scenario import Rest
 from safestart.papers.envisat import TUMBLING
 from safestart.processes.base import ProcessSpec, WireModel
-from safestart.processes.start_in_space.parts import Vector
+from safestart.processes.start_in_space.parts import Position
 from safestart.processes.start_in_space.plane_input import PlaneInput, coordinate_planes
 from safestart.processes.start_in_space.space_scenario import SpaceScenario
 from safestart.processes.views import Column, Rows
@@ -26,7 +26,7 @@ class PlanesAsked(SpaceScenario):
         max_length=MOST_PLANES,
         description="Planes of starts; none: the three coordinate planes of the body frame through centre_m.",
     )
-    centre_m: Vector = Field(
+    centre_m: Position = Field(
         default_factory=lambda: [0.0, 30.0, 0.0],
         description="Of the coordinate planes, body frame, m; only without planes.",
     )

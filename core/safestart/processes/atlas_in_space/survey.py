@@ -16,7 +16,7 @@ def survey(inputs: PlanesAsked, context: Context) -> tuple[list[PlaneInput], lis
     """The planes and their atlases."""
     question = stay_in(inputs, inputs.horizon_s)
     asked = inputs.asked()
-    planes = [plane_of(said, question, f"planes.{k}") for k, said in enumerate(asked)]
+    planes = [plane_of(said, question) for said in asked]
     found: list[PlaneAtlas] = []
     for k, plane in enumerate(planes):
         part = context.part(float(k), 1.0, float(len(planes)), asked[k].name)

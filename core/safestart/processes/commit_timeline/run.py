@@ -5,30 +5,22 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Sequence
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
-from safestart.attitude.spin import Spin
-from safestart.constraints.thrust_limit import ThrustLimit
-from safestart.errors import InvalidInput, invalid
-from safestart.exact.space.question import five_faces
-from safestart.interchange.attitude_course import AttitudeCourse
-from safestart.interchange.covariance import Sense
-from safestart.interchange.ephemeris import Ephemeris
-from safestart.interchange.epochs import SECOND, Nanoseconds, epochs_of, shortened, text_of
-from safestart.interchange.read import attitude_from, ephemeris_from
+from safestart.interchange.epochs import SECOND, Nanoseconds, shortened, text_of
 from safestart.interchange.tables import csv_of
 from safestart.processes.base import Artifact, ProcessOutput
+from safestart.processes.commit_timeline.courses import encounter_of, judges_of
 from safestart.processes.commit_timeline.plots import picture
-from safestart.processes.commit_timeline.spec import MOST_STEPS, CommitTimelineInputs
+from safestart.processes.commit_timeline.spec import CommitTimelineInputs
 from safestart.processes.commit_timeline.split import PARTS
 from safestart.processes.sharding import Part
 from safestart.processes.wire import finite
 from safestart.runtime.progress import Context
 from safestart.timeline.encounter import Encounter
-from safestart.timeline.verdicts import Corridor, Instant, Judge, joined
+from safestart.timeline.verdicts import Instant, Judge, joined
 
 _AT_ONCE = 50
 
@@ -88,67 +80,6 @@ def _run(corridor: str, run: Sequence[Instant], proofs: Sequence[str | None]) ->
         "begin_proof": proofs[0],
         "end_proof": proofs[1],
     }
-
-
-def judges_of(inputs: CommitTimelineInputs, encounter: Encounter) -> list[Judge]:
-    """One for each corridor; raises ``InvalidInput`` for names that come twice."""
-    names = [one.name for one in inputs.corridors]
-    if len(set(names)) != len(names):
-        raise invalid("corridors", "names that differ", names)
-    thrust = ThrustLimit("ball", (inputs.a_max_m_s2,))
-    corridors = [
-        Corridor(one.name, five_faces(one.shape(), (one.axis[0], one.axis[1], one.axis[2])))
-        for one in inputs.corridors
-    ]
-    return [Judge(encounter, corridor, thrust) for corridor in corridors]
-
-
-def encounter_of(inputs: CommitTimelineInputs) -> tuple[Encounter, Nanoseconds]:
-    """The courses, and the instants step_s apart; raises ``InvalidInput`` under the field's name."""
-    if (inputs.attitude is None) == (inputs.spin is None):
-        raise invalid("attitude", "an attitude or a spin, and not both", "both" if inputs.spin else "neither")
-    chaser = _named("chaser", _ephemeris, inputs.chaser, inputs.sense)
-    target = _named("target", _ephemeris, inputs.target, inputs.sense)
-    begin, end = max(chaser.epochs[0], target.epochs[0]), min(chaser.epochs[-1], target.epochs[-1])
-    if inputs.start is not None:
-        begin = epochs_of([inputs.start], "UTC")[0]
-    if inputs.stop is not None:
-        end = epochs_of([inputs.stop], "UTC")[0]
-    if end < begin:
-        span = " .. ".join(text_of(np.array([begin, end]), "UTC"))
-        raise invalid("stop", "a span in which both courses have states, its end after its begin", span)
-    step = round(inputs.step_s * SECOND)
-    count = int(end - begin) // step + 1
-    if count > MOST_STEPS:
-        raise invalid("step_s", f"at most {MOST_STEPS} instants", count)
-    attitude: AttitudeCourse | Spin
-    if inputs.attitude is not None:
-        attitude = _named("attitude", _attitude, inputs.attitude)
-    else:
-        assert inputs.spin is not None
-        x, y, z = inputs.spin.axis
-        attitude = Spin(math.radians(inputs.spin.rate_deg_s), (x, y, z), math.radians(inputs.spin.phase_deg))
-    encounter = Encounter(chaser, target, attitude, int(begin), inputs.horizon_s, inputs.confidence)
-    return encounter, begin + step * np.arange(count, dtype=np.int64)
-
-
-def _named(field: str, read: Any, *arguments: Any) -> Any:
-    try:
-        return read(*arguments)
-    except InvalidInput as error:
-        raise InvalidInput(
-            f"{field}: {error.detail}", field=field, required=error.required, received=error.received
-        ) from None
-
-
-@lru_cache(maxsize=4)
-def _ephemeris(text: str, sense: Sense | None) -> Ephemeris:
-    return ephemeris_from(text.encode(), "", sense)
-
-
-@lru_cache(maxsize=2)
-def _attitude(text: str) -> AttitudeCourse:
-    return attitude_from(text.encode())
 
 
 def merge(inputs: CommitTimelineInputs, parts: Sequence[Part], context: Context) -> ProcessOutput:

@@ -138,6 +138,7 @@ SPEC = ProcessSpec(
     ),
     inputs=CommitTimelineInputs,
     outputs=CommitTimelineOutputs,
+    possible="safestart.processes.commit_timeline.courses:require_possible",
     kernels=("exact answers",),
     sharding=Sharding.of("safestart.processes.commit_timeline", light="split"),
     views=(

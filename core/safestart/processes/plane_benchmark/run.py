@@ -27,7 +27,7 @@ def run(inputs: PlaneBenchmarkInputs, context: Context) -> ProcessOutput:
     question = stay_in(inputs, inputs.horizon_s)
     problem = PlaneProblem(
         question,
-        plane_of(inputs.plane, question, "plane"),
+        plane_of(inputs.plane, question),
         inputs.across,
         inputs.along,
         (inputs.position_sigma_m, inputs.velocity_sigma_m_s),

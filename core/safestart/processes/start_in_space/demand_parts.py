@@ -79,16 +79,11 @@ def demands_of(
     """In SI units; raises ``InvalidInput`` under the wire names."""
     part = ""
     try:
-        part = "keep_outs."
-        made = tuple(
-            KeepOut(
-                one.name,
-                _three(one.centre_m),
-                (one.radius_m,) if isinstance(one, SphereKeepOut) else tuple(one.half_widths_m),
-                one.frame,
-            )
-            for one in keep_outs
-        )
+        made = []
+        for k, one in enumerate(keep_outs):
+            part = f"keep_outs.{k}."
+            size = (one.radius_m,) if isinstance(one, SphereKeepOut) else tuple(one.half_widths_m)
+            made.append(KeepOut(one.name, _three(one.centre_m), size, one.frame))
         part = "field_of_view."
         seen = (
             None
@@ -106,7 +101,7 @@ def demands_of(
     except InvalidInput as error:
         field = str(error.field)
         raise invalid(f"{part}{_WIRE.get(field, field)}", str(error.required), error.received) from None
-    return Demands(made, seen, rule)
+    return Demands(tuple(made), seen, rule)
 
 
 def _three(values: Sequence[float]) -> tuple[float, float, float]:

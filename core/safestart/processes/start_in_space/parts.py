@@ -14,6 +14,8 @@ MOST_FACES = MOST_THRUSTERS = 32
 MOST_ENTRIES = 20_000
 Number = Annotated[float, Field(ge=-1e9, le=1e9)]
 Vector = Annotated[list[Number], Field(min_length=3, max_length=3)]
+Position = Annotated[list[Annotated[float, Field(ge=-10_000, le=10_000)]], Field(min_length=3, max_length=3)]
+Velocity = Annotated[list[Annotated[float, Field(ge=-1000, le=1000)]], Field(min_length=3, max_length=3)]
 Quaternion = Annotated[list[Number], Field(min_length=4, max_length=4)]
 Frame = Literal["lvlh", "body"]
 Reference = Literal["inertial", "lvlh"]
@@ -23,8 +25,8 @@ _WXYZ = "Quaternion, scalar first: r_B = C r_L with C = (s^2 - v.v) I + 2 v v^T 
 class SpaceStart(WireModel):
     """Position and velocity at t = 0."""
 
-    position_m: Vector = Field(description="Position, m.")
-    velocity_m_s: Vector = Field(
+    position_m: Position = Field(description="Position, m.")
+    velocity_m_s: Velocity = Field(
         default_factory=lambda: [0.0, 0.0, 0.0],
         description="Velocity, m/s; with frame body against the turning body, in its axes. Absent: at rest in frame.",
     )

@@ -6,35 +6,28 @@ import math
 
 import numpy as np
 
-from safestart.errors import InvalidInput, invalid
 from safestart.exact.space.plane import Plane
 from safestart.exact.space.question import SpaceQuestion, starts_in_lvlh
 from safestart.model.scenario import Floats, Rest
 from safestart.processes.start_in_space.plane_input import PlaneInput
 
 
-def plane_of(said: PlaneInput, question: SpaceQuestion, field: str) -> Plane:
-    """In LVLH and SI units; raises ``InvalidInput`` under the wire names below ``field``."""
+def plane_of(said: PlaneInput, question: SpaceQuestion) -> Plane:
+    """In LVLH and SI units."""
     columns = []
-    for name, axis in (("first", said.first), ("second", said.second)):
+    for axis in (said.first, said.second):
         length = math.hypot(*axis.direction)
-        if not 1e-9 < length < math.inf:
-            raise invalid(f"{field}.{name}.direction", "three numbers, not all 0", axis.direction)
         unit = [e / length for e in axis.direction]
         still = [0.0, 0.0, 0.0]
         columns.append(unit + still if axis.kind == "position" else still + unit)
     rows = np.array([said.origin_m + said.velocity_m_s, *columns])
     moved = _in_lvlh(said, question, rows)
-    try:
-        return Plane(
-            moved[0],
-            moved[1:].T,
-            np.array([said.first.low, said.second.low]),
-            np.array([said.first.high, said.second.high]),
-        )
-    except InvalidInput as error:
-        inside = {"low": "first.low", "direction": "second.direction"}.get(str(error.field), "first")
-        raise invalid(f"{field}.{inside}", str(error.required), error.received) from None
+    return Plane(
+        moved[0],
+        moved[1:].T,
+        np.array([said.first.low, said.second.low]),
+        np.array([said.first.high, said.second.high]),
+    )
 
 
 def _in_lvlh(said: PlaneInput, question: SpaceQuestion, rows: Floats) -> Floats:

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Literal
+import math
+from typing import Annotated, Literal
 
-from pydantic import Field
+import numpy as np
+from pydantic import Field, model_validator
 
+from safestart.exact.space.plane import LEAST_SPAN, MOST_SPAN
 from safestart.model.scenario import Rest
 from safestart.processes.base import WireModel
-from safestart.processes.start_in_space.parts import Frame, Number, Vector
+from safestart.processes.start_in_space.parts import Frame, Position, Vector, Velocity
 
 Kind = Literal["position", "velocity"]
+Coordinate = Annotated[float, Field(ge=-100_000, le=100_000)]
+LEAST_LENGTH, _LEAST_ANGLE = 1e-9, 1e-5
 
 
 class PlaneAxis(WireModel):
@@ -18,16 +23,26 @@ class PlaneAxis(WireModel):
 
     kind: Kind = Field("position", description="What the coordinate moves: position (m) or velocity (m/s).")
     direction: Vector = Field(description="Along which direction; its length does not matter.")
-    low: Number = Field(description="Least value, m or m/s.")
-    high: Number = Field(description="Largest value.")
+    low: Coordinate = Field(description="Least value, m or m/s.")
+    high: Coordinate = Field(description="Largest value; above low by 0.001 at least.")
+
+    @model_validator(mode="after")
+    def _has_length(self) -> PlaneAxis:
+        if math.hypot(*self.direction) < LEAST_LENGTH:
+            raise ValueError("direction: required three numbers, not all 0")
+        if not LEAST_SPAN <= self.high - self.low <= MOST_SPAN:
+            raise ValueError(f"low: required less than high by {LEAST_SPAN:g} to {MOST_SPAN:g}")
+        return self
 
 
 class PlaneInput(WireModel):
     """Starts origin + a first + b second, everything else fixed."""
 
     name: str = Field(min_length=1, max_length=40, description="Name, each once.")
-    origin_m: Vector = Field(default_factory=lambda: [0.0, 0.0, 0.0], description="Position at a = b = 0, m.")
-    velocity_m_s: Vector = Field(
+    origin_m: Position = Field(
+        default_factory=lambda: [0.0, 0.0, 0.0], description="Position at a = b = 0, m."
+    )
+    velocity_m_s: Velocity = Field(
         default_factory=lambda: [0.0, 0.0, 0.0],
         description="Velocity at a = b = 0, in the axes of frame, m/s.",
     )
@@ -35,6 +50,13 @@ class PlaneInput(WireModel):
     rest: Rest = Field(Rest.LVLH, description="What velocities are against: LVLH, or the turning body.")
     first: PlaneAxis = Field(description="Coordinate a, drawn across.")
     second: PlaneAxis = Field(description="Coordinate b, drawn upwards.")
+
+    @model_validator(mode="after")
+    def _is_a_plane(self) -> PlaneInput:
+        a, b = (np.array(axis.direction) / math.hypot(*axis.direction) for axis in (self.first, self.second))
+        if self.first.kind == self.second.kind and math.hypot(*np.cross(a, b).tolist()) < _LEAST_ANGLE:
+            raise ValueError("second.direction: required another direction than first")
+        return self
 
     def labels(self) -> tuple[str, str]:
         """Names of the two axes, with their units."""

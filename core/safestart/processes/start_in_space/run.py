@@ -10,6 +10,8 @@ import numpy as np
 from safestart.errors import invalid
 from safestart.exact.answer import Answer, Verdict
 from safestart.exact.space.decide import decide_in_space
+from safestart.exact.space.demands.demanded import lost_at_start
+from safestart.exact.space.demands.rules import VIEW
 from safestart.exact.space.model_error import model_error
 from safestart.exact.space.prove import proof_in_space
 from safestart.exact.space.question import SpaceQuestion
@@ -123,14 +125,18 @@ def _sentence(answer: Answer, error: float, told: str) -> str:
 def _told(question: SpaceQuestion, half: Floats | None, answer: Answer) -> str:
     if half is not None or question.unknowns:
         return _for_all(question, answer, box=half is not None)
-    at_start = answer.multipliers[0].face if answer.multipliers else ""
-    if at_start in question.demands.names:
+    at_start = lost_at_start(question.demands, answer)
+    if at_start:
         return f"the start itself is {-answer.upper:.2f} m on the wrong side of {at_start}"
     told = asked.told(question, answer)
     if answer.verdict is Verdict.GO and answer.restriction:
         return f"{told}; found in a convex part of what is asked ({'; '.join(answer.restriction)})"
     if answer.verdict is Verdict.NO_GO and question.demands:
-        return f"{told}, even without {', '.join(question.demands.names)}"
+        rows = (*answer.multipliers, *(row for part in answer.parts for row in part.multipliers))
+        by = VIEW if any(row.face == VIEW for row in rows) else ""
+        without = [name for name in question.demands.names if name != by]
+        beside = f" or {by}" if by else ""
+        return f"{told}{beside}{', even without ' if without else ''}{', '.join(without)}"
     return told
 
 

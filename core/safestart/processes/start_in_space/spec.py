@@ -116,7 +116,8 @@ class SpaceInputs(SpaceScenario, _Starts):
         max_length=8,
         description="Spheres and boxes that the chaser stays out of, beside the corridor. For keep_outs, field_of_view "
         "and plume GO is found in a convex part of the demand that restriction names, and its proof shows the demand "
-        "itself; NO_GO only without them or from the start; else UNDECIDED. Not with half-widths or method tracking.",
+        "itself; NO_GO only without them, from the start, or by planes around the view's cone; else UNDECIDED. Not "
+        "with half-widths or method tracking.",
     )
     field_of_view: FieldOfViewInput | None = Field(
         None, description="A cone about a camera's axis in which the target stays; absent: none."

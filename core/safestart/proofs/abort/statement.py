@@ -35,7 +35,8 @@ _TARGET = ("position_m", "velocity_m_s", "mu_m3_s2", "j2", "earth_radius_m")
 @dataclass(frozen=True, slots=True)
 class Event:
     """One case of the document: its kind, burn (-1: none is made), piece of [0, tau], cells and trial radii; how long a
-    burn with a duration lasts (0 and 0 otherwise), and the number of the zone."""
+    burn with a duration lasts (0 and 0 otherwise), the number of the zone, and which share of the burn is in the flight
+    near which the set is followed (model earth; any share is sound)."""
 
     kind: str
     burn: int
@@ -45,6 +46,14 @@ class Event:
     radii: list[fmpq]
     on: tuple[fmpq, fmpq] = (fmpq(0), fmpq(0))
     zone: int = 0
+    share: fmpq | None = None
+
+    @property
+    def reference(self) -> fmpq:
+        """The share that is named, or that of the kind."""
+        if self.share is not None:
+            return self.share
+        return {"start": fmpq(0), "partial": fmpq(1, 2)}.get(self.kind, fmpq(1))
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,8 +151,6 @@ def read(document: Any) -> Asked:
     if n * longest > LONGEST_PHASE:
         raise ProofRejected("late_s, duration_s, stuck_s: required at most half a radian of the orbit")
     zones = _zones(part(question, "zones", list)) if wide else [_POINT]
-    if model == "earth" and (any(durations) or any(not zone.is_point for zone in zones)):
-        raise ProofRejected("model: required linear or nonlinear for durations and zones")
     anew = _flag(errors, "at_each_burn")
     if bent and not anew:
         raise ProofRejected("at_each_burn: required true for this model")
@@ -255,7 +262,8 @@ def _events(cases: list[Any], burns: int, bent: bool, zones: int) -> list[Event]
         raise ProofRejected(f"cases: required at most {_MOST_CASES}, received {len(cases)}")
     out, total = [], 0
     for case in cases:
-        fields(case, "case", (*names, "radii_m") if bent else names)
+        near = ("reference",) if zones and bent else ()
+        fields(case, "case", (*names, "radii_m") if bent else names, near)
         kind, burn, cells = part(case, "kind", str), part(case, "burn", int), part(case, "cells", list)
         if kind not in KINDS or not (burn == -1 if kind == "start" else 0 <= burn < burns):
             raise ProofRejected(
@@ -284,6 +292,7 @@ def _events(cases: list[Any], burns: int, bent: bool, zones: int) -> list[Event]
                 [exact(radius, "radii_m", 0.0, 1e9) for radius in radii],
                 on,
                 zone,
+                number(case, "reference", 0.0, 1.0) if "reference" in case else None,
             )
         )
     return out

@@ -61,6 +61,18 @@ class View:
         depth = along * arb(self.angle).sin() - claim
         return [[depth, depth * depth - arb(self.angle).cos() ** 2 * (_dot(sight, sight) - along * along)]]
 
+    def plane(self, pull: list[fmpq]) -> list[arb]:
+        """``pull`` p, where p . (point - position) >= 0 for all positions that see the point: p . a >= sin(angle) |p|.
+
+        Then outside of the cone p . (point - position) is at least -|p| times the distance to it.
+        """
+        p, a = [arb(e) for e in pull], [arb(e) for e in self.axis]
+        along = sum((x * y for x, y in zip(p, a, strict=True)), arb(0))
+        sizes = [sum((e * e for e in each), arb(0)).sqrt() for each in (p, a)]
+        if not along >= arb(self.angle).sin() * sizes[0] * sizes[1]:
+            raise ProofRejected("pull: required the normal of a plane that leaves the cone on one side")
+        return p
+
 
 @dataclass(frozen=True, slots=True)
 class Plume:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 from flint import arb, arb_mat, fmpq
 
 from safestart.proofs.space.attitude import Course
+from safestart.proofs.space.demands import View
 from safestart.proofs.space.motion import Held, Motion
 from safestart.proofs.space.statement import SpaceStated
 from safestart.proofs.strict import ProofRejected
@@ -83,6 +84,9 @@ class Refutation:
             scale = arb(limits.scale)
             covector = arb_mat(1, 6, zero + [-scale * arb(e) for e in weight.pull])
             return _Row(time, weight.value, value * scale * arb(limits.most or 0), covector)
+        region = self.stated.demands.regions.get(weight.face)
+        if isinstance(region, View):
+            return self._plane(weight, time, region)
         face = self.stated.faces[weight.face]
         share = value / arb(sum((e * e for e in face.normal), fmpq(0))).sqrt()
         normal = arb_mat(1, 3, [share * arb(e) for e in face.normal])
@@ -90,6 +94,16 @@ class Refutation:
             normal = normal * self.course.at(time)
         covector = arb_mat(1, 6, [-normal[0, i] for i in range(3)] + zero)
         return _Row(time, weight.value, share * arb(face.offset), covector)
+
+    def _plane(self, weight: Weight, time: fmpq, view: View) -> _Row:
+        """Value times the margin of the cone is at most pull . (point - position), the claim being below 0."""
+        pull = view.plane(weight.pull)
+        level = sum((e * arb(q) for e, q in zip(pull, view.point, strict=True)), arb(0))
+        normal = arb_mat(1, 3, pull)
+        if view.frame == "body":
+            normal = normal * self.course.at(time)
+        covector = arb_mat(1, 6, [-normal[0, i] for i in range(3)] + [arb(0)] * 3)
+        return _Row(time, weight.value, level, covector)
 
     def _at_end(self, weight: Weight, k: int) -> _Row:
         """``hold``: value (radius - |C r - h|); ``rest``: value (radius - s |C v - w x C r|); pull . y <= value |y|."""

@@ -11,7 +11,7 @@ sqrt(2/3) of its size. |J^-1| <= (1 - |I^-1| |E|)^-1 |I^-1| entry by entry. A bo
 over a piece of h s, so |D| <= off + t slope(b) there.
 
 *Distance y of the chasers.* The tide in inertial axes is at most g = 2 n^2 / (1 - e)^3, so
-y = W (cosh(sqrt(g) t) - 1) / g.
+y = W (cosh(sqrt(g) t) - 1) / g. From y and y' at the begin of a span a square bounds it, as y'' = g y + W rises.
 
 *Taken.* A face of the body loses at most k |r'| + y with |r'| <= |r| + y, and |r| <= (r . r + c^2) / 2 c for any c > 0;
 for r = r0 + sum_j x_j r_j with |x_j| <= 1 this is linear in x but for at most count sum_j |r_j|^2 / 2 c.
@@ -83,21 +83,32 @@ class Spread:
             self._angles[piece.begin] = arb_poly([angle, h * off, h * h * slope / 2])
             angle, off = angle + h * off + h * h * slope / 2, off + h * slope
 
-    def _drift(self, time: fmpq) -> arb:
-        half = self._tide.sqrt() * arb(time) / 2
-        share = half.sinh() / half if half > 0 else arb(1)
-        return arb(self.unknowns.disturbance) * (arb(time) * share) ** 2 / 2
+    def _drift(self, first: fmpq, last: fmpq) -> arb_poly:
+        """A bound on y over a span, in shares of it: y'' = g y + W is largest at its end."""
+        w, root = arb(self.unknowns.disturbance), self._tide.sqrt()
+
+        def grown(x: arb) -> arb:
+            return x.sinh() / x if x > 0 else arb(1)
+
+        def y(time: fmpq) -> arb:
+            return w * (arb(time) * grown(root * arb(time) / 2)) ** 2 / 2
+
+        width, rate = arb(last - first), w * arb(first) * grown(root * arb(first))
+        return arb_poly([y(first), width * rate, width**2 * (self._tide * y(last) + w) / 2])
 
     def spans(
         self, piece: Piece, stretch: Stretch, begin: fmpq, first: fmpq, last: fmpq
     ) -> list[tuple[fmpq, fmpq]]:
         """Parts of [``first``, ``last``] s in which one c is close enough to |r|; ``begin`` is the stretch's."""
-        ends = [[p(arb((t - begin) / stretch.length)) for p in stretch.flown[0][:3]] for t in (first, last)]
+        times = [arb((t - begin) / stretch.length) for t in (first, last)]
+        ends = [[p(t) for p in stretch.flown[0][:3]] for t in times]
         gone = float(_most([b - a for a, b in zip(*ends, strict=True)]).upper())
         away = max(float(_size(ends[0]).lower()), _NEAREST_M)
         angle = float(self._angles[piece.begin](arb(1)).upper())
-        step = math.sqrt(8.0 * away * _LOOSE_M / max(angle, 1e-12))
-        count = min(max(1, math.ceil(gone / step)), _MOST_CUTS)
+        # (|r| - c)^2 of a start beside the middle one: (s + w)^2 - w^2 is what a part takes, s its half, w the box's.
+        wide = sum(float(_most([p(times[1]) for p in each[:3]]).upper()) for each in stretch.flown[1:])
+        half = math.sqrt(wide * wide + 2.0 * away * _LOOSE_M / max(angle, 1e-12)) - wide
+        count = min(max(1, math.ceil(0.5 * gone / half)), _MOST_CUTS)
         marks = [first + (last - first) * fmpq(i, count) for i in range(count + 1)]
         return list(pairwise(marks))
 
@@ -105,8 +116,7 @@ class Spread:
         """Over a span of the piece; ``flown`` are the positions of the middle, and of each number of the start."""
         begin, width = (first - piece.begin) / piece.length, (last - first) / piece.length
         angle = between(self._angles[piece.begin], arb(begin), arb(width))
-        y0, y1 = self._drift(first), self._drift(last)
-        drift = arb_poly([y0, y1 - y0])
+        drift = self._drift(first, last)
         middle, *moves = flown
         c = arb(max(float(_size([p(arb(0.5)) for p in middle]).mid()), _NEAREST_M))
         square = sum((p * p for p in middle), arb_poly([0]))

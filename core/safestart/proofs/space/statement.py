@@ -7,7 +7,7 @@ from typing import Any
 
 from flint import fmpq
 
-from safestart.proofs.space.demands import KEYS, Demands, demands_of
+from safestart.proofs.space.demands import KEYS, Demands, View, demands_of
 from safestart.proofs.space.parts import Attitude, Face, Thrust, attitude_of, faces_of, thrust_of
 from safestart.proofs.space.unknowns import Unknowns, unknowns_of
 from safestart.proofs.statement import DOCUMENT, check_seal
@@ -83,6 +83,9 @@ def read(document: Any) -> SpaceStated:
     if any(name in faces for name in limits.norms):
         raise ProofRejected(f"faces: required names other than {', '.join(limits.norms)}")
     demands = demands_of(question, {*faces, *limits.norms})
+    cones = [name for name, region in demands.regions.items() if isinstance(region, View)]
+    if any(name in faces for name in cones):
+        raise ProofRejected(f"faces: required names other than {', '.join(cones)}")
     if demands.plume is not None and thrust.kind != "ball":
         raise ProofRejected(f"plume: required thrust of kind ball, received {shown(thrust.kind)}")
     start = document["start"]
@@ -132,7 +135,7 @@ def read(document: Any) -> SpaceStated:
         history=_history(evidence, earliest, steps, thrust) if verdict == "GO" else [],
         parts=[]
         if verdict == "GO" or violated
-        else parts_of(rows, (earliest, steps), faces, limits, dt * steps, 3),
+        else parts_of(rows, (earliest, steps), faces, limits, dt * steps, 3, cones),
         violated=violated,
     )
 

@@ -2,7 +2,8 @@
 
 The question without demands is answered first: its NO_GO stands. Else convex parts (:mod:`.restriction`) are tried,
 along the flight of that answer, past the start, on the way to the hold point, and along the flights found in turn. The
-first flight that keeps all demands is a GO. If there is none, the verdict is UNDECIDED.
+first flight that keeps all demands is a GO. If there is none, planes that hold the cone of the field of view may still
+prove a NO_GO (:mod:`.relaxed`); otherwise the verdict is UNDECIDED.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from safestart.exact.answer import GUARD, Answer, Multiplier, Verdict
+from safestart.exact.space.demands.relaxed import refuted
 from safestart.exact.space.demands.restricted_watch import RestrictedWatch
 from safestart.exact.space.demands.restriction import Course, course_of, cuts_of, plume_kept, walls_of
 from safestart.exact.space.demands.rules import NONE, VIEW, Demands
@@ -65,11 +67,22 @@ def decide_demanded(question: SpaceQuestion, state: Floats, solve: Solve) -> Ans
             )
         best = max(best, found.lower)
         left = "" if kept else ", or leaves the directions for which the plume's cut holds"
+    if demands.view is not None:
+        lost, more = refuted(watch, demands.view, state, solve)
+        rounds += more
+        if lost is not None:
+            return replace(lost, iterations=rounds)
     reason = (
         f"stays without {', '.join(demands.names)} ({free.lower:.3g} m to spare), but no flight is found in the convex "
         f"parts tried of them{left}: whether there is another one is open"
     )
     return Answer(Verdict.UNDECIDED, math.nan, best, free.upper, None, (), rounds, reason)
+
+
+def lost_at_start(demands: Demands, answer: Answer) -> str:
+    """The demand that the start itself breaks, where that is the reason of a NO_GO; else empty."""
+    first = answer.multipliers[0] if answer.multipliers else None
+    return first.face if first is not None and first.face in demands.names and not first.pull else ""
 
 
 def _courses(

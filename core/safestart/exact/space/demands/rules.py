@@ -18,6 +18,7 @@ from safestart.model.scenario import MAX_RANGE, Floats, number
 
 MOST_KEEP_OUTS = 8
 VIEW, PLUME = "field_of_view", "plume"
+_HAIR = 1e-12
 _LEAST_ANGLE, _MOST_ANGLE = math.radians(1.0), math.radians(85.0)
 
 
@@ -96,12 +97,33 @@ class FieldOfView:
 
     def walls(self, count: int) -> tuple[Floats, Floats]:
         """Half-spaces that meet in a pyramid of ``count`` faces in the cone: unit normals (count, 3), offsets."""
+        return self._planes(self._around(count), math.tan(self.half_angle) * math.cos(math.pi / count))
+
+    def tangents(self, count: int, towards: Floats) -> tuple[Floats, Floats]:
+        """Half-spaces that hold the cone, as :meth:`walls`: ``count`` around it and those on the side of points (K, 3).
+
+        They lean out by a hair, so that a checker finds the cone on one side of each.
+        """
+        axis = np.array(self.axis) / math.hypot(*self.axis)
+        sight = np.array(self.point) - towards.reshape(-1, 3)
+        across = sight - np.outer(sight @ axis, axis)
+        size = np.sqrt(np.square(across).sum(axis=1))
+        across = across[size > 1e-9] / size[size > 1e-9, None]
+        across -= np.outer(across @ axis, axis)
+        slope = math.tan(self.half_angle) * (1.0 + _HAIR)
+        return self._planes(np.concatenate([self._around(count), across]), slope)
+
+    def _around(self, count: int) -> Floats:
+        """Unit vectors (count, 3) across the axis."""
         axis = np.array(self.axis) / math.hypot(*self.axis)
         side = np.cross(axis, np.eye(3)[int(np.argmin(np.abs(axis)))])
         side /= math.hypot(*side.tolist())
         angle = 2.0 * math.pi * np.arange(count) / count
-        across = np.outer(np.cos(angle), side) + np.outer(np.sin(angle), np.cross(axis, side))
-        slope = math.tan(self.half_angle) * math.cos(math.pi / count)
+        out: Floats = np.outer(np.cos(angle), side) + np.outer(np.sin(angle), np.cross(axis, side))
+        return out
+
+    def _planes(self, across: Floats, slope: float) -> tuple[Floats, Floats]:
+        axis = np.array(self.axis) / math.hypot(*self.axis)
         normals = (slope * axis - across) / math.hypot(1.0, slope)
         return normals, normals @ np.array(self.point)
 
@@ -156,6 +178,8 @@ class Demands:
         names = [one.name for one in self.keep_outs]
         reserved = {*taken, VIEW, PLUME}
         wrong = sorted({name for name in names if names.count(name) > 1 or name in reserved})
+        if self.view is not None and VIEW in taken:
+            raise invalid("faces", f"names other than {VIEW} beside a field of view", VIEW)
         if wrong:
             raise invalid("keep_outs", "names that nothing else has, each once", wrong)
 
