@@ -25,6 +25,11 @@ class HopsInput(WireModel):
     @model_validator(mode="after")
     def _lead_in(self) -> HopsInput:
         if not self.hold_m < self.start_m:
+            # Under the name that was given.
+            if "start_m" not in self.model_fields_set:
+                raise ValueError(
+                    f"hold_m: less than start_m, {self.start_m:g} m, as hops lead towards the target"
+                )
             raise ValueError("start_m: more than hold_m, hops lead towards the target")
         return self
 
