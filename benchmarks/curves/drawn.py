@@ -24,9 +24,13 @@ def picture(found: Mapping[str, Any], path: Path) -> None:
         axes.set_title(
             f"{CURVES[name].title}\ntime grows with power {curve['exponents']['time']:.2f}", fontsize=10
         )
-        axes.set_xlabel(CURVES[name].axis)
+        axes.set_xlabel(CURVES[name].axis.replace("s horizon", "horizon [s]"))
         axes.set_ylabel("processor time [s]", color=_TIME)
         axes.grid(alpha=0.3)
+        if max(amounts) < 100 * min(amounts):
+            # Less than two decades: the powers of ten say little.
+            axes.set_xticks(amounts, [f"{amount:g}" for amount in amounts])
+            axes.set_xticks([], minor=True)
         if curve["exponents"]["memory"] is not None:
             right = axes.twinx()
             heavy = [point for point in curve["points"] if point["mib"] > 0.1]
@@ -41,17 +45,21 @@ def picture(found: Mapping[str, Any], path: Path) -> None:
 def table(found: Mapping[str, Any]) -> str:
     """The largest size of each curve and the powers, in Markdown."""
     lines = [
-        "| what | largest | time | memory | power of time | power of memory |",
+        "| what | largest | processor time | memory | power of time | power of memory |",
         "|---|---|---|---|---|---|",
     ]
     for name, curve in found.items():
         most = curve["points"][-1]
         power = curve["exponents"]["memory"]
         lines.append(
-            f"| {CURVES[name].title} | {most['amount']:,} {CURVES[name].axis} | {_seconds(most['seconds'])} | "
+            f"| {CURVES[name].title} | {_spaced(most['amount'])} {CURVES[name].axis} | {_seconds(most['seconds'])} | "
             f"{most['mib']:.0f} MiB | {curve['exponents']['time']:.2f} | {'-' if power is None else f'{power:.2f}'} |"
         )
-    return "\n".join(lines).replace(",", " ") + "\n"
+    return "\n".join(lines) + "\n"
+
+
+def _spaced(value: int) -> str:
+    return f"{value:,}".replace(",", " ")
 
 
 def _seconds(value: float) -> str:

@@ -211,7 +211,7 @@ def _searched(size: int) -> Work:
 def _tracked(size: int) -> Work:
     from safestart.processes.execute import execute
 
-    return partial(execute, "tracking-mpc", {"runs": size})
+    return partial(execute, "tracking-mpc", {"study": {"runs": size}})
 
 
 _TENS = (1_000, 3_000, 10_000, 30_000, 100_000, 300_000, 1_000_000)
@@ -222,9 +222,9 @@ CURVES: dict[str, Curve] = {
     "certified": Curve("certificate in closed form", "starts", _TENS, _certified),
     "atlas": Curve("verdicts by an atlas", "starts", _TENS, _atlas),
     "exact": Curve("exact answers", "starts", (30, 100, 300, 1_000, 3_000), _exact),
-    "exact-horizon": Curve("exact answers with proofs, 3 starts", "horizon [s]", _HORIZONS, _horizon),
-    "atlas-horizon": Curve("an atlas", "horizon [s]", _HORIZONS, _atlas_horizon),
-    "space-horizon": Curve("an answer in space with its proof", "horizon [s]", _HORIZONS, _in_space),
+    "exact-horizon": Curve("exact answers with proofs, 3 starts", "s horizon", _HORIZONS, _horizon),
+    "atlas-horizon": Curve("an atlas", "s horizon", _HORIZONS, _atlas_horizon),
+    "space-horizon": Curve("an answer in space with its proof", "s horizon", _HORIZONS, _in_space),
     "level-set": Curve("level set, 8 steps", "nodes", (11, 21, 31, 41, 51, 61), _level_set, _nodes),
     "exact-cells": Curve("exact tube", "cells", _GRIDS, partial(_engine, "exact"), _square),
     "backward-cells": Curve("backward set", "cells", _GRIDS, partial(_engine, "backward"), _square),

@@ -6,7 +6,11 @@ Bad input raises one of these. A numerical failure does not: it is a result code
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from typing import Any, ParamSpec, TypeVar
+
+P = ParamSpec("P")
+T = TypeVar("T")
 
 
 class SafestartError(Exception):
@@ -143,3 +147,12 @@ def invalid(field: str, required: str, received: Any) -> InvalidInput:
     return InvalidInput(
         f"{field}: required {required}, received {shown}", field=field, required=required, received=received
     )
+
+
+def named(field: str, read: Callable[P, T], *arguments: P.args, **options: P.kwargs) -> T:
+    """What ``read`` returns; its :class:`InvalidInput` goes under the ``field`` that held what it read."""
+    try:
+        return read(*arguments, **options)
+    except InvalidInput as error:
+        detail = f"{field}: {error.detail}"
+        raise InvalidInput(detail, field=field, required=error.required, received=error.received) from None

@@ -9,6 +9,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from safestart.campaign.table import Column, Kind, Table
+from safestart.records.parquet import read
 
 MEDIA_TYPE = "application/vnd.apache.parquet"
 
@@ -39,7 +40,7 @@ def parquet(table: Table) -> bytes:
 
 def joined(columns: Sequence[Column], files: Iterable[bytes]) -> bytes:
     """One file from those of the shards, a row group each; read and written one at a time."""
-    return _written((pq.read_table(io.BytesIO(data)) for data in files if data), schema(columns))
+    return _written((read(data) for data in files if data), schema(columns))
 
 
 def _written(tables: Iterable[pa.Table], columns: pa.Schema) -> bytes:

@@ -74,20 +74,10 @@ def certify(scenario: Scenario, points: Floats, rest: Rest = Rest.LVLH) -> Certi
 def certify_by(rates: Rates, corridor: CorridorShape, points: Floats) -> Certified:
     """:func:`certify` for given rates; ``points`` as there, checked."""
     shape, dimensions = points.shape[:-1], points.shape[-1]
-    place = np.ascontiguousarray(points.reshape(-1, dimensions).T)
     faces = Faces.of(corridor, dimensions)
-    start = faces.room(place)
-    # Outside the corridor no manoeuvre helps, so the margin is the start's own.
-    margin, binding = start.min(axis=0), start.argmin(axis=0)
-    member, drop = np.full(len(margin), BRAKE), np.zeros(len(margin))
-    inside = np.flatnonzero(margin > ROUNDING)
-    place, start = place[:, inside], start[:, inside]
-    found = _Best.of(offers(rates, faces, place, start))
-    lost = found.binding < 0
-    margin[inside] = np.where(lost, _shortfall(rates, place), found.margin)
-    binding[inside] = np.where(lost, len(faces.names), found.binding)
-    member[inside], drop[inside] = found.member, found.drop
-    margin -= ROUNDING
+    margin, binding, member, drop = _arrays(
+        rates, faces, np.ascontiguousarray(points.reshape(-1, dimensions).T)
+    )
     return Certified(
         (*faces.names, OUT_OF_REACH),
         (margin > 0.0).reshape(shape),
@@ -96,6 +86,37 @@ def certify_by(rates: Rates, corridor: CorridorShape, points: Floats) -> Certifi
         member.reshape(shape),
         drop.reshape(shape),
     )
+
+
+def _arrays(rates: Rates, faces: Faces, place: Floats) -> tuple[Floats, Ints, Ints, Floats]:
+    """Margin, binding, member and drop of the starts ``place`` (2 or 3, n), a block at a time."""
+    parts = row_blocks(max(place.shape[1], 1), 1)
+    margin, binding, member, drop = zip(
+        *(_block(rates, faces, place[:, part]) for part in parts), strict=True
+    )
+    return np.concatenate(margin), np.concatenate(binding), np.concatenate(member), np.concatenate(drop)
+
+
+def _block(rates: Rates, faces: Faces, place: Floats) -> tuple[Floats, Ints, Ints, Floats]:
+    count = place.shape[1]
+    # BLAS sums a matrix times one column in another order: a lone start is taken twice, to have the bits that it has
+    # among others.
+    if count == 1:
+        place = np.repeat(place, 2, axis=1)
+    start = faces.room(place)
+    # Outside the corridor no manoeuvre helps, so the margin is the start's own.
+    margin, binding = start.min(axis=0), start.argmin(axis=0)
+    member, drop = np.full(len(margin), BRAKE), np.zeros(len(margin))
+    inside = np.flatnonzero(margin > ROUNDING)
+    if len(inside) == 1:
+        inside = np.repeat(inside, 2)
+    place, start = place[:, inside], start[:, inside]
+    found = _Best.of(offers(rates, faces, place, start))
+    lost = found.binding < 0
+    margin[inside] = np.where(lost, _shortfall(rates, place), found.margin)
+    binding[inside] = np.where(lost, len(faces.names), found.binding)
+    member[inside], drop[inside] = found.member, found.drop
+    return margin[:count] - ROUNDING, binding[:count], member[:count], drop[:count]
 
 
 def certify_grid(scenario: Scenario, grid: Grid, rest: Rest = Rest.LVLH) -> CertifiedMap:

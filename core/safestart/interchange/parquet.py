@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from safestart.errors import Unavailable, invalid
+from safestart.records.parquet import read
 
 _LONGEST_TEXT = 200
 """Characters of an epoch or a name."""
@@ -29,14 +30,14 @@ def columns_in(data: bytes, known: Sequence[str], most: int) -> dict[str, list[A
     """
     pa, pq = _arrow()
     try:
-        file = pq.ParquetFile(io.BytesIO(data))
+        file = pq.ParquetFile(pa.BufferReader(data))
         names, rows = list(file.schema_arrow.names), file.metadata.num_rows
         if rows > most:
             raise invalid("file", f"at most {most} rows", rows)
         if len(set(names)) != len(names) or set(names) - set(known):
             raise invalid("file", f"columns among {', '.join(known)}, each once", names[: len(known) + 1])
         texts = [field.name for field in file.schema_arrow if _is_text(pa, field.type)]
-        table = pq.read_table(io.BytesIO(data), read_dictionary=texts)
+        table = read(data, texts)
         return {name: _plain(pa, name, table.column(name)) for name in names}
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
         raise invalid("file", "Parquet", str(error)) from None

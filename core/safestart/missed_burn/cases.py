@@ -40,6 +40,8 @@ def cases_of(question: Question) -> list[Case]:
             state = StateSet(planned[k])
             state.navigation(errors)
         if burn.duration > 0.0:
+            if question.earth is not None:
+                state.moved(lift_of(target_before(question, k)))
             state, found = finite_cases(question, k, state)
             out += found
             continue

@@ -35,6 +35,8 @@ def _case(question: Question, finding: Finding, wide: bool) -> dict[str, Any]:
             # first_s and last_s say how long it goes on afterwards.
             on = (question.plan.burns[case.burn].duration,) * 2
         out |= {"on_first_s": on[0], "on_last_s": on[1], "zone": finding.zone}
+        if question.earth is not None:
+            out["reference"] = case.share
     if len(finding.trials):
         out["radii_m"] = finding.trials.tolist()
     return out

@@ -31,6 +31,7 @@ from safestart.dynamics.two_body_kernel import (
     target_with,
 )
 from safestart.errors import invalid
+from safestart.missed_burn.earth_frame import Turning, frames_along, turning_of
 from safestart.missed_burn.kernels.strays import influence_of
 from safestart.missed_burn.kernels.variation import carried, course_of
 from safestart.missed_burn.plan import Plan, Question, longest_drift
@@ -45,6 +46,7 @@ _LOWER = 0.995
 """The checker finds the least radius by intervals, and so a little lower."""
 _STEP = 10.0
 """Longest step of the integration over a part of a drift, s."""
+_PULSES = 256
 Six = tuple[float, ...]
 
 
@@ -83,15 +85,29 @@ class Earth:
 
 def flown_plan(plan: Plan, target: Floats) -> Floats:
     """LVLH states (K, 6) before each burn of a plan flown without errors."""
-    flight, out = placed(target, np.array(plan.start)), []
-    for k, burn in enumerate(plan.burns):
-        if k:
-            flight, _ = drifted(flight, burn.time - plan.burns[k - 1].time, STAGES, WEIGHTS)
+    flight, out, now = placed(target, np.array(plan.start)), [], plan.burns[0].time
+    for burn in plan.burns:
+        flight, _ = drifted(flight, burn.time - now, STAGES, WEIGHTS)
         out.append(seen(flight))
-        pushed(flight, np.array(burn.impulse))
+        flight = burnt(flight, np.array(burn.impulse), burn.duration)
+        now = burn.time + burn.duration
     states = np.array(out)
     states[0] = plan.start
     return states
+
+
+def burnt(flight: Floats, impulse: Floats, duration: float) -> Floats:
+    """A flight (12,) after a burn, an LVLH ``impulse`` (3,), m/s, spread evenly over its ``duration``, s."""
+    if duration == 0.0:
+        flight = flight.copy()
+        pushed(flight, impulse)
+        return flight
+    # The thrust as many small impulses, each in the middle of its time.
+    for _ in range(_PULSES):
+        flight, _ = drifted(flight, 0.5 * duration / _PULSES, STAGES, WEIGHTS)
+        pushed(flight, impulse / _PULSES)
+        flight, _ = drifted(flight, 0.5 * duration / _PULSES, STAGES, WEIGHTS)
+    return flight
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -101,7 +117,8 @@ class Drift:
     ``target`` and ``chaser`` (6,): at the burn; ``reference`` (6,): their difference; ``path`` (GRID + 1, 3): relative
     position every ``step`` s, ``tables`` (GRID + 1, 6, 6): the transition; ``lift`` (6, 6): an LVLH state at the burn
     as an inertial one; ``stiffness``: bound on |G|, 1/s^2, along both courses; ``lowest``: their least radius, m;
-    ``influence`` (2, 2, PARTS + 1, PARTS + 1): norms of the blocks of the transition from the end of a part.
+    ``influence`` (2, 2, PARTS + 1, PARTS + 1): norms of the blocks of the transition from the end of a part;
+    ``frames`` (GRID + 1, 3, 3): LVLH axes as rows; ``turning``: bounds on how LVLH turns.
     """
 
     target: Floats
@@ -114,6 +131,8 @@ class Drift:
     stiffness: float
     lowest: float
     influence: Floats
+    frames: Floats
+    turning: Turning
 
     @property
     def part(self) -> float:
@@ -193,15 +212,17 @@ def drift_of(target: Six, state: Six, longest: float) -> Drift:
         stiffness=stiffness_of(lowest),
         lowest=lowest,
         influence=influence_of(np.ascontiguousarray(nodes)),
+        frames=frames_along(away),
+        turning=turning_of(away, lowest),
     )
 
 
-def drift_after(question: Question, kind: str, burn: int) -> Drift:
-    """The reference of a case: no burn, half of it where it is burnt in part, else all of it; as planned."""
+def drift_after(question: Question, burn: int, share: float) -> Drift:
+    """The reference of cases of a burn: as planned before it, with a ``share`` of the burn as a drift from its planned
+    time on."""
     assert question.earth is not None
     k = max(burn, 0)
-    share = {"start": 0.0, "partial": 0.5}.get(kind, 1.0)
     state = np.array(question.earth.before[k])
-    state[3:] += share * np.array(question.plan.burns[k].impulse)
+    state += share * question.plan.burns[k].gives(question.plan.mean_motion)
     target = tuple(target_before(question, k).tolist())
     return drift_of(target, tuple(state.tolist()), longest_drift(question, k))

@@ -12,31 +12,51 @@ import math
 
 import numpy as np
 
-from safestart.missed_burn.earth import PARTS, PER_PART, Drift, drift_after
+from safestart.missed_burn.earth import GRID, PER_PART, Drift, drift_after
 from safestart.missed_burn.kernels.strays import strays_from
 from safestart.missed_burn.kernels.table import images_of, least_between
 from safestart.missed_burn.plan import Question
 from safestart.missed_burn.sets import Case
+from safestart.missed_burn.zone import Zone
 from safestart.model.scenario import Floats
 
 _UP = 1.0 + 1e-9
 
 
 def earth_bound(
-    case: Case, question: Question, enough: float, below: float, tolerance: float, most: int
+    case: Case, question: Question, body: Zone, enough: float, below: float, tolerance: float, most: int
 ) -> tuple[float, float, float, Floats, Floats, Floats]:
-    """Lower bound, least distance of a member, its time (s) and coordinates, cells (N, 5), s, radii (PARTS,), m."""
-    drift = drift_after(question, case.kind, case.burn)
-    last = min(math.ceil(case.duration / drift.step), PARTS * PER_PART)
-    rows = np.ascontiguousarray(drift.tables[: last + 1, :3])
+    """Lower bound on the distance to a zone, least distance of a member, its time (s) and coordinates, cells (N, 5), s,
+    radii (PARTS,), m."""
+    drift = drift_after(question, case.burn, case.share)
+    last = min(math.ceil(case.duration / drift.step * _UP), GRID)
+    first = min(math.floor(case.thrust.begin / drift.step / _UP), last - 1)
     strays, trials = strays_along(case, question, drift)
-    off, curve = case.centre - drift.reference, 0.125 * drift.stiffness * drift.step**2 * _UP
-    path = drift.path[: last + 1]
+    still, still_ends = body.blocks
+    # How far the zone's centre and blocks may be from their chords between two nodes: W/8 of their sizes.
+    size = float(np.linalg.norm(body.centre)) + body.size
+    turn = 0.125 * drift.turning.bend * drift.step**2 * size * _UP
     low, near, when, member, cells = least_between(
-        path, rows, off, case.columns, case.ends, curve, strays, PER_PART, enough, below, tolerance, most
+        np.ascontiguousarray(drift.path[first : last + 1]),
+        np.ascontiguousarray(drift.tables[first : last + 1, :3]),
+        case.centre - drift.reference,
+        case.columns,
+        case.ends,
+        0.125 * drift.stiffness * drift.step**2 * _UP,
+        np.ascontiguousarray(drift.frames[first : last + 1]),
+        -np.array(body.centre),
+        still,
+        still_ends,
+        turn,
+        # The stray up to the end of the part that holds each step.
+        np.repeat(strays, PER_PART)[first:last],
+        enough,
+        below,
+        tolerance,
+        most,
     )
-    cells[:, :2] *= drift.step
-    return low, near, when * drift.step, member, cells, trials
+    cells[:, :2] = (cells[:, :2] + first) * drift.step
+    return low, near, (first + when) * drift.step, member[: len(case.columns)], cells, trials
 
 
 def strays_along(case: Case, question: Question, drift: Drift) -> tuple[Floats, Floats]:
@@ -59,9 +79,14 @@ def strays_along(case: Case, question: Question, drift: Drift) -> tuple[Floats, 
 
 def detour(case: Case, question: Question, k: float) -> float:
     """Largest distance, m, of the actual position during a late or lasting burn from its equivalent state's."""
+    most, failures = 1.0 + question.errors.thrust_share, question.failures
+    if case.thrust.last > 0.0:
+        size, whole = question.plan.burns[case.burn].thrust * case.thrust.last, case.last + case.thrust.last
+        if case.kind == "stuck":
+            whole = case.thrust.last
+        return most * size * math.sinh(k * whole) / k * _UP
     if case.kind not in ("late", "stuck"):
         return 0.0
-    most, failures = 1.0 + question.errors.thrust_share, question.failures
     if case.kind == "late":
         return most * question.plan.burns[case.burn].size * math.sinh(k * case.last) / k * _UP
     return most * failures.acceleration * (math.cosh(k * case.last) - 1.0) / k**2 * _UP

@@ -28,7 +28,7 @@ def late_and_stuck(question: Question, k: int, before: StateSet, after: StateSet
     """Cases of burn ``k``; ``before`` and ``after`` it are inertial sets."""
     if not (question.failures.late or question.failures.stuck):
         return []
-    drift = drift_after(question, "made", k)
+    drift = drift_after(question, k, 1.0)
     burn, failures, errors = question.plan.burns[k], question.failures, question.errors
     along, one, two = frame(np.array(burn.impulse))
     middle, half, across = shell(1.0 - errors.thrust_share, 1.0 + errors.thrust_share, errors.thrust_angle)
@@ -43,7 +43,8 @@ def late_and_stuck(question: Question, k: int, before: StateSet, after: StateSet
         late.block([burn.size * half * (lifted @ along)], "along", k)
         late.block([burn.size * across * (lifted @ u) for u in (one, two)], "across", k)
         late.block([reach * burn.size * middle * (change @ along)], "piece", k)
-        late.box(burn.size * reach * (_bend(rate, reach) + loose * _size(rate)), "bend")
+        size = _size(rate, last)
+        late.box(burn.size * reach * (_bend(rate, reach, last) + loose * size), "bend")
         out.append(late.case("late", k, time, duration_of(question, "late", k, last), (first, last)))
     reached, done = np.zeros(6), 0.0
     push = middle * failures.acceleration
@@ -51,12 +52,12 @@ def late_and_stuck(question: Question, k: int, before: StateSet, after: StateSet
         at, reach = 0.5 * (first + last), 0.5 * (last - first)
         # Up to the middle of this piece: the rest of the last one, and half of this one.
         reached = reached + (at - done) * (_pushes(drift, 0.5 * (at + done))[0] @ along)
-        spread: Floats = at * reach * _bend(rate, reach)
+        spread: Floats = at * reach * _bend(rate, reach, last)
         done = at
         stuck = after.copy()
         stuck.centre = stuck.centre + push * reached
         stuck.block([reach * push * (_pushes(drift, at)[0] @ along)], "piece", k)
-        stuck.box(failures.acceleration * (spread + 0.5 * reach * reach * _size(rate)), "bend")
+        stuck.box(failures.acceleration * (spread + 0.5 * reach * reach * _size(rate, last)), "bend")
         stuck.box(loose * failures.acceleration * _kicked(rate, last), "loose")
         out.append(stuck.case("stuck", k, time, duration_of(question, "stuck", k, last), (first, last)))
     return out
@@ -73,14 +74,15 @@ def _pushes(drift: Drift, seconds: float) -> tuple[Floats, Floats]:
     return back[:, 3:] @ rows.T, back[:, :3] @ -rows.T + back[:, 3:] @ (rows.T @ turn)
 
 
-def _size(rate: float) -> Floats:
-    """Bound (6,) on |f'| for |e| = 1, up to half a radian of the orbit."""
-    return np.repeat([2.5, 4.0 * rate], 3)
+def _size(rate: float, longest: float) -> Floats:
+    """Bound (6,) on |f'| for |e| = 1, up to ``longest`` s: the transition's blocks grow like cosh and sinh, and LVLH
+    does not turn faster than ``rate``."""
+    return np.repeat([1.25, 2.0 * rate], 3) * max(math.exp(rate * longest), 2.0)
 
 
-def _bend(rate: float, reach: float) -> Floats:
+def _bend(rate: float, reach: float, longest: float) -> Floats:
     """Bound (6,) on the change of f' over ``reach`` s, |e| = 1."""
-    return _LOOSE * rate * reach * np.repeat([1.0, rate], 3)
+    return _LOOSE * rate * reach * np.repeat([1.0, rate], 3) * max(0.5 * math.exp(rate * longest), 1.0)
 
 
 def _kicked(rate: float, seconds: float) -> Floats:

@@ -1,86 +1,28 @@
-"""Plans from files: burns in CSV, or the manoeuvres of a chaser's OPM or OCM beside the course of its target.
+"""Plans from messages: the manoeuvres of a chaser's OPM or OCM beside the course of its target.
 
-CSV holds ``time_s``, ``dv_x_m_s``, ``dv_y_m_s``, ``dv_z_m_s`` (LVLH) and, where burns last, ``duration_s``; the columns
-that the approach designer's burns have besides are passed over. A message's manoeuvres may be in the chaser's own RTN
+A message's manoeuvres may be in the chaser's own RTN
 (RSW), TNW or inertial axes: the plan is flown about the Earth with J2, and each burn is turned into the target's LVLH
 where the chaser is when it begins.
 """
 
 from __future__ import annotations
 
-import csv
-import io
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
-from safestart.dynamics.two_body_kernel import STAGES, WEIGHTS, drifted, placed, pushed
+from safestart.dynamics.two_body_kernel import STAGES, WEIGHTS, drifted, placed
 from safestart.errors import invalid
 from safestart.interchange.ccsds.parameters import Manoeuvre
-from safestart.interchange.ccsds.tokens import number
 from safestart.interchange.ephemeris import Ephemeris
 from safestart.interchange.epochs import SECOND
 from safestart.interchange.frames import rotation_to_gcrf, to_gcrf
-from safestart.interchange.read import ephemeris_from, manoeuvres_from
 from safestart.interchange.relative import in_lvlh, lvlh_axes
+from safestart.missed_burn.earth import burnt
 from safestart.missed_burn.plan import Burn
+from safestart.missed_burn.plan_text import Elements, Filed, courses_of, last_before
 from safestart.model.orbit import MU
 from safestart.model.scenario import Floats
-
-LONGEST_COAST_S = 86_400.0
-"""A state so long before the first burn says too little about it."""
-_DV = ("dv_x_m_s", "dv_y_m_s", "dv_z_m_s")
-_PASSED_OVER = ("burn", "distance_m", "x_m", "y_m", "z_m")
-_MOST_ROWS = 1000
-
-
-@dataclass(frozen=True, slots=True)
-class Elements:
-    """Osculating elements, m and rad; the node does not count, as the Earth with J2 is round about its axis."""
-
-    semi_major_axis: float
-    eccentricity: float
-    inclination: float
-    perigee: float
-    anomaly: float
-
-
-@dataclass(frozen=True, slots=True)
-class Filed:
-    """``burns`` in LVLH, the first at 0 s in a message; a message also gives the LVLH ``start`` (6,) before the first
-    burn and the target's elements then."""
-
-    burns: tuple[Burn, ...]
-    start: Floats | None = None
-    target: Elements | None = None
-
-
-def is_message(text: str) -> bool:
-    """Whether a text is a CCSDS message; otherwise it is read as CSV."""
-    return text.lstrip("\ufeff \t\r\n").startswith(("CCSDS_", "<"))
-
-
-def burns_in_csv(text: str) -> Filed:
-    """Raises ``InvalidInput`` for missing and unknown columns, short rows and values that are not numbers."""
-    rows = [row for row in csv.reader(io.StringIO(text.lstrip("\ufeff"), newline="")) if row]
-    head = [name.strip() for name in rows[0]] if rows else []
-    needed = [name for name in ("time_s", *_DV) if name not in head]
-    unknown = [name for name in head if name not in ("time_s", *_DV, "duration_s", *_PASSED_OVER)]
-    if needed or unknown or len(set(head)) != len(head):
-        asked = f"columns time_s, {', '.join(_DV)}, each once, and if burns last duration_s"
-        raise invalid("plan", asked, ", ".join(head)[:200] or "an empty file")
-    if not 2 <= len(rows) <= 1 + _MOST_ROWS:
-        raise invalid("plan", f"1 to {_MOST_ROWS} burns", len(rows) - 1)
-    burns = []
-    for line, row in enumerate(rows[1:], 2):
-        if len(row) != len(head):
-            raise invalid(f"plan line {line}", f"{len(head)} values", f"{len(row)} (truncated)")
-        cells = dict(zip(head, row, strict=True))
-        time, x, y, z = (number(cells[name].strip(), line, name) for name in ("time_s", *_DV))
-        lasts = number(cells["duration_s"].strip(), line, "duration_s") if "duration_s" in cells else 0.0
-        burns.append(Burn(time, (x, y, z), lasts))
-    return Filed(tuple(burns))
 
 
 def plan_in_message(plan: bytes, target: bytes) -> Filed:
@@ -89,12 +31,8 @@ def plan_in_message(plan: bytes, target: bytes) -> Filed:
     A course's state at the last epoch before the first burn counts, one at the burn itself where none is earlier; both
     craft are flown on from there. Burns come in the order of the file, which must be that of their times.
     """
-    found = manoeuvres_from(plan)
-    if not found:
-        raise invalid("plan", "manoeuvres of the chaser", "none")
-    begin = min(one.epoch for one in found)
-    chaser = _state_at(ephemeris_from(plan), begin, "plan")
-    about = _state_at(ephemeris_from(target), begin, "target")
+    found, begin, ours, theirs = courses_of(plan, target)
+    chaser, about = _state_at(ours, begin, "plan"), _state_at(theirs, begin, "target")
     (axes,), (rate,) = lvlh_axes(about[None])
     (start,) = in_lvlh(chaser[None], about[None], axes[None], np.array([rate]))
     flight, now, burns = placed(about, start), 0.0, []
@@ -105,20 +43,13 @@ def plan_in_message(plan: bytes, target: bytes) -> Filed:
         (axes,), _ = lvlh_axes(flight[None, :6])
         x, y, z = (axes @ _inertial(one, flight[:6] + flight[6:])).tolist()
         burns.append(Burn(time, (x, y, z), one.duration))
-        pushed(flight, np.array([x, y, z]))
+        flight, now = burnt(flight, np.array([x, y, z]), one.duration), time + one.duration
     return Filed(tuple(burns), start, elements_of(about))
 
 
 def _state_at(course: Ephemeris, epoch: int, name: str) -> Floats:
     """GCRF state (6,) at an epoch, flown from the last one before it."""
-    before = np.flatnonzero(course.epochs < epoch)
-    at = np.flatnonzero(course.epochs == epoch)
-    if not len(before) and not len(at):
-        raise invalid(name, "a state at or before the first manoeuvre", "later ones only")
-    k = int(before[-1]) if len(before) else int(at[0])
-    seconds = (epoch - int(course.epochs[k])) / SECOND
-    if seconds > LONGEST_COAST_S:
-        raise invalid(name, f"a state at most {LONGEST_COAST_S:g} s before the first manoeuvre", seconds)
+    k, seconds = last_before(course, epoch, name)
     state = to_gcrf(course.frame, course.epochs[k : k + 1], course.states[k : k + 1])[0]
     if seconds == 0.0:
         return np.array(state)

@@ -110,9 +110,9 @@ def bound(case: Case, question: Question, enough: float, zone: int = 0) -> Findi
     tolerance = max(_TOLERANCE, 1e-3 * min(start, 100.0))
     if question.earth is not None:
         least, nearest, when, member, cells, trials = earth_bound(
-            case, question, enough, _TOUCHES, tolerance, _MOST_CELLS
+            case, question, body, enough, _TOUCHES, tolerance, _MOST_CELLS
         )
-        return Finding(case, max(least - EARTH_SLACK, 0.0), nearest, when, cells, member, trials)
+        return Finding(case, max(least - EARTH_SLACK, 0.0), nearest, when, cells, member, trials, zone)
     strays, trials = _NO_STRAYS, np.zeros(0)
     if question.radius is not None:
         strays, trials = strays_of(case, question, question.radius)

@@ -10,14 +10,12 @@ from scipy.integrate import solve_ivp
 
 from safestart.dynamics.burn import frame, misdirected
 from safestart.dynamics.cwh import input_matrix, transition_matrix
-from safestart.dynamics.two_body_kernel import STAGES, WEIGHTS, drifted, placed, pushed, seen
-from safestart.missed_burn.earth import target_before
+from safestart.dynamics.two_body_kernel import STAGES, WEIGHTS, drifted, placed, seen
+from safestart.missed_burn.earth import burnt, target_before
 from safestart.missed_burn.plan import Question
 from safestart.missed_burn.sets import Case, shell
 from safestart.missed_burn.zone import POINT, Zone
 from safestart.model.scenario import Floats
-
-_PULSES = 256
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,18 +75,18 @@ class MemberFlight:
         """The same as a flight (12,) of :mod:`safestart.dynamics.two_body_kernel`."""
         assert self.target is not None
         flight, now = placed(self.target, self.start), self.begin
-        for time, impulse in zip(self.times.tolist(), self.impulses, strict=True):
+        for time, impulse, duration in zip(
+            self.times.tolist(), self.impulses, self.durations.tolist(), strict=True
+        ):
             flight, _ = drifted(flight, time - now, STAGES, WEIGHTS)
-            pushed(flight, impulse)
-            now = time
+            on = min(duration, self.look - time)
+            if duration == 0.0 or on > 0.0:
+                flight = burnt(flight, impulse if duration == 0.0 else impulse * (on / duration), on)
+            now = time + max(on, 0.0)
         if self.push_for > 0.0:
-            # The thrust as many small impulses, each in the middle of its time.
-            span = min(self.push_for, self.look - now) / _PULSES
-            for _ in range(_PULSES):
-                flight, _ = drifted(flight, 0.5 * span, STAGES, WEIGHTS)
-                pushed(flight, span * self.push)
-                flight, _ = drifted(flight, 0.5 * span, STAGES, WEIGHTS)
-            now += span * _PULSES
+            on = min(self.push_for, self.look - now)
+            flight = burnt(flight, on * self.push, on)
+            now += on
         reached: Floats = drifted(flight, self.look - now, STAGES, WEIGHTS)[0]
         return reached
 

@@ -41,7 +41,7 @@ class Case:
 
     ``kind``: start (no burn is made), made, cut, partial, late, stuck, misdirected. ``first``, ``last``: the piece, s.
     ``columns`` (C, 6) and ``ends`` (K,) of the blocks; ``labels`` (C) describe the columns: the name of an error and
-    the number of its burn or axis.
+    the number of its burn or axis. ``share`` of its burn is in the flight that the set lies near (model earth).
     """
 
     kind: str
@@ -55,6 +55,7 @@ class Case:
     ends: NDArray[np.int64]
     labels: tuple[tuple[str, int], ...]
     thrust: Thrust = _IMPULSE
+    share: float = 1.0
 
 
 class StateSet:
@@ -105,12 +106,15 @@ class StateSet:
         duration: float,
         piece: tuple[float, float],
         thrust: Thrust = _IMPULSE,
+        share: float | None = None,
     ) -> Case:
         """The set as a case."""
+        if share is None:
+            share = {"start": 0.0, "partial": 0.5}.get(kind, 1.0)
         columns = np.array(self.columns).reshape(-1, 6)
         ends = np.array(self.ends, dtype=np.int64)
         return Case(
-            kind, burn, *piece, time, duration, self.centre, columns, ends, tuple(self.labels), thrust
+            kind, burn, *piece, time, duration, self.centre, columns, ends, tuple(self.labels), thrust, share
         )
 
 

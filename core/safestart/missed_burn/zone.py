@@ -59,6 +59,15 @@ class Zone:
             return np.zeros((0, 3)), np.zeros(0, dtype=np.int64)
         return columns, np.array([1, 2, 3] if self.kind == "box" else [3], dtype=np.int64)
 
+    @property
+    def size(self) -> float:
+        """Bound on how far the body reaches from its centre, m: the sum of the norms of its blocks."""
+        columns, begin, total = np.array(self.axes), 0, 0.0
+        for end in self.blocks[1].tolist():
+            total += float(np.linalg.norm(columns[begin:end]))
+            begin = end
+        return total
+
     def distance(self, position: Floats) -> float:
         """Distance from a ``position`` (3,) to the body, m; 0 inside."""
         axes = np.array(self.axes)

@@ -20,6 +20,7 @@ import numpy as np
 from safestart.errors import invalid
 from safestart.processes.execute import SCHEMA_VERSION, execute
 from safestart.processes.registry import process
+from safestart.records import parquet
 from safestart.records.artifact import Artifact
 from safestart.records.comparable import canonical, comparable
 from safestart.runtime.plain_json import loads
@@ -218,10 +219,9 @@ def _close(name: str, before: bytes, now: bytes, tolerance: float | None) -> boo
 
 def _table(data: bytes) -> Any:
     import pyarrow as pa
-    import pyarrow.parquet as pq
 
     try:
-        table = pq.read_table(io.BytesIO(data))
+        table = parquet.read(data)
     except pa.ArrowException as error:
         raise ValueError(str(error)) from None
     return {"columns": [str(field) for field in table.schema], "rows": table.to_pydict()}

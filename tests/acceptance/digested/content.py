@@ -15,6 +15,8 @@ from typing import Any
 
 import numpy as np
 
+from safestart.records.parquet import read
+
 LEFT_OUT = frozenset({"run_s", "compile_s", "speedup_vs_hj", "provenance", "request_id"})
 """Keys for durations and for place, time and versions of the computation, at any depth."""
 DEPTH = 4
@@ -100,9 +102,8 @@ def table(data: bytes) -> Digests:
 
 def parquet(data: bytes) -> Digests:
     """One digest per column of a Parquet file, over its type and values."""
-    import pyarrow.parquet as pq
 
-    found = pq.read_table(io.BytesIO(data))
+    found = read(data)
     values = {
         field.name: [str(field.type), *map(repr, found.column(field.name).to_pylist())]
         for field in found.schema

@@ -42,7 +42,7 @@ def test_partial_results_grow_with_the_shards(tmp_path: Path) -> None:
         claim = jobs.claim("tester", 60.0)
         assert claim is not None
         for number, part in enumerate(done):
-            jobs.save_shard(claim, number, f"content {number}", part.document, part.data)
+            jobs.save_shards(claim, [(number, f"content {number}", part.document, part.data)])
             body = client.get(url).json()
             assert body["shards"] == {"done": number + 1, "total": 2}
             assert body["outputs"]["cases"] == 8000 * (number + 1)

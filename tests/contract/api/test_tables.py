@@ -7,12 +7,12 @@ import io
 from typing import Any
 
 import numpy as np
-import pyarrow.parquet as pq
 import pytest
 
 from safestart.processes.execute import execute
 from safestart.processes.registry import PROCESS_IDS, process
 from safestart.processes.tables import tables_of
+from safestart.records import parquet
 from safestart_service.documents.formats.registry import BY_NAME
 
 STATES = [{"x_m": 5, "y_m": 40}, {"x_m": 0, "y_m": 140}, {"x_m": 90, "y_m": 20}]
@@ -26,7 +26,7 @@ def record_of(name: str, **inputs: Any) -> dict[str, Any]:
 def read(record: dict[str, Any], table: str | None = None) -> list[dict[str, Any]]:
     """The table as CSV has it; Parquet has the same columns and as many rows."""
     rows = list(csv.DictReader(io.StringIO(BY_NAME["csv"].encode(record, table).decode())))
-    columnar = pq.read_table(io.BytesIO(BY_NAME["parquet"].encode(record, table)))
+    columnar = parquet.read(BY_NAME["parquet"].encode(record, table))
     assert (columnar.column_names, columnar.num_rows) == (list(rows[0]), len(rows))
     return rows
 

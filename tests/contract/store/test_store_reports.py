@@ -74,12 +74,14 @@ def test_workers_silent_for_a_day_are_forgotten_and_no_others(
 def test_finished_shards_are_kept_in_order_and_go_with_the_success(jobs: JobRepository) -> None:
     job = submit(jobs)
     claim = claimed(jobs)
-    jobs.save_shard(claim, 2, "c2", {"n": 2}, b"two")
-    jobs.save_shard(claim, 0, "c0", {"n": 0}, b"")
-    jobs.save_shard(claim, 2, "c2", {"n": 22}, b"again")
-    assert jobs.shard_contents(job.id) == {0: "c0", 2: "c2"}
-    assert jobs.shard_documents(job.id) == ({"n": 0}, {"n": 22})
-    assert [(shard.number, shard.data) for shard in jobs.shards(job.id)] == [(0, b""), (2, b"again")]
+    jobs.save_shards(claim, [(2, "c2", {"n": 2}, b"two")])
+    jobs.save_shards(
+        claim, [(0, "c0", {"n": 0}, b""), (2, "c2", {"n": 22}, b"again"), (1, "c1", {"n": 1}, b"")]
+    )
+    assert jobs.shard_contents(job.id) == {0: "c0", 1: "c1", 2: "c2"}
+    assert jobs.shard_documents(job.id) == ({"n": 0}, {"n": 1}, {"n": 22})
+    kept = [(shard.number, shard.data) for shard in jobs.shards(job.id)]
+    assert kept == [(0, b""), (1, b""), (2, b"again")]
     jobs.succeed(claim, {"outputs": {}}, (), {})
     assert jobs.shards(job.id) == ()
 
@@ -88,7 +90,7 @@ def test_a_shard_replaces_its_own_job_s_alone(jobs: JobRepository) -> None:
     one, two = submit(jobs), submit(jobs)
     claims = [claimed(jobs), claimed(jobs)]
     for claim in (*claims, claims[1]):
-        jobs.save_shard(claim, 0, "c", {"of": claim.job_id}, b"")
+        jobs.save_shards(claim, [(0, "c", {"of": claim.job_id}, b"")])
     assert jobs.shard_documents(one.id) == ({"of": one.id},)
     assert jobs.shard_documents(two.id) == ({"of": two.id},)
     jobs.succeed(claims[1], {}, (), {})
@@ -98,11 +100,11 @@ def test_a_shard_replaces_its_own_job_s_alone(jobs: JobRepository) -> None:
 def test_a_worker_that_lost_its_lease_adds_no_shard(database: Database, jobs: JobRepository) -> None:
     job = submit(jobs)
     late = claimed(jobs)
-    jobs.save_shard(late, 0, "c", {}, b"")
+    jobs.save_shards(late, [(0, "c", {}, b"")])
     lapse(database)
     claimed(jobs)
     with pytest.raises(LeaseLost):
-        jobs.save_shard(late, 1, "c", {}, b"")
+        jobs.save_shards(late, [(1, "c", {}, b"")])
     assert jobs.shard_contents(job.id) == {0: "c"}, "what was finished in time is there for the next worker"
 
 
@@ -113,8 +115,8 @@ def test_attempts_count_from_the_last_finished_shard(database: Database, jobs: J
         lapse(database)
     claim = replace(claim)
     with pytest.raises(LeaseLost):
-        jobs.save_shard(replace(claim, token=claim.token - 1), 0, "c", {}, b"")
-    jobs.save_shard(claim, 0, "c", {}, b"")
+        jobs.save_shards(replace(claim, token=claim.token - 1), [(0, "c", {}, b"")])
+    jobs.save_shards(claim, [(0, "c", {}, b"")])
     assert claimed(jobs, max_attempts=2).attempt == 2
     assert jobs.get(job.id).status is JobStatus.RUNNING
 
@@ -122,6 +124,6 @@ def test_attempts_count_from_the_last_finished_shard(database: Database, jobs: J
 def test_shards_of_a_job_that_failed_stay(jobs: JobRepository) -> None:
     job = submit(jobs)
     claim = claimed(jobs)
-    jobs.save_shard(claim, 0, "c", {"n": 1}, b"")
+    jobs.save_shards(claim, [(0, "c", {"n": 1}, b"")])
     jobs.fail(claim, {"detail": "no"})
     assert jobs.shard_documents(job.id) == ({"n": 1},)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 import math
 import random
@@ -10,7 +9,6 @@ from concurrent.futures import ThreadPoolExecutor
 from statistics import fmean, pstdev
 from typing import Any
 
-import pyarrow.parquet as pq
 import pytest
 
 from safestart.campaign.case import Case
@@ -21,6 +19,7 @@ from safestart.campaign.study import Study
 from safestart.campaign.tally import Rows
 from safestart.errors import Cancelled, InvalidInput
 from safestart.model.metrics import wilson
+from safestart.records import parquet
 from safestart.runtime.progress import Context
 from tests.unit.campaign.walk import OUTCOME, SEED, TALLY, study, walk
 
@@ -124,7 +123,7 @@ def test_some_shards_say_what_their_cases_say(loop: list[dict[str, Any]]) -> Non
 
 def test_records_hold_every_outcome(loop: list[dict[str, Any]]) -> None:
     asked = study()
-    table = pq.read_table(io.BytesIO(asked.recorded(ran(asked))))
+    table = parquet.read(asked.recorded(ran(asked)))
     assert table.column_names == ["case", *(column.name for column in OUTCOME if column.recorded)]
     rows = table.to_pylist()
     assert len(rows) == len(loop)
@@ -135,7 +134,7 @@ def test_records_hold_every_outcome(loop: list[dict[str, Any]]) -> None:
 
 def test_records_are_the_first_cases_of_every_shard() -> None:
     asked = study(records=40, per_shard=100)
-    table = pq.read_table(io.BytesIO(asked.recorded(ran(asked, 3, 4))))
+    table = parquet.read(asked.recorded(ran(asked, 3, 4)))
     assert table["case"].to_pylist() == [first + k for first in (0, 100, 200, 300) for k in range(10)]
     assert study(records=0).recorded(ran(study(records=0))) == b""
 

@@ -1,4 +1,4 @@
-"""Maps by blocks of rows: the same bits for any cut, in little more memory than the map itself."""
+"""Maps and many starts by blocks: the same bits for any cut, in little more memory than the answer itself."""
 
 from __future__ import annotations
 
@@ -40,6 +40,31 @@ def test_a_large_map_takes_little_more_than_itself(find):
     finally:
         tracemalloc.stop()
     assert peak < 50 * SIDE**2
+
+
+@pytest.mark.parametrize("dimensions", [2, 3])
+@pytest.mark.parametrize("most", [1, 100, 10**9])
+def test_starts_in_any_blocks_have_the_same_bits(dimensions, most, monkeypatch):
+    starts = np.random.default_rng(dimensions).uniform(-100.0, 200.0, (997, dimensions))
+    whole = certified.certify(SCENARIO, starts)
+    monkeypatch.setattr(blocks, "MOST_CELLS", most)
+    cut = certified.certify(SCENARIO, starts)
+    assert 0 < whole.go.sum() < len(starts)
+    for field in ("go", "margin", "binding", "member", "drop"):
+        assert getattr(cut, field).tobytes() == getattr(whole, field).tobytes(), field
+
+
+def test_many_starts_take_little_more_than_their_answer():
+    """Without blocks 255 bytes for each start."""
+    starts = np.random.default_rng(0).uniform([-226.0, 0.5], [226.0, 150.0], (500_000, 2))
+    certified.certify(SCENARIO, starts[:9])
+    tracemalloc.start()
+    try:
+        certified.certify(SCENARIO, starts)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert peak < 120 * len(starts)
 
 
 def test_every_row_comes_once():

@@ -161,6 +161,43 @@ def test_what_is_no_start_is_undecided(folder):
     assert (margin[got == UNDECIDED] == 0.0).all()
 
 
+NOWHERE = """
+#include "safestart_flight.h"
+
+int main(void)
+{
+    static const ss_real thrust[2 * SS_STEPS];
+    const int outside[] = {-1, SS_POINTS, SS_POINTS + 7};
+    for (int i = 0; i < 3; i++) {
+        const ss_point *point = ss_point_of(outside[i]);
+        const ss_answer all[] = {
+            ss_certify(point, 0, 40), ss_certify_in_space(point, 0, 40, 0), ss_atlas(point, 0, 40),
+            ss_may_start(point, 0, 40), ss_check_thrust(point, 0, 40, thrust),
+            ss_check_thrust(ss_point_of(0), 0, 40, 0),
+        };
+        for (int k = 0; k < 6; k++) {
+            if (all[k].verdict != SS_UNDECIDED || all[k].margin != 0) {
+                return 1 + k;
+            }
+        }
+    }
+    return 0;
+}
+"""
+
+
+def test_a_point_that_is_not_in_the_table_is_undecided(folder, tmp_path):
+    """It ended the flight computer's task."""
+    (tmp_path / "nowhere.c").write_text(NOWHERE)
+    sources = [folder / "safestart_flight.c", folder / "safestart_table.c", tmp_path / "nowhere.c"]
+    compiler = compiler_or_skip("gcc")
+    subprocess.run(
+        [compiler, *SANITIZED, "-I", str(folder), *map(str, sources), "-lm", "-o", str(tmp_path / "nowhere")],
+        check=True,
+    )
+    assert subprocess.run([tmp_path / "nowhere"], check=False).returncode == 0
+
+
 def test_thrust_is_checked_as_in_the_proofs(folder, points):
     program = compiled(folder, compiler_or_skip("gcc"), SANITIZED)
     precision = precision_of(folder)

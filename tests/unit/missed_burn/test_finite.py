@@ -193,7 +193,7 @@ def test_the_bend_of_the_pieces_counts(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.undo()
     with pytest.raises(ProofRejected, match="short by"):
         check(document)
-    monkeypatch.setattr(finite, "_rates", lambda *_: finite._Rates(*([finite.arb(0)] * 6 for _ in range(2))))
+    monkeypatch.setattr(finite, "_rates", lambda *_: finite.Rates(*([finite.arb(0)] * 6 for _ in range(2))))
     assert check(document).verdict == "PROVED"
 
 

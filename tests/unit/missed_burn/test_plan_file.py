@@ -14,7 +14,8 @@ from safestart.interchange.epochs import SECOND
 from safestart.interchange.flights import BEGIN, CREATED
 from safestart.interchange.read import ephemeris_from, manoeuvres_from
 from safestart.interchange.relative import lvlh_axes
-from safestart.missed_burn.plan_file import burns_in_csv, elements_of, is_message, plan_in_message
+from safestart.missed_burn.plan_file import elements_of, plan_in_message
+from safestart.missed_burn.plan_text import burns_in_csv, is_message
 
 TIMES, IMPULSES = (0.0, 1800.0, 3000.0), np.array([[0.1, -0.02, 0.0], [0.03, 0.2, -0.05], [-0.1, 0.0, 0.02]])
 START = np.array([-50.0, 800.0, 10.0, 0.02, -0.1, 0.01])

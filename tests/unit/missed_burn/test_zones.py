@@ -12,7 +12,7 @@ from safestart.missed_burn.document import document_of
 from safestart.missed_burn.plan import Burn, Errors, Plan, Question
 from safestart.missed_burn.prove import Verdict, greatest_scale, prove
 from safestart.missed_burn.zone import POINT, Zone
-from safestart.processes.passive_abort.run import ellipsoid_of, zone_of
+from safestart.processes.passive_abort.question import ellipsoid_of, zone_of
 from safestart.processes.passive_abort.wire import ZoneInput
 from safestart.proofs.checker import check
 from safestart.proofs.statement import digest_of
@@ -147,7 +147,7 @@ def test_members_of_the_ellipsoid_come_near_its_bound_and_violations_replay() ->
 def test_bad_zones_and_covariances_are_named() -> None:
     with pytest.raises(InvalidInput, match="perpendicular"):
         Zone("box", (0.0, 0.0, 0.0), ((1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
-    with pytest.raises(InvalidInput, match="radius three times"):
+    with pytest.raises(InvalidInput, match="radius three times, 0 or more"):
         _zone("sphere", (1.0, 2.0, 3.0))
     with pytest.raises(InvalidInput, match="lengths above 0"):
         _zone("box", (1.0, 0.0, 3.0))
@@ -160,3 +160,18 @@ def test_bad_zones_and_covariances_are_named() -> None:
         ellipsoid_of(bent.tolist(), 3.0)
     with pytest.raises(InvalidInput, match="6 rows"):
         ellipsoid_of([[1.0]] * 6, 3.0)
+
+
+@pytest.mark.parametrize(
+    "axes", [[[9.0, 0, 0], [0, 8.0, 0], [0, 0, 9.0]], [[9.0, 1, 0], [0, 9.0, 0], [0, 0, 9.0]]]
+)
+def test_what_a_document_calls_a_sphere_is_one(axes) -> None:
+    """Its print gives a radius: a body of other axes may not have that name."""
+    made = document_of(
+        prove(Question(plan_of(40.0, 2), 20.0, 500.0, zones=(Zone.sphere(9.0, (1.0, 2.0, 3.0)),)))
+    )
+    assert any("the sphere of 9.0 m about [1.0, 2.0, 3.0] m" in line for line in check(made).statement)
+    made["question"]["zones"][0]["axes_m"] = axes
+    made["digest"] = digest_of({k: v for k, v in made.items() if k != "digest"})
+    with pytest.raises(ProofRejected, match="sphere's radius"):
+        check(made)

@@ -80,6 +80,7 @@ def test_the_service_needs_no_compiler_for_it() -> None:
         ({"angle_deg": 160}, r"angle_deg: .*up to 145\.66 deg"),
         ({"hold_m": 40}, "hold_m: required at least keep_out_m"),
         ({"start_m": 100}, "start_m: required more than hold_m"),
+        ({"hold_m": 3000}, "hold_m: required less than start_m, 2000 m"),
         ({"hops": 21}, "hops"),
         ({"abort_orbits": 21}, "abort_orbits"),
         ({"runs": 3}, "runs: .*no field"),

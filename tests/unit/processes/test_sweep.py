@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import io
 import math
 from typing import Any
 
 import numpy as np
-import pyarrow.parquet as pq
 import pytest
 
 from safestart.closed_form.paper import certify
@@ -17,9 +15,12 @@ from safestart.model.metrics import wilson
 from safestart.model.scenario import Scenario
 from safestart.processes.execute import execute
 from safestart.processes.registry import process
+from safestart.processes.sharding import MAX_SHARDS
 from safestart.processes.sweep.cases import cases_of
 from safestart.processes.sweep.fleet import fly_all
 from safestart.processes.sweep.inputs import SweepInputs
+from safestart.processes.sweep.split import DRAWN
+from safestart.records import parquet
 from safestart.records.comparable import comparable
 from safestart.runtime.progress import Context
 
@@ -94,7 +95,7 @@ def test_counts_are_those_of_the_records() -> None:
     outputs = result.document["outputs"]
     process("sweep").outputs.model_validate(outputs)
     files = {artifact.name: artifact for artifact in result.artifacts}
-    table = pq.read_table(io.BytesIO(files["cases.parquet"].data)).to_pydict()
+    table = parquet.read(files["cases.parquet"].data).to_pydict()
     assert table["case"] == list(range(240))
     certified = np.array(table["certified_paper"])
     points = np.stack([table["x_m"], table["y_m"]], axis=1)
@@ -168,7 +169,7 @@ def test_order_and_place_of_the_shards_do_not_matter() -> None:
 def test_an_atlas_and_single_answers_agree() -> None:
     asked = {"controllers": ["filter"], "certificates": ["exact"], "omega_t_deg_s": [3], "a_max_m_s2": [0.1]}
     many = execute("sweep", {**asked, "cases_per_cell": 120, "r0_m": [30, 50, 100, 150]})
-    table = pq.read_table(io.BytesIO({a.name: a for a in many.artifacts}["cases.parquet"].data)).to_pydict()
+    table = parquet.read({a.name: a for a in many.artifacts}["cases.parquet"].data).to_pydict()
     from safestart.exact.decide import decide
     from safestart.exact.question import Question
 
@@ -207,7 +208,7 @@ def test_noise_belongs_to_the_case_and_not_to_the_shard() -> None:
         ({"controllers": ["autopilot"]}, "controllers"),
         ({"horizon_s": 61}, "horizon_s"),
         ({"r0_m": [0.4]}, "r0_m"),
-        ({"cases_per_cell": 10_000_000, "controllers": ["filter"]}, "cases_per_cell"),
+        ({"cases_per_cell": 20_000_000, "controllers": ["filter"]}, "cases_per_cell"),
         ({"cases_per_cell": 100_000}, "cases_per_cell"),
         ({"truth": {"model": "two_body_j2"}, "mean_motion_rad_s": 0}, "mean_motion"),
         ({"truth": {"thrust_magnitude_sigma": -1}}, "thrust_magnitude_sigma"),
@@ -224,3 +225,16 @@ def test_wilson_intervals() -> None:
     assert wilson(0, 20) == pytest.approx((0.0, 0.1611), abs=1e-4)
     assert wilson(20, 20) == pytest.approx((0.8389, 1.0), abs=1e-4)
     assert wilson(0, 0) is None
+
+
+def test_a_very_large_sweep_has_larger_shards_of_whole_draws_and_not_more_of_them() -> None:
+    asked = inputs(cases_per_cell=16_666_666, controllers=["filter"])
+    parts = SHARDING.parts(asked)
+    assert 7_000 <= len(parts) <= MAX_SHARDS
+    last: dict[int, int] = {}
+    for part in parts:
+        for cell, first, count in part["pieces"]:
+            assert first == last.get(cell, 0)
+            assert first % DRAWN == 0
+            last[cell] = first + count
+    assert last == dict.fromkeys(range(60), 16_666_666)

@@ -76,7 +76,7 @@ def run(jobs: JobRepository, claim: Claim, cluster: Cluster) -> JobEnd:
 def keep(jobs: JobRepository, claim: Claim, by: str) -> None:
     """Shards 0 and 1 are in the store, with a wrong result that tells whether they were used."""
     for number in (0, 1):
-        jobs.save_shard(claim, number, content("squares", {"n": number}, by), {"square": 1000}, b"")
+        jobs.save_shards(claim, [(number, content("squares", {"n": number}, by), {"square": 1000}, b"")])
 
 
 def test_shards_of_the_same_code_are_not_done_again(jobs: JobRepository, claim: Claim) -> None:

@@ -12,7 +12,6 @@ import time
 from collections import deque
 from collections.abc import Callable, Coroutine
 from datetime import UTC, datetime
-from functools import partial
 from typing import Any, TypeVar
 
 from distributed import Future
@@ -92,24 +91,32 @@ class Sharded:
                 result.add_done_callback(lambda task: task.cancelled() or task.exception())
                 waiting[result] = number
             ended, _ = await asyncio.wait(waiting, return_when=asyncio.FIRST_COMPLETED)
+            finished: dict[int, Part] = {}
+            failed = None
             for task in ended:
                 number = waiting.pop(task)
                 end = task.result()
                 self._futures.pop(number).release()
                 if end.by != source():
-                    self._ending = True
-                    return _failed(problems.of_other_source(source(), end.by))
-                if end.part is None:
-                    self._ending = True
-                    return _failed(end.problem or {}, end.trace)
-                await self._keep(number, contents[number], end.part)
+                    failed = _failed(problems.of_other_source(source(), end.by))
+                elif end.part is None:
+                    failed = _failed(end.problem or {}, end.trace)
+                else:
+                    finished[number] = end.part
+            if finished:
+                await self._keep(finished, contents)
+            if failed is not None:
+                self._ending = True
+                return failed
         return None
 
-    async def _keep(self, number: int, wanted: str, part: Part) -> None:
-        save = partial(self._jobs.save_shard, self._claim, number, wanted)
-        await self._store(lambda: save(part.document, part.data))
-        self._shares.pop(number, None)
-        self._done += 1
+    async def _keep(self, finished: dict[int, Part], contents: list[str]) -> None:
+        """All that ended while the store worked: the more cores there are, the more go into one transaction."""
+        rows = [(number, contents[number], part.document, part.data) for number, part in finished.items()]
+        await self._store(lambda: self._jobs.save_shards(self._claim, rows))
+        for number in finished:
+            self._shares.pop(number, None)
+        self._done += len(finished)
         self._show(f"{self._done} of {self._total} parts")
 
     async def _merge(self) -> JobEnd:

@@ -110,7 +110,7 @@ static ss_answer certified(const ss_point *point, int faces, ss_real x, ss_real 
     const ss_real wide = R(16) * SS_UNIT;
     const ss_real far = size_of(x) + size_of(y) + size_of(z);
     ss_answer answer = UNDECIDED;
-    if (!(far <= SS_FARTHEST)) { /* a NaN, too */
+    if (!point || !(far <= SS_FARTHEST)) { /* a NaN, too */
         return answer;
     }
     /* 24 u times the spread of a member and the largest term covers every distance below, here and in safestart. */
@@ -175,7 +175,7 @@ ss_answer ss_atlas(const ss_point *point, ss_real x, ss_real y)
 {
     const ss_real far = size_of(x) + size_of(y);
     ss_answer answer = UNDECIDED;
-    if (!(far <= SS_FARTHEST)) {
+    if (!point || !(far <= SS_FARTHEST)) {
         return answer;
     }
     if (y <= point->y_max) {
@@ -279,6 +279,9 @@ static ss_real bend(const ss_point *point, const ss_state *a, const ss_state *b,
 
 ss_answer ss_check_thrust(const ss_point *point, ss_real x, ss_real y, const ss_real thrust[2 * SS_STEPS])
 {
+    if (!point || !thrust) {
+        return UNDECIDED;
+    }
     const ss_real most = point->a_max_m_s2 * point->a_max_m_s2 * (R(1) - R(8) * SS_UNIT);
     const ss_real w = point->omega_rad_s, h = point->h, third = h / R(3);
     ss_state here = {{x, y, R(0), R(0)}, R(0), R(0)};

@@ -18,7 +18,7 @@ typedef struct {
     ss_real margin;
 } ss_answer;
 
-/* Operating point i, 0 <= i < SS_POINTS; a null pointer for any other i. */
+/* Operating point i, 0 <= i < SS_POINTS; a null pointer for any other i, about which every call below is UNDECIDED. */
 const ss_point *ss_point_of(int i);
 
 /* Certificate in closed form (theory/certified.md): GO holds for ever. Start in the orbit plane, or in space. */

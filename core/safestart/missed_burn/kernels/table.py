@@ -6,7 +6,9 @@ k = K (b - a)^2/8, and so sup |y| <= max(|y(a)|, |y(b)|) / (1 - k). For a unit v
 
     distance >= min(f_d(a), f_d(b)) - k/(1 - k) sum of max(|y(a)|, |y(b)|) over path, centre, blocks,
 
-f_d as in :mod:`safestart.missed_burn.kernels.drift`, less what the true motion may stray.
+f_d as in :mod:`safestart.missed_burn.kernels.drift`, less what the true motion may stray. A zone turns with LVLH: its
+centre and blocks are taken at the nodes, and between them they are within W (b - a)^2/8 times their size of a chord
+(:mod:`safestart.missed_burn.earth_frame`).
 """
 
 from __future__ import annotations
@@ -69,18 +71,30 @@ def _known(
     centre: Floats,
     columns: Floats,
     ends: Ends,
+    frames: Floats,
+    offset: Floats,
+    still: Floats,
     images: Floats,
     sizes: Floats,
 ) -> None:
-    """Images and sizes of a node, of which few are ever looked at; the first size is that of the path."""
+    """Images and sizes of a node, of which few are ever looked at; the first size is that of the path. The zone's
+    columns follow those of the set, its centre is taken off the set's."""
     if known[t]:
         return
     known[t] = True
-    image_at(tables[t], centre, columns, ends, images[t], sizes[t, 1:])
+    moving = len(columns)
+    image_at(tables[t], centre, columns, ends, images[t, : 1 + moving], sizes[t, 1:])
     square = 0.0
     for i in range(3):
         square += path[t, i] ** 2
         images[t, 0, i] += path[t, i]
+        for j in range(3):
+            images[t, 0, i] += frames[t, j, i] * offset[j]
+        for s in range(len(still)):
+            value = 0.0
+            for j in range(3):
+                value += frames[t, j, i] * still[s, j]
+            images[t, 1 + moving + s, i] = value
     sizes[t, 0] = math.sqrt(square)
 
 
@@ -108,8 +122,8 @@ def _bound(
     sizes: Floats,
     ends: Ends,
     curve: float,
+    turn: float,
     strays: Floats,
-    per_part: int,
 ) -> float:
     """Lower bound between two nodes; ``curve``: K/8 times the square of the nodes' distance."""
     k = curve * (end - begin) ** 2
@@ -119,7 +133,7 @@ def _bound(
     for j in range(sizes.shape[1]):
         spread += max(sizes[begin, j], sizes[end, j])
     low: float = min(_value(images[begin], ends, d), _value(images[end], ends, d))
-    low -= (k / (1.0 - k) + ROUNDING * 1e3) * spread + strays[(end - 1) // per_part]
+    low -= (k / (1.0 - k) + ROUNDING * 1e3) * spread + turn * (end - begin) ** 2 + strays[end - 1]
     return low
 
 
@@ -131,8 +145,12 @@ def least_between(
     columns: Floats,
     ends: Ends,
     curve: float,
+    frames: Floats,
+    offset: Floats,
+    still: Floats,
+    still_ends: Ends,
+    turn: float,
     strays: Floats,
-    per_part: int,
     enough: float,
     below: float,
     tolerance: float,
@@ -140,17 +158,21 @@ def least_between(
 ) -> tuple[float, float, int, Floats, Floats]:
     """Bounds on the least distance over all nodes of ``path`` (T, 3) and ``tables`` (T, 3, 6), and between them.
 
-    ``strays`` (L,): how far the true motion may be from the linear one up to the end of each part of ``per_part``
-    nodes. Ends as :func:`safestart.missed_burn.kernels.drift.least_distance` does. Returns the lower bound, the least
-    distance of a member, its node and coordinates, and the cells (N, 5): two nodes and a direction.
+    ``frames`` (T, 3, 3): LVLH axes as rows; ``offset`` (3,), ``still`` (S, 3), ``still_ends``: the zone's centre,
+    negative, and its blocks in LVLH; ``turn``: W/8 times the square of the nodes' distance times the zone's size, m.
+    ``strays`` (T - 1,): how far the true motion may be from the linear one up to the end of each step; not decreasing.
+    Ends as :func:`safestart.missed_burn.kernels.drift.least_distance` does. Returns the lower bound, the least
+    distance of a member, its node and coordinates (C + S,), and the cells (N, 5): two nodes and a direction.
     """
-    images, sizes = np.empty((len(tables), 1 + len(columns), 3)), np.empty((len(tables), 2 + len(ends)))
+    both = len(columns) + len(still)
+    all_ends = np.concatenate((ends, still_ends + len(columns)))
+    images, sizes = np.empty((len(tables), 1 + both, 3)), np.empty((len(tables), 2 + len(ends)))
     known = np.zeros(len(tables), dtype=np.bool_)
     last = len(tables) - 1
     cells, bounds = np.empty((most, 5)), np.empty(most)
     sharp = np.zeros(most, dtype=np.bool_)
-    d, member, best = np.empty(3), np.empty(len(columns)), np.zeros(len(columns))
-    none = np.empty((0, 3))
+    d, member, best = np.empty(3), np.empty(both), np.zeros(both)
+    origin, turned = np.empty(3), np.empty((len(still), 3))
     count = min(_FIRST, last)
     for k in range(count):
         cells[k, 0], cells[k, 1] = last * k // count, last * (k + 1) // count
@@ -159,12 +181,12 @@ def least_between(
         for k in range(fresh, count):
             middle = int(cells[k, 0] + cells[k, 1]) // 2
             for t in (int(cells[k, 0]), middle, int(cells[k, 1])):
-                _known(t, known, path, tables, centre, columns, ends, images, sizes)
+                _known(t, known, path, tables, centre, columns, ends, frames, offset, still, images, sizes)
             size = math.sqrt((images[middle, 0] ** 2).sum())
             for i in range(3):
                 cells[k, 2 + i] = images[middle, 0, i] / size if size > 0.0 else 1.0 if i == 0 else 0.0
             bounds[k] = _bound(
-                int(cells[k, 0]), int(cells[k, 1]), cells[k, 2:], images, sizes, ends, curve, strays, per_part
+                int(cells[k, 0]), int(cells[k, 1]), cells[k, 2:], images, sizes, all_ends, curve, turn, strays
             )
             sharp[k] = False
         fresh = count
@@ -176,14 +198,20 @@ def least_between(
         middle = (begin + end) // 2
         if not sharp[worst]:
             sharp[worst] = True
+            for i in range(3):
+                origin[i] = path[middle, i]
+                for j in range(3):
+                    origin[i] += frames[middle, j, i] * offset[j]
+            for s in range(len(still)):
+                turned[s] = images[middle, 1 + len(columns) + s]
             distance = nearest(
-                tables[middle], centre, path[middle], columns, none, ends, cells[worst, 2:], d, member
+                tables[middle], centre, origin, columns, turned, all_ends, cells[worst, 2:], d, member
             )
             if distance < upper:
                 upper, when = distance, middle
                 best[:] = member
-            goal = min(goal, distance - strays[max(middle - 1, 0) // per_part])
-            two = _bound(begin, end, d, images, sizes, ends, curve, strays, per_part)
+            goal = min(goal, distance - strays[max(middle - 1, 0)])
+            two = _bound(begin, end, d, images, sizes, all_ends, curve, turn, strays)
             if two > low:
                 cells[worst, 2:] = d
                 bounds[worst] = two
@@ -192,12 +220,12 @@ def least_between(
             break
         cells[count, 0], cells[count, 1] = middle, end
         cells[worst, 1] = middle
-        _known(middle, known, path, tables, centre, columns, ends, images, sizes)
+        _known(middle, known, path, tables, centre, columns, ends, frames, offset, still, images, sizes)
         # The whole interval's direction serves both halves until they are the worst.
         cells[count, 2:] = cells[worst, 2:]
         for k in (worst, count):
             bounds[k] = _bound(
-                int(cells[k, 0]), int(cells[k, 1]), cells[k, 2:], images, sizes, ends, curve, strays, per_part
+                int(cells[k, 0]), int(cells[k, 1]), cells[k, 2:], images, sizes, all_ends, curve, turn, strays
             )
             sharp[k] = False
         count += 1

@@ -14,7 +14,8 @@ from safestart.model.metrics import least_runs
 from safestart.model.orbit import EARTH_RADIUS
 from safestart.processes.approach_trade.views import VIEWS
 from safestart.processes.base import ProcessSpec, WireModel
-from safestart.processes.hopping.spec import MOST_HOPS, BreachOutput, SigmaInput
+from safestart.processes.hopping.spec import BreachOutput, SigmaInput
+from safestart.processes.hopping.wire import MOST_HOPS
 from safestart.processes.passive_abort.wire import KeepOut, Orbits, SemiMajorAxis
 from safestart.processes.sharding import Sharding
 from safestart.processes.wire import DISTINCT, Seed

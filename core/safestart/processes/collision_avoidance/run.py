@@ -19,6 +19,7 @@ from safestart.constraints.thrust import InputSet
 from safestart.model.metrics import wilson
 from safestart.processes.base import ProcessOutput
 from safestart.processes.collision_avoidance.captured import Captured, captured
+from safestart.processes.collision_avoidance.conjunction import asked
 from safestart.processes.collision_avoidance.encounter_plots import flights_picture, matrix_picture
 from safestart.processes.collision_avoidance.flown import Encounters, encounters
 from safestart.processes.collision_avoidance.judged import judge
@@ -83,6 +84,7 @@ def tube_of(inputs: CollisionAvoidanceInputs, game: Game, context: Context) -> T
 
 def run(inputs: CollisionAvoidanceInputs, context: Context) -> ProcessOutput:
     """Verdicts and tables, five or six pictures, the values as arrays."""
+    inputs, conjunction = asked(inputs)
     game, slot = game_of(inputs), slot_of(inputs)
     tube = tube_of(inputs, game, context.part(0.0, 0.4, 1.0, "value"))
     taken = captured(inputs, game, slot, context.part(0.4, 0.1, 1.0, "capture set"))
@@ -111,6 +113,7 @@ def run(inputs: CollisionAvoidanceInputs, context: Context) -> ProcessOutput:
         "failure": tube.failure,
         "requirements": _requirements(inputs, flown),
         "states": judged,
+        **({} if conjunction is None else {"conjunction": conjunction}),
         "encounters": flown.rows,
         "grid_error_m": finite(tube.grid_error_m),
         "nodes": {} if check is None else {k: v for k, v in check.document().items() if isinstance(v, int)},

@@ -55,6 +55,21 @@ class SlotInput(WireModel):
     half_speed_m_s: float = Field(0.01, gt=0, le=10, description="Half-width of both speeds, m/s.")
 
 
+class ConjunctionInput(WireModel):
+    """An encounter from a Conjunction Data Message; its state is asked about after those of ``states``."""
+
+    cdm: str = Field(min_length=1, max_length=1_000_000, description="CDM, KVN or XML, as text.")
+    chaser: Literal["OBJECT1", "OBJECT2"] = Field(
+        "OBJECT1", description="Which object is Player 1; the states are in the LVLH of the other one."
+    )
+    before_s: float = Field(
+        60.0,
+        ge=0,
+        le=600,
+        description="How long before the closest approach the game begins, s; both coast until then.",
+    )
+
+
 class CollisionAvoidanceInputs(WireModel):
     """Game, grid, recovery, and the encounters to fly; the defaults are the paper's if it gives any."""
 
@@ -82,6 +97,9 @@ class CollisionAvoidanceInputs(WireModel):
     states: Annotated[list[State], Field(max_length=MAX_STATES)] = Field(
         [],
         description="States to be judged: (x, y, vx, vy), or in space (x, y, z, vx, vy, vz), m and m/s; x tangential.",
+    )
+    conjunction: ConjunctionInput | None = Field(
+        None, description="An encounter from a CDM; its orbit takes the place of mean_motion_rad_s."
     )
     slices_m_s: Annotated[list[Velocity], Field(min_length=1, max_length=6)] = Field(
         [[0.0, 0.0], [-4.0, 0.0], [-3.0, -3.0]],
@@ -132,6 +150,20 @@ class JudgedRow(WireModel):
     )
     least_m: float | None = Field(description="Lower bound on the separation above the keep-out distance.")
     most_m: float = Field(description="Upper bound on it.")
+
+
+class ConjunctionRow(WireModel):
+    """What the CDM says, and the state that was asked about."""
+
+    chaser: str
+    other: str
+    closest_approach: str = Field(description="UTC.")
+    miss_distance_m: float
+    sigma_m: list[float] = Field(
+        description="Standard deviations of the relative position there: tangential, radial, normal, m."
+    )
+    mean_motion_rad_s: float = Field(description="Of the other object's orbit, rad/s.")
+    state: list[float] = Field(description="before_s ahead: (x, y, z, vx, vy, vz), x tangential, m and m/s.")
 
 
 class EncounterRow(WireModel):
@@ -190,6 +222,9 @@ class CollisionAvoidanceOutputs(WireModel):
     )
     requirements: list[RequirementRow]
     states: list[JudgedRow]
+    conjunction: ConjunctionRow | None = Field(
+        None, description="The encounter of the CDM, where one was given."
+    )
     encounters: list[EncounterRow]
     grid_error_m: float | None = Field(description="Largest error of the grid near the boundary.")
     nodes: dict[str, int] = Field(description="Numbers of nodes by proof and by the grid's verdict.")
@@ -215,6 +250,7 @@ SPEC = ProcessSpec(
     outputs=CollisionAvoidanceOutputs,
     kernels=("level sets in double precision", "collision avoidance"),
     run="safestart.processes.collision_avoidance.run:run",
+    possible="safestart.processes.collision_avoidance.conjunction:require_possible",
     views=(
         Findings(
             "Findings",

@@ -5,14 +5,14 @@ from __future__ import annotations
 from pydantic import Field, model_validator
 
 from safestart.processes.base import ProcessSpec, WireModel
-from safestart.processes.hopping.spec import MOST_HOPS
+from safestart.processes.hopping.wire import HopsInput
 from safestart.processes.passive_abort.wire import SemiMajorAxis
 from safestart.processes.views import Column, Facts, Layer, Picture, Rows
 
 WANTED = ("orbits", "fuel_1norm_m_s", "fuel_2norm_m_s")
 
 
-class HopAnglesInputs(WireModel):
+class HopAnglesInputs(HopsInput):
     """The target's orbit, the hops, and exactly one of time and fuel."""
 
     orbits: float | None = Field(
@@ -24,15 +24,6 @@ class HopAnglesInputs(WireModel):
     fuel_2norm_m_s: float | None = Field(
         None, gt=0, le=1e4, description="Or its wanted fuel, sum of the impulses' lengths, m/s."
     )
-    hops: int = Field(5, ge=1, le=MOST_HOPS, description="Number of hops.")
-    start_m: float = Field(2000.0, gt=0, le=1e5, description="Distance at the start, m.")
-    hold_m: float = Field(100.0, gt=0, le=1e5, description="Distance of the hold point, m.")
-    gamma: float | None = Field(
-        None,
-        gt=0,
-        le=1,
-        description="Length of a hop over that of the one before; absent: distances shrink geometrically.",
-    )
     semi_major_axis_m: SemiMajorAxis = 8.1e6
 
     @model_validator(mode="after")
@@ -40,8 +31,6 @@ class HopAnglesInputs(WireModel):
         given = [name for name in WANTED if getattr(self, name) is not None]
         if len(given) != 1:
             raise ValueError(f"exactly one of {', '.join(WANTED)}; received {', '.join(given) or 'none'}")
-        if not self.hold_m < self.start_m:
-            raise ValueError("start_m: more than hold_m, hops lead towards the target")
         return self
 
 

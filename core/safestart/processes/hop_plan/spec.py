@@ -7,7 +7,8 @@ from typing import Any, Literal
 from pydantic import Field, model_validator
 
 from safestart.processes.base import ProcessSpec, Table, WireModel
-from safestart.processes.hopping.spec import MOST_HOPS, PlanOutput, SigmaInput, require_leads_in
+from safestart.processes.hopping.spec import PlanOutput, SigmaInput
+from safestart.processes.hopping.wire import HopsInput, require_outside
 from safestart.processes.passive_abort.wire import KeepOut, Orbits, SemiMajorAxis
 from safestart.processes.views import Column, Facts, Findings, Layer, Picture, Rows
 from safestart.processes.wire import Pair, Triple
@@ -15,20 +16,11 @@ from safestart.processes.wire import Pair, Triple
 Verdict = Literal["PROVED", "VIOLATED", "UNKNOWN"]
 
 
-class HopPlanInputs(WireModel):
+class HopPlanInputs(HopsInput):
     """The target's orbit, the line and its hops, the keep-out sphere, the errors; as in ``hopping``."""
 
     angle_deg: float = Field(
         0.0, ge=0, le=360, description="Line from the target: 0 V-bar ahead, 90 R-bar below, deg."
-    )
-    hops: int = Field(5, ge=1, le=MOST_HOPS, description="Number of hops.")
-    start_m: float = Field(2000.0, gt=0, le=1e5, description="Distance at the start, m.")
-    hold_m: float = Field(100.0, gt=0, le=1e5, description="Distance of the hold point, m.")
-    gamma: float | None = Field(
-        None,
-        gt=0,
-        le=1,
-        description="Length of a hop over that of the one before; absent: distances shrink geometrically.",
     )
     keep_out_m: KeepOut = 50.0
     semi_major_axis_m: SemiMajorAxis = 8.1e6
@@ -37,8 +29,8 @@ class HopPlanInputs(WireModel):
     document: bool = Field(False, description="Give the proof document, which safestart verify checks.")
 
     @model_validator(mode="after")
-    def _leads_to_the_hold_point(self) -> HopPlanInputs:
-        require_leads_in(self.start_m, self.hold_m, self.keep_out_m)
+    def _holds_outside(self) -> HopPlanInputs:
+        require_outside(self.hold_m, self.keep_out_m)
         return self
 
 

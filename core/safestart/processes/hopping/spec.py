@@ -8,13 +8,13 @@ from pydantic import Field, model_validator
 
 from safestart.model.orbit import EARTH_RADIUS
 from safestart.processes.base import ProcessSpec, WireModel
+from safestart.processes.hopping.wire import HopsInput, require_outside
 from safestart.processes.passive_abort.wire import KeepOut, Orbits, SemiMajorAxis
 from safestart.processes.sharding import Sharding
 from safestart.processes.views import Column, Facts, Rows
 from safestart.processes.wire import Seed
 
 PER_SHARD = 100
-MOST_HOPS = 20
 
 
 class SigmaInput(WireModel):
@@ -26,15 +26,7 @@ class SigmaInput(WireModel):
     thrust_deg: float = Field(0.5, ge=0, le=30, description="Direction of an impulse, deg.")
 
 
-def require_leads_in(start_m: float, hold_m: float, keep_out_m: float) -> None:
-    """Hops lead towards the target and end outside the keep-out sphere; raises ``ValueError`` under the wire names."""
-    if not hold_m < start_m:
-        raise ValueError("start_m: more than hold_m, hops lead towards the target")
-    if hold_m < keep_out_m:
-        raise ValueError("hold_m: at least keep_out_m, a hold point lies outside the keep-out sphere")
-
-
-class HoppingInputs(WireModel):
+class HoppingInputs(HopsInput):
     """The target's orbit, the line and its hops, the keep-out sphere, the barrier, the noise, the runs."""
 
     semi_major_axis_m: SemiMajorAxis = 8.1e6
@@ -48,15 +40,6 @@ class HoppingInputs(WireModel):
     )
     angle_deg: float = Field(
         0.0, ge=0, le=360, description="Line from the target: 0 V-bar ahead, 90 R-bar below, deg."
-    )
-    start_m: float = Field(2000.0, gt=0, le=1e5, description="Distance at the start, m.")
-    hold_m: float = Field(100.0, gt=0, le=1e5, description="Distance of the hold point, m.")
-    hops: int = Field(5, ge=1, le=MOST_HOPS, description="Number of hops.")
-    gamma: float | None = Field(
-        None,
-        gt=0,
-        le=1,
-        description="Length of a hop over that of the one before; absent: distances shrink geometrically.",
     )
     keep_out_m: KeepOut = 50.0
     barrier: Literal["off", "nominal", "tightened"] = Field(
@@ -82,7 +65,7 @@ class HoppingInputs(WireModel):
 
     @model_validator(mode="after")
     def _flies(self) -> HoppingInputs:
-        require_leads_in(self.start_m, self.hold_m, self.keep_out_m)
+        require_outside(self.hold_m, self.keep_out_m)
         if self.semi_major_axis_m * (1.0 - self.eccentricity) <= EARTH_RADIUS:
             raise ValueError(f"eccentricity: a perigee above the Earth's surface, {EARTH_RADIUS:g} m")
         return self

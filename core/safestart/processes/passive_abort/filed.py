@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from safestart.errors import invalid
-from safestart.missed_burn.plan_file import Filed, burns_in_csv, is_message, plan_in_message
-from safestart.processes.passive_abort.spec import SPEC, PassiveAbortInputs
+from safestart.errors import invalid, named
+from safestart.missed_burn.plan_file import plan_in_message
+from safestart.missed_burn.plan_text import Filed, burns_in_csv, is_message
+from safestart.processes.passive_abort.question import with_plan
+from safestart.processes.passive_abort.spec import PassiveAbortInputs
 
 _ROUND = 1e-3
 """Eccentricity from which a circular model leaves something out that is worth saying."""
@@ -18,20 +20,15 @@ def resolved(inputs: PassiveAbortInputs) -> tuple[PassiveAbortInputs, dict[str, 
     if inputs.plan is None:
         return inputs, None
     told = read(inputs.plan, inputs.target)
-    whole = inputs.model_dump(mode="json", exclude_unset=True, exclude={"plan", "target"})
-    whole["burns"] = [
-        {"time_s": burn.time, "impulse_m_s": list(burn.impulse), "duration_s": burn.duration}
-        for burn in told.burns
-    ]
+    more: dict[str, Any] = {}
     if told.start is not None:
         start = told.start.tolist()
-        whole["start"] = {"position_m": start[:3], "velocity_m_s": start[3:]}
+        more["start"] = {"position_m": start[:3], "velocity_m_s": start[3:]}
     elements = None if told.target is None else _elements(told)
     if elements is not None:
         named = elements if inputs.model == "earth" else {"semi_major_axis_m": elements["semi_major_axis_m"]}
-        whole |= named
-    asked = SPEC.parse(whole)
-    assert isinstance(asked, PassiveAbortInputs)
+        more |= named
+    asked = with_plan(inputs, told.burns, more)
     assert asked.start is not None
     assert asked.burns is not None
     unknown: dict[str, Any] = dict.fromkeys(
@@ -46,7 +43,7 @@ def read(plan: str, target: str | None) -> Filed:
     if not is_message(plan):
         if target is not None:
             raise invalid("target", "none beside a plan in CSV, which is in LVLH", "a file")
-        return burns_in_csv(plan)
+        return named("plan", burns_in_csv, plan)
     if target is None:
         raise invalid("target", "the target's OEM, OPM or OCM beside a plan from a message", "none")
     return plan_in_message(plan.encode(), target.encode())

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Circle
+from matplotlib.patches import Polygon
 from matplotlib.ticker import MaxNLocator
 
 from safestart.dynamics.cwh import transition_matrix
@@ -14,14 +14,24 @@ from safestart.missed_burn.earth import target_before
 from safestart.missed_burn.plan import Question
 from safestart.missed_burn.prove import Finding, Proof, Verdict
 from safestart.missed_burn.sets import Case
+from safestart.missed_burn.zone import POINT, Zone
 from safestart.model.scenario import Floats
 from safestart.processes.plotting import drawn_as, figure
 
 COLOURS = {"PROVED": "#1B7F3B", "VIOLATED": "#C0392B", "UNKNOWN": "#B7791F"}
-_MARKS = {"start": "o", "made": "o", "partial": "s", "misdirected": "^", "late": "D", "stuck": "v"}
-_NAMES = {"start": "missed", "made": "missed"}
+_MARKS = {
+    "start": "o",
+    "made": "o",
+    "cut": "P",
+    "partial": "s",
+    "misdirected": "^",
+    "late": "D",
+    "stuck": "v",
+}
+_NAMES = {"start": "missed", "made": "missed", "cut": "cut short"}
 _SAMPLES = 240
 _MEMBERS = 12
+_OUTLINE = 180
 
 
 @drawn_as("aborts.png")
@@ -45,7 +55,8 @@ def picture(proof: Proof) -> Figure:
 def draw_drifts(axes: Axes, proof: Proof, which: range) -> None:
     """Drifts of missed burns in the orbit plane, V-bar to the left as the target flies to the left, nadir down."""
     keep_out = proof.question.keep_out
-    marks = [np.full(2, -1.5 * keep_out), np.full(2, 1.5 * keep_out)]
+    outlines = [_outline(zone, keep_out) for zone in proof.question.zones]
+    marks = [1.5 * point for outline in outlines for point in (outline.min(axis=0), outline.max(axis=0))]
     for k in which:
         finding = proof.findings[k]
         if finding.case.kind not in ("start", "made"):
@@ -57,7 +68,10 @@ def draw_drifts(axes: Axes, proof: Proof, which: range) -> None:
         start = paths[0][0]
         axes.plot(start[1], start[0], marker="x", color="#222222", markersize=6, zorder=6)
         marks.append(start[:2])
-    axes.add_patch(Circle((0.0, 0.0), keep_out, facecolor="#F6D5D0", edgecolor="#8C2B1D", zorder=1))
+    for zone, outline in zip(proof.question.zones, outlines, strict=True):
+        axes.add_patch(Polygon(outline[:, ::-1], facecolor="#F6D5D0", edgecolor="#8C2B1D", zorder=1))
+        if zone != POINT:
+            axes.add_patch(Polygon(_outline(zone, 0.0)[:, ::-1], facecolor="#D98C7E", zorder=1))
     axes.plot(0.0, 0.0, marker="s", color="#333333", markersize=4, zorder=5)
     axes.set_aspect("equal")
     low, high = np.min(marks, axis=0), np.max(marks, axis=0)
@@ -70,6 +84,20 @@ def draw_drifts(axes: Axes, proof: Proof, which: range) -> None:
     for name, colour in COLOURS.items():
         axes.plot([], [], color=colour, label=name.lower())
     axes.legend(fontsize=8, loc="upper right")
+
+
+def _outline(zone: Zone, around: float) -> Floats:
+    """The zone with ``around`` m around it, seen along the orbit's normal: points (N, 2), radial and along-track."""
+    turns = np.linspace(0.0, 2.0 * np.pi, _OUTLINE, endpoint=False)
+    d, axes = np.stack([np.cos(turns), np.sin(turns)], axis=1), np.array(zone.axes)[:, :2]
+    along = d @ axes.T
+    if zone.kind == "box":
+        share = np.sign(along)
+    else:
+        size = np.linalg.norm(along, axis=1, keepdims=True)
+        share = along / np.where(size > 0.0, size, 1.0)
+    outline: Floats = np.array(zone.centre[:2]) + share @ axes + around * d
+    return outline
 
 
 def _refuted(finding: Finding, keep_out: float) -> str:

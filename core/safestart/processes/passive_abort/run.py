@@ -3,24 +3,21 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from safestart.attitude.quaternion import matrix_of, unit_quaternion
-from safestart.errors import invalid
-from safestart.hopping.approach import mean_motion_of
 from safestart.missed_burn.document import document_of
 from safestart.missed_burn.earth import Earth
-from safestart.missed_burn.plan import Burn, Errors, Failures, Plan, Question
+from safestart.missed_burn.plan import Plan, Question
 from safestart.missed_burn.prove import Proof, Verdict, greatest_scale, prove
 from safestart.missed_burn.replay import MemberFlight
-from safestart.missed_burn.zone import POINT, Zone
 from safestart.processes.base import Artifact, ProcessOutput
 from safestart.processes.passive_abort.filed import left_out, resolved
 from safestart.processes.passive_abort.plots import picture
+from safestart.processes.passive_abort.question import plain_question
 from safestart.processes.passive_abort.spec import PassiveAbortInputs
-from safestart.processes.passive_abort.wire import ErrorsInput, FailuresInput, ZoneInput, radians
 from safestart.processes.wire import finite
 from safestart.records.comparable import canonical
 from safestart.runtime.progress import Context
@@ -64,35 +61,10 @@ def run(inputs: PassiveAbortInputs, context: Context) -> ProcessOutput:
 
 def question_of(inputs: PassiveAbortInputs) -> Question:
     """The question in SI."""
-    assert inputs.start is not None
-    assert inputs.burns is not None
-    n = mean_motion_of(inputs.semi_major_axis_m)
-    burns = tuple(
-        Burn(b.time_s, (b.impulse_m_s[0], b.impulse_m_s[1], b.impulse_m_s[2]), b.duration_s)
-        for b in inputs.burns
-    )
-    plan = Plan(n, (*inputs.start.position_m, *inputs.start.velocity_m_s), burns)
-    horizon = inputs.abort_orbits * math.tau / n
-    radius = inputs.semi_major_axis_m if inputs.model == "nonlinear" else None
-    errors, failures = errors_of(inputs.errors), failures_of(inputs.failures)
-    earth = earth_of(inputs, plan) if inputs.model == "earth" else None
-    zones = (POINT,) if inputs.zones is None else tuple(zone_of(zone) for zone in inputs.zones)
-    return Question(plan, inputs.keep_out_m, horizon, errors, failures, radius, earth, zones)
-
-
-def zone_of(zone: ZoneInput) -> Zone:
-    """A zone in SI."""
-    x, y, z = zone.centre_m
-    if zone.kind == "sphere":
-        if len(set(zone.half_m)) > 1:
-            raise invalid("zones.half_m", "the radius three times for a sphere", zone.half_m)
-        return Zone.sphere(zone.half_m[0], (x, y, z))
-    if min(zone.half_m) <= 0.0:
-        raise invalid("zones.half_m", "three lengths above 0", zone.half_m)
-    turned = matrix_of(np.array(unit_quaternion("zones.attitude_wxyz", zone.attitude_wxyz)))
-    axes = np.array(zone.half_m)[:, None] * turned
-    one, two, three = ((float(a), float(b), float(c)) for a, b, c in axes)
-    return Zone(zone.kind, (x, y, z), (one, two, three))
+    question = plain_question(inputs)
+    if inputs.model != "earth":
+        return question
+    return replace(question, earth=earth_of(inputs, question.plan))
 
 
 def earth_of(inputs: PassiveAbortInputs, plan: Plan) -> Earth:
@@ -106,47 +78,6 @@ def earth_of(inputs: PassiveAbortInputs, plan: Plan) -> Earth:
     if states is not None:
         before = np.array([[*state.position_m, *state.velocity_m_s] for state in states])
     return Earth.of(plan, inputs.semi_major_axis_m, inputs.eccentricity, tilt, perigee, anomaly, before)
-
-
-def errors_of(errors: ErrorsInput) -> Errors:
-    """The errors in SI."""
-    at, fast = errors.position_m, errors.velocity_m_s
-    angle = min(radians(errors.thrust_deg), 0.5 * math.pi)
-    if errors.covariance is not None:
-        still, columns = (0.0, 0.0, 0.0), ellipsoid_of(errors.covariance, errors.sigmas)
-        return Errors(still, still, errors.thrust_share, angle, errors.at_each_burn, columns)
-    return Errors((at, at, at), (fast, fast, fast), errors.thrust_share, angle, errors.at_each_burn)
-
-
-def ellipsoid_of(covariance: list[list[float]], sigmas: float) -> tuple[tuple[float, ...], ...]:
-    """Columns (6, 6) of L with L L' = sigmas^2 times the covariance.
-
-    Raises ``InvalidInput`` unless it is a symmetric matrix of 6 x 6 that is positive semi-definite, up to 1e-9 of what
-    its diagonal allows.
-    """
-    p = np.array(covariance, dtype=np.float64) if all(len(row) == 6 for row in covariance) else np.zeros(0)
-    if p.shape != (6, 6) or not np.isfinite(p).all():
-        raise invalid("errors.covariance", "6 rows of 6 finite numbers", covariance)
-    # In units in which the diagonal is 1, as metres and metres per second have nothing in common.
-    size = np.sqrt(np.maximum(np.diag(p), 0.0))
-    scale = np.where(size > 0.0, size, 1.0)
-    unit = p / np.outer(scale, scale)
-    values, vectors = np.linalg.eigh(0.5 * (unit + unit.T))
-    if np.abs(unit - unit.T).max() > 1e-9 or np.diag(p).min() < 0.0 or values.min() < -1e-9:
-        raise invalid("errors.covariance", "a symmetric positive semi-definite matrix", covariance)
-    columns = sigmas * scale[:, None] * vectors * np.sqrt(np.maximum(values, 0.0))
-    return tuple(tuple(column) for column in columns.T.tolist())
-
-
-def failures_of(failures: FailuresInput) -> Failures:
-    """The failures in SI."""
-    return Failures(
-        failures.late_s,
-        failures.partial,
-        failures.stuck_s,
-        failures.acceleration_m_s2,
-        radians(failures.misdirected_deg),
-    )
 
 
 def cases_of(proof: Proof) -> list[dict[str, Any]]:

@@ -124,8 +124,6 @@ class PassiveAbortInputs(WireModel):
         for before, after in pairwise(self.burns or []):
             if before.time_s + before.duration_s > after.time_s:
                 raise ValueError(f"burns: each ends before the next, the one at {before.time_s:g} s does not")
-        if self.model == "earth" and (self.zones or any(burn.duration_s for burn in self.burns or [])):
-            raise ValueError("model: linear or nonlinear where burns have a duration or zones are given")
 
     def _orbit(self) -> None:
         angles = self.inclination_deg, self.argument_of_perigee_deg, self.true_anomaly_deg
@@ -205,6 +203,7 @@ SPEC = ProcessSpec(
     inputs=PassiveAbortInputs,
     outputs=PassiveAbortOutputs,
     run="safestart.processes.passive_abort.run:run",
+    possible="safestart.processes.passive_abort.question:require_possible",
     views=(
         Findings(
             "Verdict",

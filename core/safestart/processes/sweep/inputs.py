@@ -20,7 +20,7 @@ def _by_present_name(names: Any) -> Any:
     return [RENAMED.get(name, name) for name in names] if isinstance(names, list) else names
 
 
-MAX_CASES = 10_000_000
+MAX_CASES = 1_000_000_000
 _SLOW = ", ".join(name for name in CONTROLLERS if slow([name]))
 # Flown interval by interval from Python, or with a scenario of its own per case.
 MAX_SLOW_CASES = 200_000

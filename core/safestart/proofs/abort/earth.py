@@ -7,7 +7,7 @@ k = K (b - a)^2/8 < 1,
     |d| distance >= min(f(a), f(b)) - k/(1 - k) |d| sum of max(|y(a)|, |y(b)|) - |d| stray,
 
 y the path of the reference, the images of the centre and of the blocks: |y''| <= K |y|, so y is within k sup |y| of
-its chord.
+its chord. A zone's centre and blocks z turn with LVLH, and are within W (b - a)^2/8 |z| of theirs.
 """
 
 from __future__ import annotations
@@ -18,11 +18,13 @@ from flint import arb, arb_mat, fmpq
 
 from safestart.proofs.abort.complete import Complete
 from safestart.proofs.abort.course import Course, inverse
-from safestart.proofs.abort.pushes import Pushes, lift
-from safestart.proofs.abort.reached import Reached, column
+from safestart.proofs.abort.finite import burning, times
+from safestart.proofs.abort.pushes import LastingPushes, Pushes, frame, lift
+from safestart.proofs.abort.reached import Reached, column, level, reach, sizes_of
 from safestart.proofs.abort.sets import Sets
-from safestart.proofs.abort.statement import Asked, Event
+from safestart.proofs.abort.statement import Asked, Event, Zone
 from safestart.proofs.abort.taylor import frobenius, middle
+from safestart.proofs.abort.turning import turning
 from safestart.proofs.strict import ProofRejected
 
 
@@ -37,6 +39,8 @@ class Reference:
     moved: dict[fmpq, arb_mat] = field(default_factory=dict)
     path: dict[fmpq, arb_mat] = field(default_factory=dict)
     norms: dict[tuple[fmpq, int, int], tuple[arb, arb, arb, arb]] = field(default_factory=dict)
+    axes: dict[fmpq, arb_mat] = field(default_factory=dict)
+    lasting: LastingPushes | None = None
 
 
 class EarthChecker(Complete):
@@ -52,18 +56,16 @@ class EarthChecker(Complete):
         span = max(begin + self.longest(k) for k, begin in enumerate(begins))
         self.target = Course(earth.mu, earth.j2, earth.radius, [arb(e) for e in earth.state], span)
         self.mu, self.bulge = arb(earth.mu), arb(earth.mu) * arb(earth.j2) * arb(earth.radius) ** 2
+        self.turning = turning(self.target)
         self.references: dict[tuple[int, fmpq], Reference] = {}
 
-    def _reference(self, kind: str, burn: int) -> Reference:
-        """The reference of a case: no burn, half of it where it is burnt in part, else all of it."""
-        share = {"start": fmpq(0), "partial": fmpq(1, 2)}.get(kind, fmpq(1))
+    def _reference(self, share: fmpq, burn: int) -> Reference:
+        """The reference of cases of a burn, with a share of it."""
         found = self.references.get((burn, share))
         if found is None:
             begin = self.asked.times[burn] - self.asked.times[0]
-            state = [arb(e) for e in self.earth.before[burn]]
-            for i in range(3):
-                state[3 + i] = arb(self.earth.before[burn][3 + i] + share * self.asked.impulses[burn][i])
-            off = middle(lift(self.target, arb(begin)) * column(state))
+            state = column([arb(e) for e in self.earth.before[burn]]) + arb(share) * self.sets.given(burn)
+            off = middle(lift(self.target, arb(begin)) * state)
             at = [middle(m) for m in self.target.state(arb(begin))]
             there = [e for m in at for e in m.entries()]
             # Where the target is then is known to a radius; the chaser's place relative to it is what is exact.
@@ -79,7 +81,8 @@ class EarthChecker(Complete):
     def longest(self, burn: int) -> fmpq:
         """The longest drift of all cases of a burn: its parts are those of all of them."""
         asked = self.asked
-        out = asked.horizon + max(asked.late, asked.stuck)
+        lasts = asked.durations[burn]
+        out = asked.horizon + (asked.late + lasts + asked.stuck if lasts else max(asked.late, asked.stuck))
         if burn + 1 < len(asked.times):
             out = max(out, asked.times[burn + 1] - asked.times[burn] + asked.late)
         return out * (1 + fmpq(1, 2**30))
@@ -87,7 +90,7 @@ class EarthChecker(Complete):
     def held(self, event: Event) -> None:
         """Check the cells of an event, after its trial radii."""
         burn = max(event.burn, 0)
-        reference = self._reference(event.kind, burn)
+        reference, zone = self._reference(event.reference, burn), self.asked.zones[event.zone]
         stiffness = arb(reference.course.stiffness.max(self.target.stiffness).abs_upper())
         state = self._state(event, burn, reference, stiffness.sqrt())
         columns = [state.centre - reference.off] + [m for block in state.blocks for m in block]
@@ -95,6 +98,8 @@ class EarthChecker(Complete):
         sizes = [len(block) for block in state.blocks]
         strays = self._strays(event, burn, reference, table, sizes, stiffness)
         part, claim = self.longest(burn) / len(strays), arb(self.asked.least)
+        zone_sizes = [] if zone.is_point else [len(block) for block in zone.blocks]
+        bend = self.turning.bend / 8 * reach([zone.centre], *zone.blocks)
         images: dict[fmpq, tuple[arb_mat, list[arb]]] = {}
         for begin, end, *direction in event.cells:
             if not (begin < end and any(direction)):
@@ -102,44 +107,83 @@ class EarthChecker(Complete):
             at = []
             for time in (begin, end):
                 if time not in images:
-                    images[time] = self._image(reference, time, table, sizes)
+                    images[time] = self._image(reference, time, table, sizes, zone)
                 at.append(images[time])
             row = arb_mat([[arb(e) for e in direction]])
             length = arb(sum((e * e for e in direction), fmpq(0))).sqrt()
-            low = [_level(row * image, sizes) for image, _ in at]
+            low = [level(row * image, sizes + zone_sizes) for image, _ in at]
             k = stiffness * arb((end - begin) ** 2) / 8
             if not k < 1:
                 raise ProofRejected(
                     f"{event.kind}, burn {event.burn}: a cell of {float(end - begin):g} s is too long"
                 )
-            spread = sum((a.max(b) for a, b in zip(at[0][1], at[1][1], strict=True)), arb(0))
+            path, *rest = (a.max(b) for a, b in zip(at[0][1], at[1][1], strict=True))
+            square = arb((end - begin) ** 2)
+            between = (
+                self._bent(path, square, reference.course) + k / (1 - k) * sum(rest, arb(0)) + bend * square
+            )
             # A cell that ends within a part gets the stray up to the end of that part.
             last = min(max(int((end / part).ceil()), 1), len(strays))
-            room = low[0].min(low[1]) - length * (k / (1 - k) * spread + strays[last - 1] + claim)
+            room = low[0].min(low[1]) - length * (between + strays[last - 1] + claim)
             if not room >= 0:
                 raise ProofRejected(
                     f"{event.kind}, burn {event.burn}: distance >= {float(claim):.9g} m from {float(begin):.9g} to "
                     f"{float(end):.9g} s after it: short by {-float(room.mid()):.3g} (scaled by the direction)"
                 )
 
+    def _bent(self, path: arb, square: arb, course: Course) -> arb:
+        """How far the path may be from its chord over a cell, from its size at the ends: G is that of points between
+        both bodies, a little nearer to the Earth than they are."""
+        low = self.target.lowest.min(course.lowest)
+        # Nothing is pulled more than at the lowest point: the path does not get longer than this.
+        reach = path + (self.mu / low**2 + 6 * self.bulge / low**4) * square / 4
+        if not reach < low:
+            raise ProofRejected("cell: required a chaser nearer to the target")
+        between = (low**2 - reach**2 / 4).sqrt()
+        k = (2 * self.mu / between**3 + 12 * self.bulge / between**5) * square / 8
+        if not k < 1:
+            raise ProofRejected("cell: required a shorter one")
+        return k / (1 - k) * path
+
     def _image(
-        self, reference: Reference, time: fmpq, table: arb_mat, sizes: list[int]
+        self, reference: Reference, time: fmpq, table: arb_mat, sizes: list[int], zone: Zone
     ) -> tuple[arb_mat, list[arb]]:
-        """Positions (3, 1 + C) of centre and columns, and sizes of path, centre and blocks."""
+        """Positions (3, 1 + C + S) of the centre, less the zone's, of columns and of the zone's columns, and sizes of
+        path, centre and blocks."""
         whole = arb_mat(_moved(reference, time).tolist()[:3]) * table
         path = reference.path.get(time)
         if path is None:
             path = reference.course.state(arb(time))[0] - self.target.state(arb(reference.begin + time))[0]
             reference.path[time] = path
-        off = _sizes(whole, sizes)
+        off = sizes_of(whole, sizes)
         for i in range(3):
             whole[i, 0] += path[i, 0]
-        return whole, [frobenius(path), *off]
+        if zone.is_point:
+            return whole, [frobenius(path), *off]
+        still = [zone.centre, *(axis for block in zone.blocks for axis in block)]
+        turned = self._axes(reference, time) * arb_mat(
+            3, len(still), [arb(v[i]) for i in range(3) for v in still]
+        )
+        for i in range(3):
+            whole[i, 0] -= turned[i, 0]
+        both = [a + b[1:] for a, b in zip(whole.tolist(), turned.tolist(), strict=True)]
+        return arb_mat(both), [frobenius(path), *off]
+
+    def _axes(self, reference: Reference, time: fmpq) -> arb_mat:
+        """LVLH axes as columns (3, 3), inertial."""
+        found = reference.axes.get(time)
+        if found is None:
+            rows, _ = frame(self.target, arb(reference.begin + time))
+            found = reference.axes[time] = rows.transpose()
+        return found
 
     def _state(self, event: Event, burn: int, reference: Reference, k: arb) -> Reached:
         """The set of an event at the planned time of its burn, inertial, relative to the target."""
         asked = self.asked
         lifted = lift(self.target, arb(reference.begin))
+        if asked.durations[burn] > 0 and event.kind != "start":
+            before = self.sets.before[burn].moved(lifted)
+            return burning(asked, before, event, self._lasting(reference, burn, k))
         if event.kind not in ("late", "stuck"):
             return self.sets.of(event).moved(lifted)
         impulse = [arb(e) for e in asked.impulses[burn]]
@@ -150,9 +194,23 @@ class EarthChecker(Complete):
         after, thrust = self.sets.after[burn].moved(lifted), arb(asked.acceleration)
         return pushes.stuck(after, impulse, thrust, limits, event.first, event.last)
 
+    def _lasting(self, reference: Reference, burn: int, k: arb) -> LastingPushes:
+        """The pushes of all cases near a reference."""
+        asked = self.asked
+        if reference.lasting is None:
+            longest = asked.late + asked.durations[burn] + asked.stuck
+            reference.lasting = LastingPushes(
+                self.target, reference.course, reference.begin, k, longest, self.turning
+            )
+        return reference.lasting
+
     def _detour(self, event: Event, burn: int, k: arb) -> arb:
         """Bound on the distance of the actual position during a late or lasting burn from its equivalent state's."""
         last, most = arb(event.last), 1 + arb(self.asked.share)
+        if event.kind != "start" and self.asked.durations[burn] > 0:
+            size = arb(sum((e * e for e in self.asked.impulses[burn]), fmpq(0))).sqrt()
+            (_, late), (_, on) = times(self.asked, event)
+            return most * size * arb(on / self.asked.durations[burn]) * (k * arb(late + on)).sinh() / k
         if event.kind == "late":
             size = arb(sum((e * e for e in self.asked.impulses[burn]), fmpq(0))).sqrt()
             return most * size * (k * last).sinh() / k
@@ -170,7 +228,7 @@ class EarthChecker(Complete):
         if not curve < 1:
             raise ProofRejected("radii_m: the parts are too long")
         moves = [_moved(reference, h * j) for j in range(count + 1)]
-        nodes = [_sizes(arb_mat(m.tolist()[:3]) * table, sizes) for m in moves]
+        nodes = [sizes_of(arb_mat(m.tolist()[:3]) * table, sizes) for m in moves]
         grown, slid = (k * step).cosh(), (k * step).sinh() / k
         pushed = (grown - 1) / stiffness
         kicks: list[arb] = []
@@ -225,23 +283,3 @@ def _norms(reference: Reference, h: fmpq, j: int, m: int) -> tuple[arb, arb, arb
         )
         found = reference.norms[h, j, m] = one, two, three, four
     return found
-
-
-def _sizes(image: arb_mat, sizes: list[int]) -> list[arb]:
-    """Sizes, from above, of the centre and of each block, from their images (3, 1 + C)."""
-    out, at = [], 0
-    for size in (1, *sizes):
-        total = sum((image[i, at + j] * image[i, at + j] for i in range(3) for j in range(size)), arb(0))
-        out.append(arb(total.abs_upper()).sqrt())
-        at += size
-    return out
-
-
-def _level(values: arb_mat, sizes: list[int]) -> arb:
-    """f at one time."""
-    level, at = values[0, 0], 1
-    for size in sizes:
-        total = sum((values[0, at + j] * values[0, at + j] for j in range(size)), arb(0))
-        level = level - arb(total.abs_upper()).sqrt()
-        at += size
-    return level

@@ -1,12 +1,13 @@
 """Burns with a duration, as sets of states at their planned time, in ball arithmetic.
 
-A burn that begins t late and lasts for u gives H(t + u) - H(t), H(s) = int_0^s Phi(-r) (0, a) dr; over a piece of times
-it lies within its value and its tangents in the middle and a box for the second derivatives H'' and H'''.
+A burn that begins t late and lasts for u gives H(t + u) - H(t), H the integral of f(s) = Phi(0, s) (0, a); over a piece
+of times it lies within its value and its tangents in the middle and a box for the second derivatives H'' and H'''.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 from flint import arb, arb_mat, fmpq
 
@@ -45,16 +46,48 @@ def window(asked: Asked, event: Event) -> tuple[fmpq, fmpq]:
 
 
 @dataclass(frozen=True, slots=True)
-class _Rates:
-    """Greatest sizes of the first two derivatives of Phi(-s) (0, e), in each of the six, |e| = 1, s in a ball."""
+class Rates:
+    """Greatest sizes of the first two derivatives of f, in each of the six, |a| = 1."""
 
     first: list[arb]
     second: list[arb]
 
 
-def burning(asked: Asked, before: Reached, event: Event) -> Reached:
+class Pushed(Protocol):
+    """Pushes at other times as states at the planned time of the burn; times in s after it."""
+
+    def at(self, time: fmpq) -> arb_mat:
+        """f (6, 3) per unit of a."""
+
+    def total(self, time: fmpq) -> arb_mat:
+        """Its integral (6, 3) from 0 on."""
+
+    def rates(self, longest: fmpq) -> Rates:
+        """Bounds from 0 to ``longest``."""
+
+
+class CwhPushed:
+    """In CWH motion."""
+
+    def __init__(self, n: fmpq) -> None:
+        self.n = arb(n)
+
+    def at(self, time: fmpq) -> arb_mat:
+        """Phi(-time) (0, I)."""
+        return _pushed(self.n, arb(time))
+
+    def total(self, time: fmpq) -> arb_mat:
+        """Its integral."""
+        return -1 * held(self.n, -arb(time))
+
+    def rates(self, longest: fmpq) -> Rates:
+        """By balls of time."""
+        return _rates(self.n, arb(longest) / 2 + arb(0, 1) * (arb(longest) / 2))
+
+
+def burning(asked: Asked, before: Reached, event: Event, pushed: Pushed) -> Reached:
     """The set before burn ``event.burn``, and all that the burn adds in this event."""
-    n, burn = arb(asked.n), event.burn
+    burn = event.burn
     share, angle = arb(asked.share), arb(asked.angle)
     wide = arb.min(angle + arb(asked.misdirected), arb.pi()) if event.kind == "misdirected" else angle
     least = arb(0) if event.kind == "partial" else 1 - share
@@ -62,22 +95,21 @@ def burning(asked: Asked, before: Reached, event: Event) -> Reached:
     along, one, two, impulse = axes([arb(e) for e in asked.impulses[burn]])
     size = impulse / arb(asked.durations[burn])
     delay, lasts = times(asked, event)
-    late, late_by = _piece(*delay)
-    on, on_by = _piece(*lasts)
-    gives, given = (held(n, -late) - held(n, -late - time) for time in (on, arb(lasts[1])))
+    late, on = (delay[0] + delay[1]) / 2, (lasts[0] + lasts[1]) / 2
+    late_by, on_by = arb((delay[1] - delay[0]) / 2), arb((lasts[1] - lasts[0]) / 2)
+    gives, given = (pushed.total(late + time) - pushed.total(late) for time in (on, lasts[1]))
     # Across the burn: u/u_2 of what it gives in its longest time u_2, but for the chord's error u_2^2/8 |H''|.
     blocks = [
         [gives * column([half * size * e for e in along])],
         [given * column([across * size * e for e in unit]) for unit in (one, two)],
     ]
-    end, begin = _pushed(n, late + on), _pushed(n, late)
+    end, begin = pushed.at(late + on), pushed.at(late)
     most = column([(1 + share) * size * e for e in along])
     blocks += [[late_by * ((end - begin) * most)], [on_by * (end * most)]]
     state = Reached(
         before.centre + gives * column([middle * size * e for e in along]), [*before.blocks, *blocks]
     )
-    longest = arb(delay[1] + lasts[1])
-    rates = _rates(n, longest / 2 + arb(0, 1) * (longest / 2))
+    rates = pushed.rates(delay[1] + lasts[1])
     _, own, aside = shell(1 - share, 1 + share, angle)
     unsteady = size * (own * own + aside * aside).sqrt()
     reach, top = arb(lasts[1]), (1 + share) * size
@@ -93,19 +125,15 @@ def burning(asked: Asked, before: Reached, event: Event) -> Reached:
     )
 
 
-def _piece(first: fmpq, last: fmpq) -> tuple[arb, arb]:
-    return arb((first + last) / 2), arb((last - first) / 2)
-
-
 def _pushed(n: arb, time: arb) -> arb_mat:
     """Phi(-time) (0, I), (6, 3)."""
     return arb_mat([row[3:] for row in transition(n, -time).tolist()])
 
 
-def _rates(n: arb, span: arb) -> _Rates:
+def _rates(n: arb, span: arb) -> Rates:
     a = generator(n)
     slope = a * _pushed(n, span)
-    return _Rates(_sizes(slope), _sizes(a * slope))
+    return Rates(_sizes(slope), _sizes(a * slope))
 
 
 def _sizes(matrix: arb_mat) -> list[arb]:

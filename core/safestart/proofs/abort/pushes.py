@@ -3,6 +3,10 @@
 f(t) = Phi(0, t) (0, e) for a push e that turns with LVLH; f'(t) = Phi(0, t) (-e, omega x e). On a piece of times f' is
 enclosed in a ball: f lies within the tangent in the middle and the ball's radius times half the piece, the integral of
 f within the value in the middle times the length and a quarter of the square of the length times that radius.
+
+A burn with a duration takes f's integral by the midpoints of equal parts of length w, each within w^3/24 |f''|, where
+
+    f'' = Phi(0, t) (-2 omega x e, G e + omega x (omega x e) + omega' x e).
 """
 
 from __future__ import annotations
@@ -10,11 +14,14 @@ from __future__ import annotations
 from flint import arb, arb_mat, fmpq
 
 from safestart.proofs.abort.course import Course, inverse
+from safestart.proofs.abort.finite import Rates
 from safestart.proofs.abort.reached import Reached, axes, column, shell
 from safestart.proofs.abort.taylor import middle
+from safestart.proofs.abort.turning import Turning
 
 Limits = tuple[arb, arb]
 _BALL = arb(0, 1)
+_PARTS = 64
 
 
 def frame(target: Course, time: arb) -> tuple[arb_mat, arb_mat]:
@@ -49,10 +56,15 @@ class Pushes:
     def __init__(self, target: Course, reference: Course, begin: fmpq, k: arb) -> None:
         self.target, self.reference, self.begin, self.k = target, reference, begin, k
 
-    def _f(self, at: fmpq) -> arb_mat:
+        self.known: dict[fmpq, arb_mat] = {}
+
+    def at(self, time: fmpq) -> arb_mat:
         """f (6, 3) per unit of e."""
-        rows, _ = frame(self.target, arb(self.begin + at))
-        return _right(self._back(at)) * rows.transpose()
+        found = self.known.get(time)
+        if found is None:
+            rows, _ = frame(self.target, arb(self.begin + time))
+            found = self.known[time] = _right(self._back(time)) * rows.transpose()
+        return found
 
     def _back(self, at: fmpq) -> arb_mat:
         """Phi(0, at)."""
@@ -81,7 +93,7 @@ class Pushes:
         along, one, two, size = axes(impulse)
         centre, half, across = shell(1 - limits[0], 1 + limits[0], limits[1])
         at, reach = (first + last) / 2, arb((last - first) / 2)
-        f, slope = self._f(at), self._slope(first, last)
+        f, slope = self.at(at), self._slope(first, last)
         tangent = slope * column([size * centre * e for e in along])
         wide = slope * column([_BALL * (size * (half * half + across * across).sqrt())] * 3)
         blocks = [
@@ -108,11 +120,11 @@ class Pushes:
         for j in range(count):
             begun = width * j
             slope = self._slope(begun, begun + width) * push
-            total = total + arb(width) * (self._f(begun + width / 2) * push)
+            total = total + arb(width) * (self.at(begun + width / 2) * push)
             total = total + column(
                 [_BALL * (_radius(slope[k, 0]) * arb(width * width / 4)) for k in range(6)]
             )
-        tangent = self._f(at) * push
+        tangent = self.at(at) * push
         bent = self._slope(first, last) * push
         state = Reached(after.centre + total, [*after.blocks, [reach * tangent]])
         loose, p = thrust * (half * half + across * across).sqrt(), self.k * arb(last)
@@ -120,6 +132,43 @@ class Pushes:
         return state.grown(
             [reach * reach / 2 * arb(bent[k, 0].abs_upper()) + loose * kicked[k] for k in range(6)]
         )
+
+
+class LastingPushes(Pushes):
+    """Those of a burn with a duration, up to ``longest`` s after its planned time."""
+
+    def __init__(
+        self, target: Course, reference: Course, begin: fmpq, k: arb, longest: fmpq, turning: Turning
+    ) -> None:
+        super().__init__(target, reference, begin, k)
+        self.longest, self.turning = longest, turning
+        self.second = self.rates(longest).second
+        self.sums = [arb_mat(6, 3)]
+
+    def rates(self, longest: fmpq) -> Rates:
+        """Bounds on f' and f'' up to ``longest`` s."""
+        k, spin, both = self.k, self.turning.spin, self.k**2 + self.turning.bend
+        p = k * arb(longest)
+        even, odd = p.cosh(), p.sinh()
+        first = [even + spin / k * odd] * 3 + [k * odd + spin * even] * 3
+        second = [2 * spin * even + both / k * odd] * 3 + [2 * spin * k * odd + both * even] * 3
+        return Rates([arb(e.abs_upper()) for e in first], [arb(e.abs_upper()) for e in second])
+
+    def total(self, time: fmpq) -> arb_mat:
+        """The integral of f (6, 3) from 0 to ``time``."""
+        part = self.longest / _PARTS
+        whole = int((time / part).floor())
+        while len(self.sums) <= whole:
+            self.sums.append(self.sums[-1] + self._midpoint(part * (len(self.sums) - 1), part))
+        left = time - part * whole
+        return self.sums[whole] + self._midpoint(part * whole, left) if left > 0 else self.sums[whole]
+
+    def _midpoint(self, begin: fmpq, length: fmpq) -> arb_mat:
+        out = self.at(begin + length / 2) * arb(length)
+        for k in range(6):
+            for j in range(3):
+                out[k, j] += _BALL * (arb(length) ** 3 / 24 * self.second[k])
+        return out
 
 
 def _length(v: list[arb]) -> arb:

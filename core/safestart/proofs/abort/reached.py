@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from flint import arb, arb_mat
+from flint import arb, arb_mat, fmpq
 
 
 def transition(n: arb, t: arb) -> arb_mat:
@@ -107,3 +107,29 @@ def _cross(a: list[arb], b: list[arb]) -> list[arb]:
 def speeds(v: list[arb]) -> arb_mat:
     """A velocity as a state."""
     return column([arb(0)] * 3 + v)
+
+
+def sizes_of(image: arb_mat, counts: list[int]) -> list[arb]:
+    """Sizes, from above, of the centre and of each block, from their images (3, 1 + C)."""
+    out, at = [], 0
+    for size in (1, *counts):
+        total = sum((image[i, at + j] * image[i, at + j] for i in range(3) for j in range(size)), arb(0))
+        out.append(arb(total.abs_upper()).sqrt())
+        at += size
+    return out
+
+
+def level(values: arb_mat, counts: list[int]) -> arb:
+    """f at one time."""
+    low, at = values[0, 0], 1
+    for size in counts:
+        total = sum((values[0, at + j] * values[0, at + j] for j in range(size)), arb(0))
+        low = low - arb(total.abs_upper()).sqrt()
+        at += size
+    return low
+
+
+def reach(*parts: list[list[fmpq]]) -> arb:
+    """Sum of the norms, from above, of parts that are lists of vectors (3,)."""
+    squares = (arb(sum((e * e for v in part for e in v), fmpq(0))) for part in parts)
+    return sum((arb(square.abs_upper()).sqrt() for square in squares), arb(0))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from flint import arb, arb_mat, fmpq
 
-from safestart.proofs.abort.finite import burning, times
+from safestart.proofs.abort.finite import CwhPushed, burning, times
 from safestart.proofs.abort.reached import Reached, axes, column, generator, held, shell, speeds, transition
 from safestart.proofs.abort.statement import Asked, Event
 
@@ -15,6 +15,7 @@ class Sets:
     def __init__(self, asked: Asked) -> None:
         self.asked, self.n = asked, arb(asked.n)
         self.share, self.angle = arb(asked.share), arb(asked.angle)
+        self.pushed = CwhPushed(asked.n)
         self.before: list[Reached] = []
         self.after: list[Reached] = []
         planned = column([arb(e) for e in (asked.earth.before[0] if asked.earth else asked.start)])
@@ -23,7 +24,7 @@ class Sets:
             if k:
                 over = transition(self.n, arb(asked.times[k] - asked.times[k - 1]))
                 if asked.earth is None:
-                    planned = over * (planned + self._given(k - 1))
+                    planned = over * (planned + self.given(k - 1))
                 else:
                     planned = column([arb(e) for e in asked.earth.before[k]])
                 state = self._believed(planned) if asked.anew else self.after[-1].moved(over)
@@ -31,7 +32,7 @@ class Sets:
             if asked.durations[k] > 0:
                 whole = asked.durations[k]
                 made = Event("made", k, fmpq(0), fmpq(0), [], [], (whole, whole))
-                self.after.append(burning(asked, state, made))
+                self.after.append(burning(asked, state, made, self.pushed))
             else:
                 self.after.append(self._burnt(state, impulse, 1 - self.share, self.angle))
 
@@ -42,8 +43,8 @@ class Sets:
             state.blocks.append([column([arb(e) for e in m]) for m in self.asked.ellipsoid])
         return state
 
-    def _given(self, burn: int) -> arb_mat:
-        """What a burn without errors adds to the state at its time."""
+    def given(self, burn: int) -> arb_mat:
+        """What a burn without errors adds to the state at its time, in CWH motion."""
         impulse, whole = [arb(e) for e in self.asked.impulses[burn]], arb(self.asked.durations[burn])
         if whole == 0:
             return speeds(impulse)
@@ -55,7 +56,7 @@ class Sets:
         if kind == "start":
             return self.before[0]
         if self.asked.durations[burn] > 0:
-            return burning(self.asked, self.before[burn], event)
+            return burning(self.asked, self.before[burn], event, self.pushed)
         before, impulse = self.before[burn], self.asked.impulses[burn]
         if kind == "made":
             return self.after[burn]

@@ -35,7 +35,8 @@ _TARGET = ("position_m", "velocity_m_s", "mu_m3_s2", "j2", "earth_radius_m")
 @dataclass(frozen=True, slots=True)
 class Event:
     """One case of the document: its kind, burn (-1: none is made), piece of [0, tau], cells and trial radii; how long a
-    burn with a duration lasts (0 and 0 otherwise), and the number of the zone."""
+    burn with a duration lasts (0 and 0 otherwise), the number of the zone, and which share of the burn is in the flight
+    near which the set is followed (model earth; any share is sound)."""
 
     kind: str
     burn: int
@@ -45,6 +46,14 @@ class Event:
     radii: list[fmpq]
     on: tuple[fmpq, fmpq] = (fmpq(0), fmpq(0))
     zone: int = 0
+    share: fmpq | None = None
+
+    @property
+    def reference(self) -> fmpq:
+        """The share that is named, or that of the kind."""
+        if self.share is not None:
+            return self.share
+        return {"start": fmpq(0), "partial": fmpq(1, 2)}.get(self.kind, fmpq(1))
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,9 +65,14 @@ class Zone:
     blocks: list[list[list[fmpq]]]
 
     @property
+    def axes(self) -> list[list[fmpq]]:
+        """All columns."""
+        return [axis for block in self.blocks for axis in block]
+
+    @property
     def is_point(self) -> bool:
         """Whether it is the target itself."""
-        return not any(self.centre) and not any(e for block in self.blocks for axis in block for e in axis)
+        return not any(self.centre) and not any(e for axis in self.axes for e in axis)
 
 
 _POINT = Zone("sphere", [fmpq(0)] * 3, [])
@@ -137,16 +151,18 @@ def read(document: Any) -> Asked:
     if n * longest > LONGEST_PHASE:
         raise ProofRejected("late_s, duration_s, stuck_s: required at most half a radian of the orbit")
     zones = _zones(part(question, "zones", list)) if wide else [_POINT]
-    if model == "earth" and (any(durations) or any(not zone.is_point for zone in zones)):
-        raise ProofRejected("model: required linear or nonlinear for durations and zones")
     anew = _flag(errors, "at_each_burn")
     if bent and not anew:
         raise ProofRejected("at_each_burn: required true for this model")
+    vectors = vector(start["position_m"], "position_m", 3) + vector(start["velocity_m_s"], "velocity_m_s", 3)
+    target = _target(question, len(times)) if model == "earth" else None
+    if target is not None and vectors != target.before[0]:
+        raise ProofRejected("start: required the state before the first burn")
     return Asked(
         n=n,
         radius=number(question, "semi_major_axis_m", 1e3, 1e9) if model == "nonlinear" else None,
-        earth=_target(question, len(times)) if model == "earth" else None,
-        start=vector(start["position_m"], "position_m", 3) + vector(start["velocity_m_s"], "velocity_m_s", 3),
+        earth=target,
+        start=vectors,
         times=times,
         impulses=impulses,
         durations=durations,
@@ -183,6 +199,11 @@ def _zones(zones: list[Any]) -> list[Zone]:
         if zone["kind"] not in _ZONES or not isinstance(zone["axes_m"], list) or len(zone["axes_m"]) != 3:
             raise ProofRejected(f"zone: required a kind of {', '.join(_ZONES)} and three axes")
         axes = [vector(axis, "axes_m", 3) for axis in zone["axes_m"]]
+        radius = axes[0][0]
+        if zone["kind"] == "sphere" and axes != [[radius * (i == j) for j in range(3)] for i in range(3)]:
+            raise ProofRejected("axes_m: required a sphere's radius along each axis of LVLH")
+        if zone["kind"] == "sphere" and radius < 0:
+            raise ProofRejected(f"axes_m: required a radius >= 0, received {shown(zone['axes_m'])}")
         blocks = [[axis] for axis in axes] if zone["kind"] == "box" else [axes]
         out.append(Zone(zone["kind"], vector(zone["centre_m"], "centre_m", 3), blocks))
     return out
@@ -241,7 +262,8 @@ def _events(cases: list[Any], burns: int, bent: bool, zones: int) -> list[Event]
         raise ProofRejected(f"cases: required at most {_MOST_CASES}, received {len(cases)}")
     out, total = [], 0
     for case in cases:
-        fields(case, "case", (*names, "radii_m") if bent else names)
+        near = ("reference",) if zones and bent else ()
+        fields(case, "case", (*names, "radii_m") if bent else names, near)
         kind, burn, cells = part(case, "kind", str), part(case, "burn", int), part(case, "cells", list)
         if kind not in KINDS or not (burn == -1 if kind == "start" else 0 <= burn < burns):
             raise ProofRejected(
@@ -270,6 +292,7 @@ def _events(cases: list[Any], burns: int, bent: bool, zones: int) -> list[Event]
                 [exact(radius, "radii_m", 0.0, 1e9) for radius in radii],
                 on,
                 zone,
+                number(case, "reference", 0.0, 1.0) if "reference" in case else None,
             )
         )
     return out

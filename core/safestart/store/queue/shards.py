@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from sqlalchemy import delete, insert, select
@@ -19,28 +20,31 @@ class Shards:
     def __init__(self, database: Database) -> None:
         self._database = database
 
-    def save_shard(
-        self, claim: Claim, number: int, content: str, document: dict[str, Any], data: bytes
-    ) -> None:
-        """Store the result of shard ``number``; ``content`` identifies what it depends on.
+    def save_shards(self, claim: Claim, shards: Sequence[tuple[int, str, dict[str, Any], bytes]]) -> None:
+        """Store shards that ended, each ``(number, content, document, data)``, in one transaction.
 
+        ``content`` identifies what a shard depends on.
         A finished shard is progress that survives a lost worker, so the count of attempts starts again.
         Raises ``LeaseLost``.
         """
+        numbers = [number for number, *_ in shards]
         with self._database.session(write=True) as session:
             change(session, claim, attempts=1)
             session.execute(
-                delete(ShardRow).where(ShardRow.job_id == claim.job_id, ShardRow.number == number)
+                delete(ShardRow).where(ShardRow.job_id == claim.job_id, ShardRow.number.in_(numbers))
             )
             session.execute(
-                insert(ShardRow).values(
-                    job_id=claim.job_id,
-                    number=number,
-                    content=content,
-                    document=document,
-                    data=data,
-                    created_at=after(),
-                )
+                insert(ShardRow).values(created_at=after()),
+                [
+                    {
+                        "job_id": claim.job_id,
+                        "number": number,
+                        "content": content,
+                        "document": document,
+                        "data": data,
+                    }
+                    for number, content, document, data in shards
+                ],
             )
 
     def shard_contents(self, job_id: str) -> dict[int, str]:
