@@ -13,6 +13,7 @@ from safestart.constraints.thrust_limit import ThrustLimit
 from safestart.errors import InvalidInput
 from safestart.exact.answer import GUARD, Answer, Verdict
 from safestart.exact.space.decide import decide_in_space
+from safestart.exact.space.model_error import model_error
 from safestart.exact.space.prove import proof_in_space
 from safestart.exact.space.question import Face, SpaceQuestion
 from safestart.exact.space.start_box import decide_from_box
@@ -30,13 +31,14 @@ FURTHEST_M = 1e5
 class Instant:
     """The verdict at one TAI ``epoch``, ns; ``margin`` bounds the largest margin, m: from below for GO, else above.
 
-    ``why`` is empty where the verdict is proved.
+    ``why`` is empty where the verdict is proved. The linear model itself may be off by about ``error`` m.
     """
 
     epoch: int
     verdict: str
     margin: float
     why: str = ""
+    error: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -109,10 +111,12 @@ class Judge:
     def _asked(self, seen: Relative, k: int, half: Floats | None) -> Instant:
         epoch = int(seen.epochs[k])
         try:
-            answer = _answer(self._question(seen, k), seen.states[k], half)
+            question = self._question(seen, k)
+            answer = _answer(question, seen.states[k], half)
         except InvalidInput as error:
             return Instant(epoch, Verdict.UNDECIDED.value, math.nan, error.detail)
-        return Instant(epoch, answer.verdict.value, _bound(answer), answer.reason)
+        off = model_error(question, seen.states[k])
+        return Instant(epoch, answer.verdict.value, _bound(answer), answer.reason, off)
 
     def _question(self, seen: Relative, k: int) -> SpaceQuestion:
         orbit = self.encounter.orbit(seen, k)

@@ -13,10 +13,12 @@ from safestart.attitude.spin import Spin
 from safestart.constraints.thrust_limit import ThrustLimit
 from safestart.errors import InvalidInput
 from safestart.exact.space.decide import decide_in_space
+from safestart.exact.space.model_error import model_error
 from safestart.exact.space.question import SpaceQuestion, five_faces
 from safestart.interchange.ephemeris import Ephemeris
 from safestart.model.orbit import KeplerOrbit
 from safestart.model.scenario import CorridorShape
+from safestart.processes.commit_timeline.run import _reason
 from safestart.processes.execute import Execution, execute
 from safestart.processes.side_by_side import execute_side_by_side
 from safestart.proofs.checker import check
@@ -45,10 +47,10 @@ def proofs(result: Execution) -> dict[str, Any]:
     return json.loads(kept.data)
 
 
-def verdict(seconds: float) -> str:
-    """By hand: the state that the chaser was given, the spin that the target was given, one circular orbit."""
+def question(seconds: float) -> SpaceQuestion:
+    """By hand: the spin that the target was given, one circular orbit."""
     orbit = KeplerOrbit(math.sqrt(3.986004418e14 / 7.0e6**3))
-    question = SpaceQuestion(
+    return SpaceQuestion(
         orbit,
         Spin(RATE, phase=RATE * seconds),
         five_faces(CorridorShape()),
@@ -56,7 +58,11 @@ def verdict(seconds: float) -> str:
         2.0,
         15,
     )
-    return decide_in_space(question, states(np.array([seconds]))[0], verdict_only=True).verdict.value
+
+
+def verdict(seconds: float) -> str:
+    """By hand: from the state that the chaser was given."""
+    return decide_in_space(question(seconds), states(np.array([seconds]))[0], verdict_only=True).verdict.value
 
 
 @pytest.fixture(scope="module")
@@ -96,6 +102,18 @@ def test_every_end_has_a_proof_that_verifies(by_spin: Execution) -> None:
             start = document["start"]
             state = [*start["position_m"], *start["velocity_m_s"]]
             np.testing.assert_allclose(state, states(np.array([one[f"{end}_s"]]))[0], atol=2e-5)
+
+
+def test_the_error_of_the_linear_model_is_said_where_it_exceeds_the_margin(by_spin: Execution) -> None:
+    for one in intervals(by_spin):
+        if one["verdict"] == "GO":
+            error = model_error(question(one["begin_s"]), states(np.array([one["begin_s"]]))[0])
+            assert 0.0 < error <= one["model_error_m"] * (1.0 + 1e-6) < 0.1
+        if abs(one["margin_m"]) < 1e-9:
+            assert "linear model itself may be off" in one["reason"]
+    run = {"verdict": "GO", "margin_m": 0.01, "model_error_m": 3.0, "within_error": True, "why": ""}
+    assert "up to 3 m" in _reason(run, 30.0, None)
+    assert "linear model" not in _reason(run | {"within_error": False}, 30.0, None)
 
 
 @pytest.mark.parametrize("reference", ["GCRF", "EME2000", "RTN"])
@@ -213,7 +231,7 @@ def test_attitudes_that_are_refused() -> None:
             "commit-timeline",
             asked(chaser=text(both[0]), target=text(both[1]), attitude=text(good), spin=None),
         )
-    with pytest.raises(InvalidInput, match="both courses in ITRF"):
+    with pytest.raises(InvalidInput, match="both courses in one realisation of ITRF"):
         execute("commit-timeline", asked(chaser=text(both[0])))
 
 

@@ -77,6 +77,8 @@ def _run(corridor: str, run: Sequence[Instant], proofs: Sequence[str | None]) ->
         "end": run[-1].epoch,
         "instants": len(run),
         "margin_m": finite(min(bounds, key=abs)) if bounds else None,
+        "model_error_m": max(one.error for one in run),
+        "within_error": any(abs(one.margin) < one.error for one in run),
         "begin_proof": proofs[0],
         "end_proof": proofs[1],
     }
@@ -98,6 +100,8 @@ def merge(inputs: CommitTimelineInputs, parts: Sequence[Part], context: Context)
                 last |= {
                     "instants": last["instants"] + run["instants"],
                     "margin_m": min(bounds, key=abs, default=None),
+                    "model_error_m": max(last["model_error_m"], run["model_error_m"]),
+                    "within_error": last["within_error"] or run["within_error"],
                 }
             else:
                 runs.append(dict(run))
@@ -145,6 +149,7 @@ def _interval(inputs: CommitTimelineInputs, run: dict[str, Any], begin: int) -> 
         "end_s": (run["end"] - begin) / SECOND,
         "instants": run["instants"],
         "margin_m": run["margin_m"],
+        "model_error_m": run["model_error_m"],
         "reason": _reason(run, inputs.horizon_s, inputs.confidence),
         "begin_proof": run["begin_proof"],
         "end_proof": run["end_proof"],
@@ -154,13 +159,18 @@ def _interval(inputs: CommitTimelineInputs, run: dict[str, Any], begin: int) -> 
 def _reason(run: dict[str, Any], horizon: float, confidence: float | None) -> str:
     if run["verdict"] == "UNDECIDED":
         return f"undecided: {run['why']}"
-    margin = run["margin_m"]
+    margin, error = run["margin_m"], ""
+    if run["within_error"]:
+        error = f"; at some instants the linear model itself may be off by more, up to {run['model_error_m']:.2g} m"
     if run["verdict"] == "GO":
         whom = "" if confidence is None else f" from the whole box that holds {confidence:.9g} of the starts"
-        return f"from every instant asked a thrust history stays for {horizon:g} s{whom}, with {margin:.3g} m to spare"
+        return (
+            f"from every instant asked a thrust history stays for {horizon:g} s{whom}, "
+            f"with {margin:.3g} m to spare{error}"
+        )
     return (
         f"from no instant asked a thrust history stays for {horizon:g} s: each is at some time at least "
-        f"{-margin:.3g} m outside a face"
+        f"{-margin:.3g} m outside a face{error}"
     )
 
 

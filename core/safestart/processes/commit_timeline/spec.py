@@ -106,6 +106,10 @@ class Interval(WireModel):
     margin_m: float | None = Field(
         description="The proved bound nearest to 0 in the interval, m: GO from below, NO_GO from above."
     )
+    model_error_m: float = Field(
+        description="About how far a flight of the linear model may be from the true one, m; the largest of the "
+        "interval. The reason says where it exceeds a margin."
+    )
     reason: str
     begin_proof: str | None = Field(description="SHA-256 of the proof at the first instant, in proofs.json.")
     end_proof: str | None = Field(description="The same at the last instant.")
@@ -175,6 +179,7 @@ SPEC = ProcessSpec(
                 Column("from [s]", "begin_s"),
                 Column("to [s]", "end_s"),
                 Column("instants", "instants"),
+                Column("error of the model [m]", "model_error_m"),
                 Column("proof at the first", "begin_proof"),
                 Column("at the last", "end_proof"),
             ),
