@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 from safestart.errors import invalid
-from safestart.interchange import tables
 from safestart.interchange.attitude_course import AttitudeCourse
 from safestart.interchange.ccsds import acm, aem, cdm, ocm, oem, parameters
 from safestart.interchange.ccsds.cdm import Encounter
@@ -14,6 +13,7 @@ from safestart.interchange.ccsds.parameters import Manoeuvre
 from safestart.interchange.covariance import Sense
 from safestart.interchange.ephemeris import Ephemeris
 from safestart.interchange.source import bytes_of
+from safestart.interchange.tables import columns as tables
 
 
 def ephemeris_of(path: Path | str, sense: Sense | None = None) -> Ephemeris:

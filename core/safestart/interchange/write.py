@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from safestart.errors import invalid
-from safestart.interchange import tables
 from safestart.interchange.attitude_course import AttitudeCourse
 from safestart.interchange.ccsds import aem, kvn, oem, xml_out
 from safestart.interchange.ccsds.tokens import Token
 from safestart.interchange.ephemeris import Ephemeris
-from safestart.interchange.matlab import matlab_of
-from safestart.interchange.parquet import parquet_of
+from safestart.interchange.tables import columns as tables
+from safestart.interchange.tables.matlab_write import matlab_of
+from safestart.interchange.tables.parquet import parquet_of
 
 FORMS = ("kvn", "xml", "csv", "parquet", "mat")
 

@@ -14,8 +14,8 @@ import pytest
 from scipy.io import savemat
 
 from safestart.errors import InvalidInput
-from safestart.interchange.matlab_read import arrays_in
 from safestart.interchange.read import ephemeris_from
+from safestart.interchange.tables.matlab_read import arrays_in
 from safestart.interchange.write import course_bytes
 from tests.unit.interchange.sample import CREATED, course
 

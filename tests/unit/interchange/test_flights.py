@@ -12,10 +12,10 @@ from safestart.errors import InvalidInput
 from safestart.interchange.ccsds import parameters
 from safestart.interchange.ccsds.message import message_of
 from safestart.interchange.flights import BEGIN, courses_of
-from safestart.interchange.matlab_read import arrays_in
 from safestart.interchange.read import attitude_from, ephemeris_from
 from safestart.interchange.relative import relative_states
 from safestart.interchange.sampling import quaternions_at
+from safestart.interchange.tables.matlab_read import arrays_in
 from safestart.processes.execute import Execution, execute
 from safestart_service.documents.formats.registry import BY_NAME
 from safestart_service.errors import NotAcceptable

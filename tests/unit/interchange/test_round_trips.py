@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from ccsds_ndm.ndm_io import NdmIo
 
-from safestart.interchange import tables
 from safestart.interchange.attitude_course import AttitudeCourse
 from safestart.interchange.ccsds import cdm, ocm, oem, parameters
 from safestart.interchange.ccsds.message import message_of
 from safestart.interchange.ephemeris import Ephemeris
 from safestart.interchange.epochs import SECOND
 from safestart.interchange.read import attitude_from, ephemeris_from
+from safestart.interchange.tables import columns as tables
 from safestart.interchange.write import course_bytes, message_bytes
 from tests.unit.interchange.sample import CREATED, course, turning
 

@@ -111,8 +111,8 @@ def _workers(inputs: dict[str, Any]) -> int | None:
 
 def _text(option: str, path: Path) -> str:
     """The text of a message, or of the OEM or AEM that a table comes to."""
-    from safestart.interchange import tables
     from safestart.interchange.source import bytes_of, text_of
+    from safestart.interchange.tables import columns as tables
     from safestart.interchange.write import course_bytes
 
     data = bytes_of(path)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from safestart.interchange.epochs import SECOND, Nanoseconds, shortened, text_of
-from safestart.interchange.tables import csv_of
+from safestart.interchange.tables.columns import csv_of
 from safestart.processes.base import Artifact, ProcessOutput
 from safestart.processes.commit_timeline.courses import encounter_of, judges_of
 from safestart.processes.commit_timeline.plots import picture

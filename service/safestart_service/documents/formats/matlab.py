@@ -12,7 +12,7 @@ LONGEST_NAME = 63
 
 
 def _encode(record: Record, _: str | None) -> bytes:
-    from safestart.interchange.matlab import matlab_of
+    from safestart.interchange.tables.matlab_write import matlab_of
 
     found = {name.replace(".", "__")[:LONGEST_NAME]: array for name, array in arrays_of(record).items()}
     return matlab_of(found)

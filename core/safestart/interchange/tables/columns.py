@@ -20,10 +20,10 @@ from safestart.interchange.ccsds.tokens import number
 from safestart.interchange.ephemeris import MOST_STATES, Ephemeris
 from safestart.interchange.epochs import epochs_of, shortened, text_of
 from safestart.interchange.foreign import refuse_foreign
-from safestart.interchange.matlab_read import arrays_in
-from safestart.interchange.parquet import columns_in
 from safestart.interchange.source import refuse_many_lines
 from safestart.interchange.source import text_of as decoded
+from safestart.interchange.tables.matlab_read import arrays_in
+from safestart.interchange.tables.parquet import columns_in
 from safestart.model.scenario import Floats
 
 STATE = ("x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s")

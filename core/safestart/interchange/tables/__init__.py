@@ -1,0 +1,1 @@
+"""Tables in and out: states and attitudes as CSV, Parquet, MATLAB's .mat."""
