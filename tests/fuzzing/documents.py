@@ -23,16 +23,25 @@ from safestart.families.members import Family
 from safestart.families.prove import proof_for_all
 from safestart.model.scenario import Chaser, CorridorShape, Scenario, Target
 from safestart.proofs.checker import check
+from safestart.proofs.single import Verified
 from safestart.proofs.statement import digest_of
 from safestart.proofs.strict import ProofRejected
+from safestart.proofs.wording import question_shown
 from safestart.runtime.plain_json import loads
+from tests.fuzzing.abort.decided import truth_of_drifts
+from tests.fuzzing.abort.made import MADE as OF_BURNS
+from tests.fuzzing.abort.printed import printed as printed_drifts
 from tests.fuzzing.arrived import truth_after
 from tests.fuzzing.decided import truth
 from tests.fuzzing.disturbed import truth_against
 from tests.fuzzing.mutants import known_fields, mutants, paths
 from tests.fuzzing.printed import printed
+from tests.fuzzing.space.decided import truth_in_space
+from tests.fuzzing.space.made import MADE as IN_SPACE
+from tests.fuzzing.space.printed import printed as printed_in_space
 
 Document = dict[str, Any]
+Claim = tuple[str, tuple[str, ...]]
 SHAPE = CorridorShape(1.2, 0.7, 3.0, 2.0, 0.75)
 GOAL = Goal(0.5, 0.05, (0.0, 1.5))
 
@@ -96,6 +105,8 @@ MAKERS: dict[str, Callable[[], Document]] = {
         Question(_scenario(0.05, 0.1), 0.5, 2, 3), Disturbance(0.01), 1.0, 6.0, 0.5, 0.1, -0.2, 0.05
     ),
     "family-no-go": lambda: _all((7.0, 6.0, 0.5, 0.0), 0.1),
+    **IN_SPACE,
+    **OF_BURNS,
 }
 KINDS = tuple(MAKERS)
 
@@ -104,7 +115,8 @@ KINDS = tuple(MAKERS)
 def original(kind: str) -> str:
     """The document as text, small enough for a mutant to be checked in milliseconds."""
     made = MAKERS[kind]()
-    assert made["verdict"] == ("NO_GO" if "no-go" in kind else "GO"), kind
+    wanted = "PROVED" if kind in OF_BURNS else "NO_GO" if "no-go" in kind else "GO"
+    assert made["verdict"] == wanted, kind
     return json.dumps(made)
 
 
@@ -125,9 +137,10 @@ def run(kind: str, number: int, seed: int) -> Run:
     fields = known_fields(*(json.loads(original(other)) for other in KINDS))
     first = check(document)
     known = {(first.verdict, first.statement): first.margin_m}
+    told = {(first.verdict, first.statement): _question(document)}
     made = _sealed(mutants(document, fields, rng, number), rng)
     seen: dict[str, str] = {}
-    return tally((done, mutant, _once(mutant, seen, known, rng)) for done, mutant in made)
+    return tally((done, mutant, _once(mutant, seen, known, told, rng)) for done, mutant in made)
 
 
 def tally(outcomes: Iterable[tuple[str, Any, str]]) -> Run:
@@ -162,7 +175,7 @@ def _sealed(made: Iterator[tuple[str, Any]], rng: Random) -> Iterator[tuple[str,
 
 
 def _once(
-    mutant: Any, seen: dict[str, str], known: dict[tuple[str, tuple[str, ...]], float], rng: Random
+    mutant: Any, seen: dict[str, str], known: dict[Claim, float], told: dict[Claim, str], rng: Random
 ) -> str:
     """The outcome, looked up where the same document was made before: many changes change nothing."""
     try:
@@ -170,14 +183,54 @@ def _once(
     except (TypeError, ValueError):
         return "no JSON"
     if text not in seen:
-        outcome = _outcome(mutant, known, rng)
+        outcome = _outcome(mutant, known, told, rng)
         if not outcome.startswith("accepted"):
             return outcome
         seen[text] = outcome
     return seen[text]
 
 
-def _outcome(mutant: Any, known: dict[tuple[str, tuple[str, ...]], float], rng: Random) -> str:
+def decided(found: Verified, document: Document, rng: Random) -> str:
+    """Whether what the checker says of a document is true, by solvers of another kind."""
+    if document["schema"] == "safestart-proof/2":
+        return truth_in_space(printed_in_space(found.verdict, found.margin_m, found.statement), document, rng)
+    if found.verdict == "PROVED":
+        said = printed_drifts(found.statement)
+        return "false" if said.least != found.margin_m else truth_of_drifts(said, rng)
+    claim = printed(found.verdict, found.margin_m, found.statement)
+    answer = truth_against(claim, document, rng) if claim.who == "against" else truth(claim, rng)
+    if claim.stop is not None and answer != "false":
+        answer = "false" if truth_after(claim, document) == "false" else answer
+    return answer
+
+
+def _question(document: Document) -> str:
+    """Question and start as they are shown, numbers that are equal alike."""
+    shown = question_shown(document)
+    table = shown["question"].get("attitude", {}).get("times_s")
+    if table is not None:
+        # Entries beyond the horizon say nothing.
+        horizon = shown["question"]["dt_s"] * shown["question"]["steps"]
+        first = max(k for k, t in enumerate(table) if t <= 0)
+        last = min(k for k, t in enumerate(table) if t >= horizon)
+        used = {
+            key: shown["question"]["attitude"][key][first : last + 1] for key in ("times_s", "attitude_wxyz")
+        }
+        attitude = shown["question"]["attitude"] | used
+        shown = shown | {"question": shown["question"] | {"attitude": attitude}}
+    return json.dumps(_floats(shown), sort_keys=True)
+
+
+def _floats(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _floats(inside) for key, inside in value.items()}
+    if isinstance(value, list):
+        return [_floats(inside) for inside in value]
+    whole = isinstance(value, int | float) and not isinstance(value, bool)
+    return float(value) + 0.0 if whole else value
+
+
+def _outcome(mutant: Any, known: dict[Claim, float], told: dict[Claim, str], rng: Random) -> str:
     try:
         # As a file would give it, where it can be one.
         mutant = loads(json.dumps(mutant))
@@ -190,16 +243,17 @@ def _outcome(mutant: Any, known: dict[tuple[str, tuple[str, ...]], float], rng: 
     if not names(mutant) <= _known_names():
         return "accepted: unread"
     key = found.verdict, found.statement
+    if key in told and told[key] != _question(mutant):
+        # Two questions that read alike: what tells them apart is not printed.
+        return "accepted: unread"
+    told[key] = _question(mutant)
     if key in known:
-        implied = found.margin_m <= known[key] if found.verdict == "GO" else found.margin_m >= known[key]
+        implied = found.margin_m >= known[key] if found.verdict == "NO_GO" else found.margin_m <= known[key]
         if implied:
             return (
                 "accepted: the same statement" if found.margin_m == known[key] else "accepted: a weaker claim"
             )
-    claim = printed(found.verdict, found.margin_m, found.statement)
-    answer = truth_against(claim, mutant, rng) if claim.who == "against" else truth(claim, rng)
-    if claim.stop is not None and answer != "false":
-        answer = "false" if truth_after(claim, mutant) == "false" else answer
+    answer = decided(found, mutant, rng)
     if answer == "true" and key not in known:
         known[key] = found.margin_m
     return f"accepted: {answer}"

@@ -46,13 +46,19 @@ _LINES = (
     rf"start, velocity in LVLH: (?P<velocity>{_VECTOR})(?: \+- (?P<fast>{_VECTOR}))? m/s",
 )
 _WHO = {
-    "a thrust history keeps": ("GO", "one"),
-    "no thrust history keeps more than": ("NO_GO", "one"),
-    "one thrust history keeps the margin for all members of these sets": ("GO", "common"),
-    "each corner of the start box has a thrust history that keeps the margin for all values of the intervals; a start "
-    "between the corners has their mixture": ("GO", "per_corner"),
+    "a thrust history, held over the steps, keeps": ("GO", "one"),
+    "no thrust history that is held over the steps keeps more than": ("NO_GO", "one"),
+    "one thrust history, held over the steps, keeps the margin for all members of these sets": (
+        "GO",
+        "common",
+    ),
+    "each corner of the start box has a thrust history, held over the steps, that keeps the margin for all values of "
+    "the intervals; a start between the corners has their mixture": ("GO", "per_corner"),
     "a plan with feedback keeps the margin against every disturbance within these bounds": ("GO", "against"),
-    "no member of these sets has a thrust history that keeps more than the margin": ("NO_GO", "any"),
+    "no member of these sets has a thrust history, held over the steps, that keeps more than the margin": (
+        "NO_GO",
+        "any",
+    ),
 }
 _FACES = "the distance to the nearest face"
 

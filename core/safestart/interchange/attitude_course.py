@@ -30,6 +30,7 @@ class AttitudeCourse:
     (:mod:`safestart.attitude.quaternion`). Raises ``InvalidInput`` for epochs that do not rise and quaternions whose
     length is more than 1e-3 from 1 (wrong order, wrong columns). ``pieces`` are the indices at which a new segment
     begins, 0 first; ``useable`` has the first and last useable epoch of each segment, or None, or is empty.
+    ``left_out`` names what the file holds besides.
     """
 
     name: str
@@ -41,6 +42,7 @@ class AttitudeCourse:
     quaternions: Floats
     pieces: tuple[int, ...] = (0,)
     useable: tuple[Window | None, ...] = ()
+    left_out: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "reference", reference_of(self.reference))

@@ -25,7 +25,8 @@ class Ephemeris:
     ``time_system`` is that of the file's epochs; ``covariances`` have their own epochs. ``pieces`` (S,) are
     the indices at which a new segment begins, 0 first: nothing is interpolated from one to the next. Where one begins
     at the epoch at which the last ends (a burn), both states are there. ``useable`` has the first and last useable
-    epoch of each segment, or None, or is empty: states outside only help to interpolate. Raises ``InvalidInput`` for
+    epoch of each segment, or None, or is empty: states outside only help to interpolate. ``left_out``
+    names what the file holds besides. Raises ``InvalidInput`` for
     epochs that do not rise, non-finite states, and states of no orbit of the Earth (wrong units).
     """
 
@@ -39,6 +40,7 @@ class Ephemeris:
     pieces: tuple[int, ...] = (0,)
     center: str = field(default="EARTH")
     useable: tuple[Window | None, ...] = ()
+    left_out: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "frame", frame_of(self.frame))

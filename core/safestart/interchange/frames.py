@@ -9,6 +9,8 @@ against inertial axes beside them is refused (:mod:`safestart.interchange.relati
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
 from safestart.errors import Unavailable, invalid
@@ -34,13 +36,33 @@ _TT_LESS_TAI = 32.184
 
 
 def frame_of(name: str) -> str:
-    """The frame of this name, in any spelling; raises ``InvalidInput`` for an unknown one."""
+    """The frame of this name, in any spelling; ITRF keeps its realisation (ITRF97, ITRF2014).
+
+    Raises ``InvalidInput`` for an unknown one.
+    """
     plain = name.upper().replace("_", "").replace("-", "").replace(" ", "")
     if plain in _SAME:
         return _SAME[plain]
-    if plain.startswith("ITRF") and (plain == "ITRF" or plain[4:].isdigit()):
-        return "ITRF"
+    found = re.fullmatch(r"ITRF(?:(?:19)?(8[89]|9\d)|(?:20)?([0-2]\d))?", plain, re.ASCII)
+    if found is not None:
+        return f"ITRF{found[1]}" if found[1] else f"ITRF20{found[2]}" if found[2] else "ITRF"
     raise invalid("REF_FRAME", f"one of {', '.join(INERTIAL)}, ITRF", name)
+
+
+def turns_with_the_earth(frame: str) -> bool:
+    """Whether it is a realisation of ITRF."""
+    return frame.startswith("ITRF")
+
+
+def require_comparable(chaser: str, target: str) -> None:
+    """Raise ``InvalidInput`` for frames whose states have no relative state: ITRF beside another, or two realisations.
+
+    The Earth's turn is not known well enough for the first; realisations differ by centimetres.
+    """
+    if chaser != target and (turns_with_the_earth(chaser) or turns_with_the_earth(target)):
+        raise invalid(
+            "REF_FRAME", "both courses in one realisation of ITRF, or neither in any", f"{chaser}, {target}"
+        )
 
 
 def to_gcrf(frame: str, epochs: Nanoseconds, states: Floats) -> Floats:
@@ -50,7 +72,7 @@ def to_gcrf(frame: str, epochs: Nanoseconds, states: Floats) -> Floats:
         return states
     turn = rotation_to_gcrf(frame, epochs)
     position, velocity = states[:, :3], states[:, 3:]
-    if frame == "ITRF":
+    if turns_with_the_earth(frame):
         velocity = velocity + np.cross([0.0, 0.0, EARTH_TURN], position)
     turned = [np.einsum("kij,kj->ki", turn, part) for part in (position, velocity)]
     return np.concatenate(turned, axis=1)

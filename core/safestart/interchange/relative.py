@@ -10,11 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from safestart.errors import invalid
 from safestart.interchange.covariance import Covariance, Sense, into_axes, other_sense
 from safestart.interchange.ephemeris import Ephemeris
 from safestart.interchange.epochs import Nanoseconds
-from safestart.interchange.frames import rotation_to_gcrf
+from safestart.interchange.frames import require_comparable, rotation_to_gcrf
 from safestart.interchange.sampling import states_at
 from safestart.model.orbit import MU
 from safestart.model.scenario import Bools, Floats
@@ -65,11 +64,9 @@ class Relative:
 def relative_states(chaser: Ephemeris, target: Ephemeris, epochs: Nanoseconds) -> Relative:
     """The chaser in the target's LVLH at TAI ``epochs`` (K,); the frames of the two files may differ.
 
-    Raises ``InvalidInput`` if only one of the two is in ITRF: the Earth's turn is then not known well enough
-    (:mod:`safestart.interchange.frames`).
+    Raises ``InvalidInput`` as :func:`safestart.interchange.frames.require_comparable` does.
     """
-    if (chaser.frame == "ITRF") != (target.frame == "ITRF"):
-        raise invalid("REF_FRAME", "both courses in ITRF, or neither", f"{chaser.frame} and {target.frame}")
+    require_comparable(chaser.frame, target.frame)
     from_chaser, of_chaser = states_at(chaser, epochs)
     from_target, of_target = states_at(target, epochs)
     known = of_chaser & of_target

@@ -38,10 +38,12 @@ def question_document(question: Question) -> dict[str, Any]:
     """The question in the document's form."""
     plan, errors, failures, wide = question.plan, question.errors, question.failures, wider(question)
     columns = [list(column) for column in errors.ellipsoid]
+    # About the Earth the states before the burns are given, and the plan's own start is not asked about.
+    start = plan.start if question.earth is None else question.earth.before[0]
     return {
         **_model(question),
         "mean_motion_rad_s": plan.mean_motion,
-        "start": {"position_m": list(plan.start[:3]), "velocity_m_s": list(plan.start[3:])},
+        "start": {"position_m": list(start[:3]), "velocity_m_s": list(start[3:])},
         "burns": [
             {
                 "time_s": burn.time,

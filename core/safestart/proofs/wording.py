@@ -16,19 +16,25 @@ from safestart.proofs.disturbed_statement import StatedDisturbed
 from safestart.proofs.family_statement import StatedForAll
 from safestart.proofs.statement import Stated
 
-_ONE_FOR_ALL = "one thrust history keeps the margin for all members of these sets"
+_ONE_FOR_ALL = "one thrust history, held over the steps, keeps the margin for all members of these sets"
 _PER_CORNER = (
-    "each corner of the start box has a thrust history that keeps the margin for all values of the intervals; a start "
-    "between the corners has their mixture"
+    "each corner of the start box has a thrust history, held over the steps, that keeps the margin for all values of "
+    "the intervals; a start between the corners has their mixture"
 )
-_NONE = "no member of these sets has a thrust history that keeps more than the margin"
+_NONE = "no member of these sets has a thrust history, held over the steps, that keeps more than the margin"
+
+
+def found(stated: Any) -> str:
+    """Who keeps the margin: a NO_GO says nothing about thrust that changes within a step."""
+    if stated.verdict == "GO":
+        return "a thrust history, held over the steps, keeps"
+    return "no thrust history that is held over the steps keeps more than"
 
 
 def lines(stated: Stated) -> tuple[str, ...]:
     """The statement about one start, one line per part."""
-    found = "a thrust history keeps" if stated.verdict == "GO" else "no thrust history keeps more than"
     return (
-        f"{found} the margin, {_margin(stated)}",
+        f"{found(stated)} the margin, {_margin(stated)}",
         *_asked(stated),
         *_arrival(stated),
         f"tumble rate about the orbit normal, from the axes of LVLH on: {_rate(stated.w, stated.w)}",
@@ -51,9 +57,9 @@ def _arrival(stated: Stated) -> list[str]:
 def lines_for_all(stated: StatedForAll) -> tuple[str, ...]:
     """The statement about all members of a family."""
     middle = stated.middle
-    found = {"common": _ONE_FOR_ALL, "per_corner": _PER_CORNER}.get(stated.witness, _NONE)
+    who = {"common": _ONE_FOR_ALL, "per_corner": _PER_CORNER}.get(stated.witness, _NONE)
     return (
-        f"{found}; the margin is {_margin(middle)}",
+        f"{who}; the margin is {_margin(middle)}",
         *_asked(middle),
         f"tumble rate about the orbit normal, from the axes of LVLH on: {_rate(stated.rates[0], stated.rates[-1])}",
         f"mean motion: {_value(stated.motions[0], stated.motions[-1])} rad/s",
@@ -96,10 +102,13 @@ def lines_disturbed(stated: StatedDisturbed) -> tuple[str, ...]:
 
 
 def question_shown(document: Mapping[str, Any]) -> dict[str, Any]:
-    """Question, start and bounds of a checked document, without the parts that a planar question does not use."""
+    """Question, start and bounds of a checked document, without the parts that its kind does not use."""
     question = document["question"]
     if "corridor" not in question:
-        return {key: document[key] for key in ("question", "start") if key in document}
+        # About the true Earth the orbit is the target's own.
+        own = question.get("model") == "earth"
+        read = {key: value for key, value in question.items() if not (own and key == "mean_motion_rad_s")}
+        return {"question": read} | ({"start": document["start"]} if "start" in document else {})
     unused = ("c_z", "z0_m") if question["dimensions"] == 2 else ()
     corridor = {key: value for key, value in question["corridor"].items() if key not in unused}
     bounds = {key: document[key] for key in ("disturbance", "feedback", "tube") if key in document}

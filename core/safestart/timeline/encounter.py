@@ -17,7 +17,12 @@ from safestart.errors import invalid
 from safestart.interchange.attitude_course import AttitudeCourse, turns_of
 from safestart.interchange.ephemeris import Ephemeris
 from safestart.interchange.epochs import SECOND, Nanoseconds, seconds_since, text_of
-from safestart.interchange.frames import rotation_to_gcrf, to_gcrf
+from safestart.interchange.frames import (
+    require_comparable,
+    rotation_to_gcrf,
+    to_gcrf,
+    turns_with_the_earth,
+)
 from safestart.interchange.relative import Relative, relative_states
 from safestart.interchange.sampling import quaternions_at
 from safestart.model.orbit import MU, KeplerOrbit
@@ -50,9 +55,10 @@ class Encounter:
     boxes: StartBoxes | None = field(init=False, default=None)
 
     def __post_init__(self) -> None:
+        require_comparable(self.chaser.frame, self.target.frame)
         attitude = self.attitude
         if isinstance(attitude, AttitudeCourse):
-            if attitude.reference != "RTN" and "ITRF" in (self.chaser.frame, self.target.frame):
+            if attitude.reference != "RTN" and turns_with_the_earth(self.target.frame):
                 raise invalid("REF_FRAME", "courses in an inertial frame beside an inertial attitude", "ITRF")
             turns, seconds = turns_of(attitude.quaternions), np.diff(attitude.epochs)
             # A step as long as others must not turn too far; in a hole, or from segment to segment, nothing is known.
@@ -63,10 +69,6 @@ class Encounter:
                 k = int(np.argmax(turns))
                 at = text_of(attitude.epochs[k : k + 1], attitude.time_system)[0]
                 raise invalid("attitude", "at most 90 degrees between two entries", f"more after {at}")
-        if (self.chaser.frame == "ITRF") != (self.target.frame == "ITRF"):
-            raise invalid(
-                "REF_FRAME", "both courses in ITRF, or neither", f"{self.chaser.frame}, {self.target.frame}"
-            )
         covariances = self.chaser.covariances, self.target.covariances
         for name in ("chaser", "target"):
             course: Ephemeris = getattr(self, name)

@@ -1,6 +1,7 @@
 """Documents of the missed-burn proof: accepted as made, refused when anything is bent, and every term of it counts."""
 
 import json
+import math
 
 import pytest
 from typer.testing import CliRunner
@@ -39,7 +40,21 @@ def test_a_document_is_checked_by_its_own_arithmetic(document, proof: Proof) -> 
     assert verified.verdict == "PROVED"
     assert verified.margin_m == proof.least
     assert verified.pieces == sum(len(finding.cells) for finding in proof.findings)
-    assert any("misdirected by up to 5 deg" in line for line in verified.statement)
+    assert any(
+        f"misdirected by up to {math.radians(5.0)!r} rad (5 deg)" in line for line in verified.statement
+    )
+
+
+def test_no_number_of_the_statement_is_rounded(document) -> None:
+    """A horizon of 17 199.96 s once read as 17 200 s, which nobody had proved."""
+    document["question"]["horizon_s"] -= 0.04
+    said = "\n".join(check(_sealed(document)).statement)
+    for value in (
+        document["question"]["horizon_s"],
+        *document["question"]["failures"].values(),
+        *(document["question"]["errors"][key] for key in ("thrust_share", "thrust_rad")),
+    ):
+        assert value is True or repr(value) in said
 
 
 def test_errors_that_add_up_are_checked_too() -> None:

@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from safestart.missed_burn.earth import Earth, drift_after, moved, target_before
 from safestart.missed_burn.earth_bound import strays_along
 from safestart.missed_burn.plan import Errors, Failures, Plan, Question
 from safestart.missed_burn.prove import Verdict, greatest_scale, prove
+from safestart.missed_burn.question_document import question_document
 from safestart.proofs.abort import earth as checked
 from safestart.proofs.abort.course import Course
 from safestart.proofs.checker import check
@@ -228,3 +230,18 @@ def test_refusals() -> None:
     errors = Errors((0.1,) * 3, (1e-4,) * 3, at_each_burn=False)
     with pytest.raises(InvalidInput, match="at_each_burn"):
         Question(plan, 50.0, ORBIT, errors, earth=Earth.of(plan, A))
+
+
+def test_the_start_of_a_document_is_the_state_before_the_first_burn() -> None:
+    """The statement prints the states before the burns; another start would be believed though nothing reads it."""
+    asked = _asked(40.0, 0.01, horizon=200.0, failures=Failures())
+    states = asked.plan.before()
+    states[0, 1] += 3.0
+    given = Earth.of(asked.plan, A, 0.01, 1.0, 0.4, 0.3, before=states)
+    # States that are given count, whatever the plan begins with.
+    assert question_document(replace(asked, earth=given))["start"]["position_m"] == states[0, :3].tolist()
+    made = json.loads(json.dumps(document_of(prove(asked))))
+    made["question"]["start"]["position_m"][0] += 1.0
+    made["digest"] = digest_of({k: v for k, v in made.items() if k != "digest"})
+    with pytest.raises(ProofRejected, match="before the first burn"):
+        check(made)

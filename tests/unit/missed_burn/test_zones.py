@@ -160,3 +160,18 @@ def test_bad_zones_and_covariances_are_named() -> None:
         ellipsoid_of(bent.tolist(), 3.0)
     with pytest.raises(InvalidInput, match="6 rows"):
         ellipsoid_of([[1.0]] * 6, 3.0)
+
+
+@pytest.mark.parametrize(
+    "axes", [[[9.0, 0, 0], [0, 8.0, 0], [0, 0, 9.0]], [[9.0, 1, 0], [0, 9.0, 0], [0, 0, 9.0]]]
+)
+def test_what_a_document_calls_a_sphere_is_one(axes) -> None:
+    """Its print gives a radius: a body of other axes may not have that name."""
+    made = document_of(
+        prove(Question(plan_of(40.0, 2), 20.0, 500.0, zones=(Zone.sphere(9.0, (1.0, 2.0, 3.0)),)))
+    )
+    assert any("the sphere of 9.0 m about [1.0, 2.0, 3.0] m" in line for line in check(made).statement)
+    made["question"]["zones"][0]["axes_m"] = axes
+    made["digest"] = digest_of({k: v for k, v in made.items() if k != "digest"})
+    with pytest.raises(ProofRejected, match="sphere's radius"):
+        check(made)

@@ -13,6 +13,8 @@ from safestart.exact.decide import decide
 from safestart.exact.question import Goal, Question
 from safestart.model.scenario import Scenario
 from safestart.processes.execute import Execution, execute
+from safestart.processes.inclusion_chain.evidence import counter_example
+from safestart.processes.inclusion_chain.regions import Region
 from safestart.processes.inclusion_chain.spec import ALL_SETS
 from safestart.processes.registry import process
 from safestart.proofs.single import check
@@ -102,6 +104,7 @@ def test_every_non_zero_entry_has_its_counter_example_and_proofs_check(result: E
         assert not arrays[f"{outer}_mask"].ravel()[cell]
         assert example["evidence"]
         if outer in ("tube", "stay", "synchronize"):
+            assert "held over steps of 2 s" in example["evidence"]
             assert check(example["proof"]).verdict == "NO_GO"
             assert example["proof"]["start"]["position_m"] == start
             proved += 1
@@ -221,3 +224,18 @@ def test_with_the_sound_certificate_the_chain_holds_from_a_horizon_on(result: Ex
     assert all(example["inner"] != "certified" for example in found["counter_examples"])
     sooner = late | {"horizon_s": entry["horizon_s"] - 2.0, "sets": ["certified", "synchronize"]}
     assert execute(PROCESS, sooner).document["outputs"]["chain"][0]["cells"] > 0
+
+
+@pytest.mark.parametrize(
+    ("outer", "matched", "said"), [("hj_match", True, 1), ("hj_match", False, 0), ("hj_position", False, 1)]
+)
+def test_a_flight_that_may_end_fast_is_no_evidence_against_a_set_that_matches(
+    outer: str, matched: bool, said: int
+) -> None:
+    """An end at up to ``rest_speed_m_s`` reaches the target of hj_match only where that is at most ``match_m_s``."""
+    yes, no = np.ones((1, 1), dtype=bool), np.zeros((1, 1), dtype=bool)
+    inner = Region("synchronize", yes, no, np.full((1, 1), 0.1), 0.0)
+    other = Region(outer, no, yes, np.full((1, 1), -0.1), 0.0)
+    found = counter_example(inner, other, np.array([[[0.0, 2.0]]]), matched=matched)
+    assert found is not None
+    assert found["evidence"].count("so the level set is wrong here") == said

@@ -30,12 +30,14 @@ from safestart.proofs.space.orbit import Orbit
 from safestart.proofs.space.statement import read
 from safestart.proofs.strict import ProofRejected
 from safestart.runtime.precision import precise
+from tests.fuzzing.documents import original
 from tests.unit.proofs.forgery import (
     assert_all_is_read,
     assert_every_digit_counts,
     assert_refused,
     changed,
     refused,
+    sealed,
 )
 
 Document = dict[str, Any]
@@ -195,3 +197,20 @@ def test_verification_takes_seconds_at_most() -> None:
     begin = time.process_time()
     check(made)
     assert time.process_time() - begin < 8.0
+
+
+def test_a_table_of_attitudes_is_printed() -> None:
+    """Two tables once read alike: "by slerp between 3 quaternions" was all that the statement said of the turning."""
+    made = json.loads(original("space-table-go"))
+    said = check(made).statement
+    table = made["question"]["attitude"]
+    for time_s, q in zip(table["times_s"], table["attitude_wxyz"], strict=True):
+        assert f"attitude at {time_s!r} s: {q}" in said
+    table["attitude_wxyz"][1][3] += 0.01
+    made["margin_m"] -= 0.5
+    other = check(sealed(made)).statement
+    assert other != said
+    # An entry after the horizon says nothing.
+    table["times_s"].append(100.0)
+    table["attitude_wxyz"].append([1.0, 0.0, 0.0, 0.0])
+    assert check(sealed(made)).statement == other

@@ -60,6 +60,8 @@ def test_a_no_go_is_that_of_the_stated_member(seed: int) -> None:
     refuted = check(lost)
     assert refuted.verdict == "NO_GO"
     assert any("the member that is as stated" in line for line in refuted.statement)
+    for key in KEYS:
+        assert repr(lost["question"]["unknowns"][key]) in "\n".join(refuted.statement)
 
 
 @pytest.mark.parametrize("seed", [0, 1])

@@ -55,4 +55,6 @@ def register(app: typer.Typer) -> None:
         with target("to", to) as file:
             assert file is not None
             file.write(course_bytes(course, form, created))
+        if course.left_out:
+            err.print(f"left out: {', '.join(course.left_out)}", soft_wrap=True, markup=False)
         err.print(f"wrote {to}", soft_wrap=True, markup=False)

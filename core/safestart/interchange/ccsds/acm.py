@@ -34,6 +34,7 @@ def attitude_of(message: Message) -> AttitudeCourse:
     epochs: list[int] = []
     turns: list[list[float]] = []
     pieces: list[int] = []
+    left_out: list[str] = []
     for one in message.blocks():
         if one.name == "META":
             meta = one
@@ -50,7 +51,10 @@ def attitude_of(message: Message) -> AttitudeCourse:
             pieces.append(len(epochs))
             epochs += own_epochs
             turns += _turns(one, own_epochs)
-        elif one.name not in _OTHERS:
+            left_out += ["rates"] if one.rows and len(one.rows[0].value.split()) > 5 else []
+        elif one.name in _OTHERS:
+            left_out.append(f"block {one.name}")
+        else:
             raise refused(one.fields.line, f"a block of ACM: ATT, {', '.join(_OTHERS)}", one.name or "data")
     if meta is None or frames is None:
         raise invalid("file", "attitudes (ATT_START)", "none (truncated)")
@@ -71,6 +75,7 @@ def attitude_of(message: Message) -> AttitudeCourse:
         np.array(epochs, dtype=np.int64),
         np.array(turns),
         tuple(pieces),
+        left_out=tuple(dict.fromkeys(left_out)),
     )
 
 

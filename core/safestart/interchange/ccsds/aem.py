@@ -81,6 +81,7 @@ def attitude_of(message: Message) -> AttitudeCourse:
         np.array(turns),
         tuple(pieces),
         tuple(useable) if any(useable) else (),
+        ("rates",) if meta is not None and TYPES[meta.fields.get("ATTITUDE_TYPE").upper()] > 4 else (),
     )
 
 

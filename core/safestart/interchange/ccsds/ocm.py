@@ -35,6 +35,7 @@ def ephemeris_of(message: Message, sense: Sense | None = None) -> Ephemeris:
     states: list[list[float]] = []
     covariances: list[Covariance] = []
     useable: list[Window | None] = []
+    left_out: list[str] = []
     for one in message.blocks():
         if one.name == "META":
             meta = one
@@ -49,6 +50,7 @@ def ephemeris_of(message: Message, sense: Sense | None = None) -> Ephemeris:
             pieces.append(len(epochs))
             useable.append(_useable(meta, one))
             width = _one_of(one, "TRAJ_TYPE", _TRAJECTORIES)
+            left_out += ["accelerations"] if width == 9 else []
             _refuse_units(one, "TRAJ_UNITS", "km,km,km,km/s,km/s,km/s")
             if not one.rows:
                 raise refused(one.fields.line, "states in TRAJ", "none (truncated)")
@@ -59,6 +61,7 @@ def ephemeris_of(message: Message, sense: Sense | None = None) -> Ephemeris:
         elif one.name in ("COV", "MAN"):
             latest = max([latest, *times_of(meta, one.rows)])
             if one.name == "MAN":
+                left_out.append("manoeuvres")
                 continue
             _one_of(one, "COV_TYPE", {"CARTPV": 6})
             _one_of(one, "COV_ORDERING", {"LTM": 21})
@@ -68,6 +71,8 @@ def ephemeris_of(message: Message, sense: Sense | None = None) -> Ephemeris:
                 columns = iter(_columns(row, 21))
                 rows = [[next(columns) for _ in range(size)] for size in range(1, 7)]
                 covariances.append(Covariance(at, turned, triangle(rows, row.line)))
+        else:
+            left_out.append(f"block {one.name}")
     if meta is None or not epochs:
         raise invalid("file", "a trajectory (TRAJ_START)", "none (truncated)")
     name = meta.fields.get("OBJECT_NAME", "UNKNOWN")
@@ -86,6 +91,7 @@ def ephemeris_of(message: Message, sense: Sense | None = None) -> Ephemeris:
         tuple(pieces),
         center,
         tuple(useable) if any(useable) else (),
+        tuple(dict.fromkeys(left_out)),
     )
 
 

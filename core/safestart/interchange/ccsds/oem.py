@@ -34,6 +34,7 @@ def ephemeris_of(message: Message, sense: Sense | None = None) -> Ephemeris:
     states: list[list[float]] = []
     covariances: list[Covariance] = []
     useable: list[Window | None] = []
+    accelerations = False
     for one in message.blocks():
         if one.name == "META":
             meta, given = one, _same(one)
@@ -57,6 +58,7 @@ def ephemeris_of(message: Message, sense: Sense | None = None) -> Ephemeris:
                     raise refused(
                         row.line, "an epoch and 6 numbers, or 9 with acceleration", f"{len(values)} numbers"
                     )
+                accelerations = accelerations or len(values) == 9
                 texts.append(epoch)
                 states.append([number(text, row.line, "state", 3) for text in values[:6]])
             _within(meta, texts[pieces[-1] :], same["TIME_SYSTEM"])
@@ -75,6 +77,7 @@ def ephemeris_of(message: Message, sense: Sense | None = None) -> Ephemeris:
         tuple(pieces),
         same["CENTER_NAME"],
         tuple(useable) if any(useable) else (),
+        ("accelerations",) if accelerations else (),
     )
 
 

@@ -75,7 +75,11 @@ def orbit_of(message: Message, sense: Sense | None = None) -> OrbitParameters:
     named_as = first.get("OBJECT_NAME"), first.get("OBJECT_ID")
     center = first.get("CENTER_NAME")
     first.done(_PASSED_OVER)
-    state = Ephemeris(*named_as, frame, system, at, np.array([values]), covariances, (0,), center)
+    beside = [name for name in _PASSED_OVER if first.has(name)]
+    left_out = (*beside, *(("manoeuvres",) if burns else ()))
+    state = Ephemeris(
+        *named_as, frame, system, at, np.array([values]), covariances, (0,), center, left_out=left_out
+    )
     return OrbitParameters(state, tuple(_burn(one, system) for one in burns))
 
 

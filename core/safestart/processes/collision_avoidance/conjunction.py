@@ -11,7 +11,7 @@ from safestart.interchange.ccsds.cdm import Encounter, encounter_of
 from safestart.interchange.ccsds.message import message_of
 from safestart.interchange.ephemeris import Ephemeris
 from safestart.interchange.epochs import shortened, text_of
-from safestart.interchange.frames import to_gcrf
+from safestart.interchange.frames import to_gcrf, turns_with_the_earth
 from safestart.interchange.relative import Relative, covariance_in_lvlh, in_lvlh, lvlh_axes
 from safestart.model.orbit import MU
 from safestart.model.scenario import Floats
@@ -98,7 +98,7 @@ def _read(text: str) -> Encounter:
         raise invalid("file", "CDM", message.kind)
     # Only positions' variances are used, and those are the same in either sense.
     found = encounter_of(message, "inertial")
-    if found.first.frame == "ITRF":
+    if turns_with_the_earth(found.first.frame):
         raise invalid("REF_FRAME", "an inertial frame for states that are flown back", "ITRF")
     return found
 

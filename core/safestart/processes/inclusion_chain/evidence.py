@@ -15,26 +15,28 @@ from safestart.exact.question import Question
 from safestart.model.metrics import ratio
 from safestart.model.scenario import Floats
 from safestart.processes.inclusion_chain.regions import Region, state_at
-from safestart.processes.wire import finite
+from safestart.processes.wire import DT_S, finite
 
+_HELD = f"held over steps of {DT_S:g} s"
+"""What a refutation says nothing beyond: thrust that changes within a step may do better."""
 _IN = {
-    "tube": "a plan keeps {:.2f} m to every face of the tightened corridor",
+    "tube": f"a plan {_HELD} keeps {{:.2f}} m to every face of the tightened corridor",
     "analytical_tube": "meets the paper's conditions in the tightened scenario by {:.2f} m",
     "certified": "a known manoeuvre stays for ever with {:.2f} m to every face",
     "analytical": "meets the paper's conditions, which are not sound, by {:.2f} m",
-    "synchronize": "a thrust history reaches the hold point co-rotating with {:.2f} m to spare",
-    "stay": "a thrust history stays with {:.2f} m to every face",
+    "synchronize": f"a thrust history {_HELD} reaches the hold point co-rotating with {{:.2f}} m to spare",
+    "stay": f"a thrust history {_HELD} stays with {{:.2f}} m to every face",
     "hj_match": "value function {:.2f} m inside",
     "hj_position": "value function {:.2f} m inside",
     "exact_position": "thrust reaches the corridor at the horizon with {:.2f} m to spare",
 }
 _OUT = {
-    "tube": "no plan fits the tube: proved {:.2f} m short",
+    "tube": f"no plan {_HELD} fits the tube: proved {{:.2f}} m short",
     "analytical_tube": "misses the paper's conditions in the tightened scenario: {:.2f} m short",
     "certified": "not certified: {:.2f} m short, which proves nothing",
     "analytical": "misses the paper's conditions: {:.2f} m short, which proves nothing",
-    "synchronize": "no thrust history arrives co-rotating in time: proved {:.2f} m short",
-    "stay": "no thrust history stays: proved {:.2f} m outside a face",
+    "synchronize": f"no thrust {_HELD} arrives co-rotating in time: proved {{:.2f}} m short",
+    "stay": f"no thrust {_HELD} stays: proved {{:.2f}} m outside a face",
     "hj_match": "value function {:.2f} m outside, an error of unknown sign",
     "hj_position": "value function {:.2f} m outside, an error of unknown sign",
     "exact_position": "no thrust brings it to the corridor at the horizon: {:.2f} m short",
@@ -53,8 +55,11 @@ def fraction(inner: Region, outer: Region) -> float | None:
     return ratio(int((inner.inside & outer.outside).sum()), int(inner.inside.sum()))
 
 
-def counter_example(inner: Region, outer: Region, points: Floats) -> dict[str, Any] | None:
-    """The cell of the inner set farthest outside the outer one, both margins, a proof; None without such a cell."""
+def counter_example(inner: Region, outer: Region, points: Floats, *, matched: bool) -> dict[str, Any] | None:
+    """The cell of the inner set farthest outside the outer one, both margins, a proof; None without such a cell.
+
+    ``matched``: whether a flight of `synchronize` ends slowly enough for `hj_match`.
+    """
     cells = inner.inside & outer.outside
     if not cells.any():
         return None
@@ -65,7 +70,9 @@ def counter_example(inner: Region, outer: Region, points: Floats) -> dict[str, A
     sides = [_IN[inner.name].format(kept), _OUT[outer.name].format(-missed)]
     if not np.isfinite(missed):
         sides[1] = f"not in {outer.name}: {outer.message}"
-    if inner.name == "synchronize" and outer.name.startswith("hj_"):
+    if inner.name == "synchronize" and (
+        outer.name == "hj_position" or (outer.name == "hj_match" and matched)
+    ):
         sides.append("the flight of the proof reaches the target, so the level set is wrong here")
     proof = proof_at(outer.question, point)
     if proof is None:

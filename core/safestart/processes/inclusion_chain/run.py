@@ -55,7 +55,11 @@ def run(inputs: ChainInputs, context: Context) -> ProcessOutput:
     examples = []
     for inner in regions.values():
         for outer in regions.values():
-            found = counter_example(inner, outer, points) if inner is not outer else None
+            found = (
+                counter_example(inner, outer, points, matched=inputs.rest_speed_m_s <= inputs.match_m_s)
+                if inner is not outer
+                else None
+            )
             examples += [found] if found else []
         context.step(done, total, "counter-examples")
     document = {

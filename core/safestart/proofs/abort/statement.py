@@ -65,9 +65,14 @@ class Zone:
     blocks: list[list[list[fmpq]]]
 
     @property
+    def axes(self) -> list[list[fmpq]]:
+        """All columns."""
+        return [axis for block in self.blocks for axis in block]
+
+    @property
     def is_point(self) -> bool:
         """Whether it is the target itself."""
-        return not any(self.centre) and not any(e for block in self.blocks for axis in block for e in axis)
+        return not any(self.centre) and not any(e for axis in self.axes for e in axis)
 
 
 _POINT = Zone("sphere", [fmpq(0)] * 3, [])
@@ -149,11 +154,15 @@ def read(document: Any) -> Asked:
     anew = _flag(errors, "at_each_burn")
     if bent and not anew:
         raise ProofRejected("at_each_burn: required true for this model")
+    vectors = vector(start["position_m"], "position_m", 3) + vector(start["velocity_m_s"], "velocity_m_s", 3)
+    target = _target(question, len(times)) if model == "earth" else None
+    if target is not None and vectors != target.before[0]:
+        raise ProofRejected("start: required the state before the first burn")
     return Asked(
         n=n,
         radius=number(question, "semi_major_axis_m", 1e3, 1e9) if model == "nonlinear" else None,
-        earth=_target(question, len(times)) if model == "earth" else None,
-        start=vector(start["position_m"], "position_m", 3) + vector(start["velocity_m_s"], "velocity_m_s", 3),
+        earth=target,
+        start=vectors,
         times=times,
         impulses=impulses,
         durations=durations,
@@ -190,6 +199,11 @@ def _zones(zones: list[Any]) -> list[Zone]:
         if zone["kind"] not in _ZONES or not isinstance(zone["axes_m"], list) or len(zone["axes_m"]) != 3:
             raise ProofRejected(f"zone: required a kind of {', '.join(_ZONES)} and three axes")
         axes = [vector(axis, "axes_m", 3) for axis in zone["axes_m"]]
+        radius = axes[0][0]
+        if zone["kind"] == "sphere" and axes != [[radius * (i == j) for j in range(3)] for i in range(3)]:
+            raise ProofRejected("axes_m: required a sphere's radius along each axis of LVLH")
+        if zone["kind"] == "sphere" and radius < 0:
+            raise ProofRejected(f"axes_m: required a radius >= 0, received {shown(zone['axes_m'])}")
         blocks = [[axis] for axis in axes] if zone["kind"] == "box" else [axes]
         out.append(Zone(zone["kind"], vector(zone["centre_m"], "centre_m", 3), blocks))
     return out

@@ -9,7 +9,7 @@ from flint import fmpq
 from safestart.proofs.space.demands import View
 from safestart.proofs.space.parts import Attitude
 from safestart.proofs.space.statement import SpaceStated
-from safestart.proofs.wording import margin_parts
+from safestart.proofs.wording import found, margin_parts
 
 _AXES = {"lvlh": "LVLH", "body": "the body frame"}
 
@@ -25,7 +25,7 @@ def lines(stated: SpaceStated) -> tuple[str, ...]:
             for name, face in stated.faces.items()
         ),
         *_demands(stated),
-        *_attitude(stated.attitude),
+        *_attitude(stated.attitude, stated.dt * stated.steps),
         f"orbit: mean motion {_number(stated.mean_motion)} rad/s, eccentricity {_number(stated.eccentricity)}, true "
         f"anomaly {_number(stated.true_anomaly)} rad ({_degrees(stated.true_anomaly)} deg) at t = 0",
         _thrust(stated),
@@ -37,24 +37,24 @@ def lines(stated: SpaceStated) -> tuple[str, ...]:
 
 def _found(stated: SpaceStated) -> str:
     go, box = stated.verdict == "GO", any(stated.half)
-    found = "a thrust history keeps" if go else "no thrust history keeps more than"
+    who = found(stated)
     if box:
-        found = (
-            "one thrust history keeps, from every start of the box,"
+        who = (
+            "one thrust history, held over the steps, keeps, from every start of the box,"
             if go
-            else "from no start of the box a thrust history keeps more than"
+            else "from no start of the box a thrust history that is held over the steps keeps more than"
         )
-    parts = [*margin_parts(stated.limits), *("distance to " + repr(name) for name in stated.demands.regions)]
-    return f"{found} the margin, the least of {', '.join(parts)}"
+    parts = [*margin_parts(stated.limits), *("distance to " + ascii(name) for name in stated.demands.regions)]
+    return f"{who} the margin, the least of {', '.join(parts)}"
 
 
 def _unknowns(stated: SpaceStated) -> list[str]:
     said = stated.unknowns
     if said is None:
         return []
-    if stated.verdict == "NO_GO":
-        return ["the member that is as stated: what is not known counts for no NO_GO"]
     out = ["for every member: the same thrust history keeps the margin whatever is not known"]
+    if stated.verdict == "NO_GO":
+        out = ["the member that is as stated: what is not known counts for no NO_GO"]
     if said.angle > 0:
         out.append(
             f"not known: the attitude at t = 0, within {_number(said.angle)} rad ({_degrees(said.angle)} deg)"
@@ -127,7 +127,7 @@ def _around(half: list[fmpq]) -> str:
     return f" +- {_vector(half)}" if any(half) else ""
 
 
-def _attitude(said: Attitude) -> list[str]:
+def _attitude(said: Attitude, horizon: fmpq) -> list[str]:
     seen = "inertial axes, those of LVLH at t = 0" if said.inertial else "LVLH"
     if said.kind == "spin":
         return [
@@ -141,9 +141,15 @@ def _attitude(said: Attitude) -> list[str]:
             f"{_vector(said.quaternions[0])}",
             f"body rate against inertial axes at t = 0: {_vector(said.rate_vector)} rad/s",
         ]
+    # All entries that [0, horizon] touches: a table that is not printed would be any table.
+    first = max(k for k, t in enumerate(said.times) if t <= 0)
+    last = min(k for k, t in enumerate(said.times) if t >= horizon)
     return [
-        f"attitude: against {seen}, by slerp between {len(said.times)} quaternions from {_number(said.times[0])} s to "
-        f"{_number(said.times[-1])} s"
+        f"attitude: against {seen}, by slerp between these quaternions (scalar first), as far as they are needed",
+        *(
+            f"attitude at {_number(said.times[k])} s: {_vector(said.quaternions[k])}"
+            for k in range(first, last + 1)
+        ),
     ]
 
 
