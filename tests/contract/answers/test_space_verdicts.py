@@ -48,6 +48,7 @@ def test_get_post_proof_and_command_line_agree(client: TestClient, tmp_path: Pat
     one = client.get("/go-no-go", params=flat(**start, **asked)).json()
     many = client.post("/go-no-go", json=body).json()
     listed = client.get("/go-no-go", params=flat(**start, **body)).json()
+    assert "proof_url" in one, one
     proof = client.get(one["proof_url"])
     assert listed["field"] == "starts"
     for name in ("verdict", "margin_m", "reason", "position_m", "velocity_m_s"):
@@ -79,6 +80,7 @@ def test_demands_by_get_post_and_command_line(client: TestClient, tmp_path: Path
     assert one["verdict"] == many["verdict"][0] == "GO"
     assert many["restriction"] == [one["restriction"]]
     assert [said.split(":")[0] for said in one["restriction"]] == ["panel", "field_of_view", "plume"]
+    assert "proof_url" in one, one
     proof = client.get(one["proof_url"]).json()
     assert check(proof).verdict == "GO"
     assert set(demands) <= set(proof["question"])
@@ -87,7 +89,7 @@ def test_demands_by_get_post_and_command_line(client: TestClient, tmp_path: Path
     planar = {"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "x_m": 5, "y_m": 40}
     for more, field in (
         (planar | {"keep_outs": demands["keep_outs"]}, "position_m"),
-        (START | SPIN | {"keep_outs": [{"name": "a"}]}, "keep_outs.0.box.half_widths_m"),
+        (START | SPIN | {"keep_outs": [{"name": "a"}]}, "keep_outs.0.half_widths_m"),
         (START | SPIN | {"plume": "[1]"}, "plume"),
     ):
         refused = client.get("/go-no-go", params=flat(**more))

@@ -241,7 +241,6 @@ def test_the_start_of_a_document_is_the_state_before_the_first_burn() -> None:
     # States that are given count, whatever the plan begins with.
     assert question_document(replace(asked, earth=given))["start"]["position_m"] == states[0, :3].tolist()
     made = json.loads(json.dumps(document_of(prove(asked))))
-    assert check(made).verdict == "PROVED"
     made["question"]["start"]["position_m"][0] += 1.0
     made["digest"] = digest_of({k: v for k, v in made.items() if k != "digest"})
     with pytest.raises(ProofRejected, match="before the first burn"):
