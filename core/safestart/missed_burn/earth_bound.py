@@ -12,8 +12,8 @@ import math
 
 import numpy as np
 
-from safestart.missed_burn.earth import GRID, PER_PART, Drift, drift_after
-from safestart.missed_burn.kernels.strays import strays_from
+from safestart.missed_burn.earth import GRID, PARTS, PER_PART, Drift, drift_after
+from safestart.missed_burn.kernels.strays import UNBOUNDED, strays_from
 from safestart.missed_burn.kernels.table import images_of, least_between
 from safestart.missed_burn.plan import Question
 from safestart.missed_burn.sets import Case
@@ -63,6 +63,9 @@ def strays_along(case: Case, question: Question, drift: Drift) -> tuple[Floats, 
     """How far (PARTS,), m, the true motion may be from the linear one in each part, and the trial radii (PARTS,), m."""
     h, k = drift.part, math.sqrt(drift.stiffness)
     curve = 0.125 * drift.stiffness * h * h
+    if not curve < 0.9:
+        # Such parts say nothing about the motion between their ends, nor such nodes about the course's least radius.
+        return np.full(PARTS, UNBOUNDED), np.full(PARTS, UNBOUNDED)
     nodes = images_of(
         np.ascontiguousarray(drift.tables[::PER_PART, :3]),
         case.centre - drift.reference,
@@ -74,7 +77,9 @@ def strays_along(case: Case, question: Question, drift: Drift) -> tuple[Floats, 
     grown, slid = math.cosh(k * h), math.sinh(k * h) / k
     by_position = (grown - 1.0) / drift.stiffness
     strays, trials = strays_from(reached, drift.influence, grown, slid, by_position, drift.lowest)
-    return strays, trials
+    # What is permitted in a part may be less than in an earlier one, and a cell may span both.
+    most: Floats = np.maximum.accumulate(strays)
+    return most, trials
 
 
 def detour(case: Case, question: Question, k: float) -> float:

@@ -81,10 +81,27 @@ class Course:
         if not (4 * k * self.end * c * b < 1 and eta < arb(1) / 2 and self.lowest > 0):
             raise ProofRejected("target: the course cannot be enclosed over so long a time")
         self.eta = arb(0, 1) * arb(eta.abs_upper())
-        # |G|, 1/s^2.
-        self.stiffness = (2 * self.mu / self.lowest**3 + 12 * self.bulge / self.lowest**5) * arb(
-            self.rate
-        ) ** 2
+
+    def within(self, begin: arb, end: arb) -> list[Step]:
+        """The steps that may hold a time between two, s."""
+        low, high = arb((begin * arb(self.rate)).lower()), arb((end * arb(self.rate)).upper())
+        return [s for s in self.steps if not (s.begin + s.length < low or s.begin > high)]
+
+    def least(self, begin: arb, end: arb) -> arb:
+        """Lower bound on the radius, m, between two times, s. ``lowest`` is that of all steps, the last of which is not
+        cut to the span: a short drift away from the perigee stays well above it."""
+        low, high = arb((begin * arb(self.rate)).lower()), arb((end * arb(self.rate)).upper())
+        square = arb("inf")
+        for one in self.within(begin, end):
+            if low <= one.begin and one.begin + one.length <= high:
+                square = square.min(one.square)
+            else:
+                square = square.min(
+                    one.least((low - one.begin).max(arb(0)), (high - one.begin).min(one.length))
+                )
+        if not (begin >= 0 and high <= self.end * (1 + arb(2) ** -30) and square > self.off**2):
+            raise ProofRejected("target: a time outside the course")
+        return arb((square.sqrt() - self.off).abs_lower())
 
     def _step(self, time: arb) -> Step:
         """The step that holds the ball of a scaled time; a ball over an end of a step belongs to the earlier one."""

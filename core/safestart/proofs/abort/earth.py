@@ -24,18 +24,23 @@ from safestart.proofs.abort.reached import Reached, column, level, reach, sizes_
 from safestart.proofs.abort.sets import Sets
 from safestart.proofs.abort.statement import Asked, Event, Zone
 from safestart.proofs.abort.taylor import frobenius, middle
-from safestart.proofs.abort.turning import turning
+from safestart.proofs.abort.turning import Turning, turning
 from safestart.proofs.strict import ProofRejected
 
 
 @dataclass(slots=True)
 class Reference:
-    """A reference from a burn on: its course, its inertial state relative to the target then (6, 1), exact, and what
-    is kept of it: transitions, paths, norms of blocks."""
+    """A reference from a burn on: its course, its inertial state relative to the target then (6, 1), exact; over the
+    longest drift from that burn the least radius of its own and of both courses, m, a bound on |G| along both, 1/s^2,
+    and on how LVLH turns; and what is kept of it: transitions, paths, norms of blocks."""
 
     course: Course
     off: arb_mat
     begin: fmpq
+    lowest: arb
+    both: arb
+    stiffness: arb
+    turning: Turning
     moved: dict[fmpq, arb_mat] = field(default_factory=dict)
     path: dict[fmpq, arb_mat] = field(default_factory=dict)
     norms: dict[tuple[fmpq, int, int], tuple[arb, arb, arb, arb]] = field(default_factory=dict)
@@ -56,7 +61,6 @@ class EarthChecker(Complete):
         span = max(begin + self.longest(k) for k, begin in enumerate(begins))
         self.target = Course(earth.mu, earth.j2, earth.radius, [arb(e) for e in earth.state], span)
         self.mu, self.bulge = arb(earth.mu), arb(earth.mu) * arb(earth.j2) * arb(earth.radius) ** 2
-        self.turning = turning(self.target)
         self.references: dict[tuple[int, fmpq], Reference] = {}
 
     def _reference(self, share: fmpq, burn: int) -> Reference:
@@ -74,7 +78,13 @@ class EarthChecker(Complete):
             course = Course(earth.mu, earth.j2, earth.radius, start, self.longest(burn))
             away = [e for m in self.target.state(arb(begin)) for e in m.entries()]
             off = column([a - b for a, b in zip(start, away, strict=True)])
-            found = Reference(course, off, begin)
+            until = arb(self.longest(burn))
+            lowest = course.least(arb(0), until)
+            # The target's whole course may come lower, at another burn's time.
+            both = lowest.min(self.target.least(arb(begin), arb(begin) + until))
+            stiffness = arb((2 * self.mu / both**3 + 12 * self.bulge / both**5).abs_upper())
+            turns = turning(self.target, arb(begin), arb(begin) + until)
+            found = Reference(course, off, begin, lowest, both, stiffness, turns)
             self.references[burn, share] = found
         return found
 
@@ -91,7 +101,7 @@ class EarthChecker(Complete):
         """Check the cells of an event, after its trial radii."""
         burn = max(event.burn, 0)
         reference, zone = self._reference(event.reference, burn), self.asked.zones[event.zone]
-        stiffness = arb(reference.course.stiffness.max(self.target.stiffness).abs_upper())
+        stiffness = reference.stiffness
         state = self._state(event, burn, reference, stiffness.sqrt())
         columns = [state.centre - reference.off] + [m for block in state.blocks for m in block]
         table = arb_mat(6, len(columns), [m[k, 0] for k in range(6) for m in columns])
@@ -99,11 +109,14 @@ class EarthChecker(Complete):
         strays = self._strays(event, burn, reference, table, sizes, stiffness)
         part, claim = self.longest(burn) / len(strays), arb(self.asked.least)
         zone_sizes = [] if zone.is_point else [len(block) for block in zone.blocks]
-        bend = self.turning.bend / 8 * reach([zone.centre], *zone.blocks)
+        bend = reference.turning.bend / 8 * reach([zone.centre], *zone.blocks)
         images: dict[fmpq, tuple[arb_mat, list[arb]]] = {}
         for begin, end, *direction in event.cells:
             if not (begin < end and any(direction)):
                 raise ProofRejected(f"{event.kind}, burn {event.burn}: a cell without length or direction")
+            if not (begin >= 0 and end <= self.longest(burn)):
+                # The bounds on the courses are for the times of the drift only.
+                raise ProofRejected(f"{event.kind}, burn {event.burn}: a cell outside its drift")
             at = []
             for time in (begin, end):
                 if time not in images:
@@ -120,7 +133,7 @@ class EarthChecker(Complete):
             path, *rest = (a.max(b) for a, b in zip(at[0][1], at[1][1], strict=True))
             square = arb((end - begin) ** 2)
             between = (
-                self._bent(path, square, reference.course) + k / (1 - k) * sum(rest, arb(0)) + bend * square
+                self._bent(path, square, reference.both) + k / (1 - k) * sum(rest, arb(0)) + bend * square
             )
             # A cell that ends within a part gets the stray up to the end of that part.
             last = min(max(int((end / part).ceil()), 1), len(strays))
@@ -131,10 +144,9 @@ class EarthChecker(Complete):
                     f"{float(end):.9g} s after it: short by {-float(room.mid()):.3g} (scaled by the direction)"
                 )
 
-    def _bent(self, path: arb, square: arb, course: Course) -> arb:
+    def _bent(self, path: arb, square: arb, low: arb) -> arb:
         """How far the path may be from its chord over a cell, from its size at the ends: G is that of points between
-        both bodies, a little nearer to the Earth than they are."""
-        low = self.target.lowest.min(course.lowest)
+        both bodies, which stay above ``low``: a little nearer to the Earth than they are."""
         # Nothing is pulled more than at the lowest point: the path does not get longer than this.
         reach = path + (self.mu / low**2 + 6 * self.bulge / low**4) * square / 4
         if not reach < low:
@@ -200,7 +212,7 @@ class EarthChecker(Complete):
         if reference.lasting is None:
             longest = asked.late + asked.durations[burn] + asked.stuck
             reference.lasting = LastingPushes(
-                self.target, reference.course, reference.begin, k, longest, self.turning
+                self.target, reference.course, reference.begin, k, longest, reference.turning
             )
         return reference.lasting
 
@@ -232,7 +244,7 @@ class EarthChecker(Complete):
         grown, slid = (k * step).cosh(), (k * step).sinh() / k
         pushed = (grown - 1) / stiffness
         kicks: list[arb] = []
-        out = []
+        out: list[arb] = []
         detour = self._detour(event, burn, k)
         for j, radius in enumerate(event.radii):
             reached = sum((a.max(b) for a, b in zip(nodes[j], nodes[j + 1], strict=True)), arb(0)) / (
@@ -243,14 +255,16 @@ class EarthChecker(Complete):
                 norms = _norms(reference, h, j, m)
                 at += (norms[0] * pushed + norms[1] * slid) * kick
                 fast += (norms[2] * pushed + norms[3] * slid) * kick
-            push = self._remainder(arb(radius), reference.course.lowest)
+            push = self._remainder(arb(radius), reference.lowest)
             there = grown * at + slid * fast + pushed * push
             if not reached + detour + there < arb(radius):
                 raise ProofRejected(
                     f"radii_m: part {j} does not hold the motion within {float(radius):.9g} m"
                 )
             kicks.append(arb(push.abs_upper()))
-            out.append(arb(there.abs_upper()))
+            # What is permitted in a part may be less than in an earlier one, and a cell may span both.
+            most = arb(there.abs_upper())
+            out.append(most.max(out[-1]) if out else most)
         return out
 
     def _remainder(self, rho: arb, lowest: arb) -> arb:

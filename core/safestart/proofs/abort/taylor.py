@@ -16,7 +16,8 @@ from safestart.proofs.strict import ProofRejected
 ORDER = 44
 _SHARE = 0.25
 """Length of a step over the disc's radius."""
-_BALLS = 16
+_BALLS = 64
+"""Balls of time over a step for the least radius: with fewer the bound is coarser than what provers leave for it."""
 Series = list[arb]
 
 
@@ -44,7 +45,8 @@ class Field:
 @dataclass(frozen=True, slots=True)
 class Step:
     """From scaled time ``begin`` on for ``length``: coefficients (ORDER + 1) of r (3, 1) and F (3, 6), bounds on both
-    defects, on |F| with its derivative, and least r . r."""
+    defects, on |F| with its derivative, least r . r, the low coefficients of r . r and a bound
+    on what the others add."""
 
     begin: arb
     length: arb
@@ -54,6 +56,12 @@ class Step:
     motion_defect: arb
     largest: arb
     square: arb
+    squares: Series
+    rest: arb
+
+    def least(self, begin: arb, end: arb) -> arb:
+        """Lower bound on p . p between two of its own scaled times after ``begin``."""
+        return _lowest(self.squares, begin, end) - self.rest
 
     def at(self, coefficients: list[arb_mat], time: arb) -> tuple[arb_mat, arb_mat]:
         """Value and derivative at a scaled time after ``begin``."""
@@ -100,6 +108,8 @@ def step(field: Field, begin: arb, most: arb, start: tuple[arb_mat, arb_mat, arb
     reach = length * (1 + arb(2) ** -20)
     tail = (reach / radius) ** (ORDER - 1) / (1 - reach / radius)
     reached, fast = _sum(sizes_f, reach), _sum([k * s for k, s in enumerate(sizes_f)][1:], reach)
+    # Coefficients of p . p beyond the order, at twice the times.
+    rest = _sum(sizes_r, 2 * reach) ** 2 / arb(2) ** (len(series.square) - 1)
     return Step(
         begin,
         length,
@@ -108,7 +118,9 @@ def step(field: Field, begin: arb, most: arb, start: tuple[arb_mat, arb_mat, arb
         _sum(loose_r, reach) + field.pull(size, square) * tail,
         _sum(loose_f, reach) + field.slope(size, square) * _sum(sizes_f, radius) * tail,
         (reached**2 + fast**2).sqrt(),
-        _lowest(sizes_r, series.square, reach),
+        _lowest(series.square, arb(0), reach) - rest,
+        series.square,
+        rest,
     )
 
 
@@ -128,15 +140,15 @@ def _least(sizes: Series, square: Series, radius: arb) -> arb:
     return low - _sum(sizes, 2 * radius) ** 2 / arb(2) ** (len(square) - 1)
 
 
-def _lowest(sizes: Series, square: Series, reach: arb) -> arb:
-    """Lower bound on p . p over the step's own, real times, by short balls of time."""
-    low, half = square[0], reach / (2 * _BALLS)
+def _lowest(square: Series, begin: arb, end: arb) -> arb:
+    """Lower bound on the sum of the low coefficients of p . p over real times, by short balls of time."""
+    low, half = arb("inf"), (end - begin) / (2 * _BALLS)
     for j in range(_BALLS):
-        at, value = half * (2 * j + 1 + arb(0, 1)), arb(0)
+        at, value = begin + half * (2 * j + 1 + arb(0, 1)), arb(0)
         for s in reversed(square):
             value = value * at + s
         low = low.min(arb(value.lower()))
-    return low - _sum(sizes, 2 * reach) ** 2 / arb(2) ** (len(square) - 1)
+    return low
 
 
 def _disc(sizes: Series, square: Series) -> tuple[arb, arb]:

@@ -27,18 +27,21 @@ class Turning:
     bend: arb
 
 
-def turning(target: Course) -> Turning:
-    """Bounds along the whole course; raise ``ProofRejected`` where none is found."""
-    rate, low = arb(target.rate), target.lowest
+def turning(target: Course, begin: arb, end: arb) -> Turning:
+    """Bounds between two times, s; raise ``ProofRejected`` where none is found."""
+    rate, low = arb(target.rate), target.least(begin, end)
     bulge, mu = target.bulge * rate**2, target.mu * rate**2
     torque = 3 * bulge / (2 * low**3)
+    # Steps begin and end beyond these times, maybe lower.
+    lowest = target.lowest
+    anywhere = 3 * bulge / (2 * lowest**3)
     least, most = arb("inf"), arb(0)
     loose = _BALL * target.off
-    for one in target.steps:
+    for one in target.within(begin, end):
         r = [e + loose for e in one.course[0].entries()]
         v = [(e + loose) * rate for e in one.course[1].entries()]
         size = _length([r[k - 2] * v[k - 1] - r[k - 1] * v[k - 2] for k in range(3)])
-        changed = torque * one.length / rate
+        changed = anywhere * one.length / rate
         least = least.min(arb((size - changed).lower()))
         most = most.max(arb((size + changed).upper()))
     first = target.steps[0]
@@ -46,7 +49,7 @@ def turning(target: Course) -> Turning:
     size = _length(r)
     twice = _length(v) ** 2 - 2 * mu / size + bulge / size**3 * (3 * (r[2] / size) ** 2 - 1)
     # The true start lies within the loose ball; the energy's change with it is that of v and of gravity.
-    twice = twice + _BALL * (4 * target.off * (_length(v) * rate + mu / low**2 + 6 * bulge / low**4))
+    twice = twice + _BALL * (4 * target.off * (_length(v) * rate + mu / lowest**2 + 6 * bulge / lowest**4))
     if not least > 0:
         raise ProofRejected("target: its plane turns too far for bounds on LVLH")
     speed = arb((twice + 2 * mu / low + bulge / low**3).abs_upper()).sqrt()
