@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from safestart.errors import SafestartError
+from safestart.records import parquet
 from safestart_service.documents.formats.ogc import ogc_results
 from safestart_service.documents.formats.registry import BY_TYPE
 from safestart_service.http.negotiation import chosen
@@ -116,12 +117,12 @@ def test_results_by_accept(done):
         assert "notes" not in found
     tags.add(arrays.headers["etag"])
 
-    parquet = client.get(f"{path}?format=parquet")
+    columns = client.get(f"{path}?format=parquet")
 
-    read = parquet.read(parquet.content).to_pylist()
+    read = parquet.read(columns.content).to_pylist()
     assert [row["area_m2"] for row in read] == [12.5, None]
     assert [row["cells"] for row in read] == [3.0, 4.5]
-    tags.add(parquet.headers["etag"])
+    tags.add(columns.headers["etag"])
 
     assert len(tags) == 5, "each form has a tag of its own"
     for answer, accept in ((record, "*/*"), (ogc, "application/json"), (table, "text/csv")):

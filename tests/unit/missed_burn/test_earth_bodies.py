@@ -185,7 +185,7 @@ def test_documents_are_checked_along_an_enclosed_course(kept, lasts: float) -> N
     text, least = kept[lasts]
     verified = check(json.loads(text))
     assert verified.margin_m == least
-    assert any("the box at" in line for line in verified.statement)
+    assert any("the box of" in line for line in verified.statement)
 
 
 def _sealed(document):
@@ -254,8 +254,8 @@ def test_the_turning_of_lvlh_between_samples_counts(monkeypatch: pytest.MonkeyPa
         check(document)
     still = checked.turning
 
-    def without(target):
-        found = still(target)
+    def without(*course):
+        found = still(*course)
         return type(found)(found.spin, arb(0))
 
     monkeypatch.setattr(checked, "turning", without)

@@ -94,7 +94,7 @@ def _sealed(document):
 
 def test_documents_of_zones_are_checked_and_a_larger_zone_is_refused() -> None:
     document = _document(_zone("box", (60.0, 25.0, 10.0)))
-    assert any("the box at" in line for line in check(document).statement)
+    assert any("the box of" in line for line in check(document).statement)
     # As an ellipsoid with the same axes it is smaller: its claim holds, too.
     document["question"]["zones"][0]["kind"] = "ellipsoid"
     assert check(_sealed(document)).verdict == "PROVED"

@@ -101,8 +101,8 @@ class Known(Pushes):
     def __init__(self) -> None:
         self.k = arb(1e-3)
 
-    def _f(self, at: fmpq) -> arb_mat:
-        return arb_mat([[(arb(at) * r).cos() * a for a in ALONG] for r in RATES.tolist()])
+    def at(self, time: fmpq) -> arb_mat:
+        return arb_mat([[(arb(time) * r).cos() * a for a in ALONG] for r in RATES.tolist()])
 
     def _slope(self, first: fmpq, last: fmpq) -> arb_mat:
         t = arb((first + last) / 2) + arb(0, 1) * arb((last - first) / 2)
