@@ -43,5 +43,6 @@ def register(app: typer.Typer) -> None:
             max_attempts=configured.max_attempts,
             silence_s=configured.silence_s,
             keep_s=configured.keep_days * 86_400.0,
+            warm_up=configured.warm_up,
         )
         raise typer.Exit(asyncio.run(work(options)))

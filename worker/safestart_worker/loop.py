@@ -45,6 +45,7 @@ class Options:
     max_attempts: int
     silence_s: float
     keep_s: float = 0.0
+    warm_up: str = "all"
 
     @property
     def rules(self) -> Rules:
@@ -177,7 +178,7 @@ async def work(options: Options) -> int:
     async with open_cluster(options.scheduler, options.processes, options.max_attempts, owner) as cluster:
         where = options.scheduler or f"{options.processes} task processes"
         log.info("%s on %s, cluster ready in %.1f s", owner, where, time.monotonic() - start)
-        kernels = Kernels(cluster)
+        kernels = Kernels(cluster, ahead=options.warm_up == "all")
         announcing.cancel()
         if not stopping.is_set():
             log.info("takes jobs from %s", database.shown)

@@ -29,8 +29,10 @@ PATIENCE_SHARED_S = 10.0
 class Kernels:
     """The parts of the warm-up: those that are left, those that are compiled now, those that are there."""
 
-    def __init__(self, cluster: Cluster, parts: Iterable[str] = tuple(PARTS)) -> None:
+    def __init__(self, cluster: Cluster, parts: Iterable[str] = tuple(PARTS), *, ahead: bool = True) -> None:
+        """``ahead``: compile what no waiting job needs, too, and load it in every process."""
         self._cluster = cluster
+        self._ahead = ahead
         self._left = list(parts)
         self._running: dict[str, asyncio.Task[None]] = {}
         self._wanted: tuple[str, ...] = ()
@@ -61,7 +63,7 @@ class Kernels:
     def go_on(self, free: int) -> None:
         """Compile on, as far as ``free`` task processes allow; while a job waits, only what it needs."""
         first = [part for part in self._left if part in self._wanted]
-        while len(self._running) < free and (first or (self._left and not self._wanted)):
+        while len(self._running) < free and (first or (self._ahead and self._left and not self._wanted)):
             part = first.pop(0) if first else self._left[0]
             self._left.remove(part)
             self._running[part] = asyncio.ensure_future(self._one(part))
@@ -80,7 +82,8 @@ class Kernels:
             log.info("kernels of %s are there after %.1f s", part, time.monotonic() - begun)
         if not (self._left or self._running or self.failed):
             log.info("all kernels are there after %.1f s", time.monotonic() - self._begun)
-            self._last = asyncio.ensure_future(self._everywhere())
+            if self._ahead:
+                self._last = asyncio.ensure_future(self._everywhere())
         self.on_change()
 
     async def _everywhere(self) -> None:

@@ -79,6 +79,11 @@ class Settings(BaseSettings):
         le=1024,
         description="Task processes of the embedded cluster.",
     )
+    warm_up: Literal["all", "needed"] = Field(
+        "all",
+        description="What a worker compiles or loads after its start: all kernels, so that no later job waits for them, or "
+        "those that the next job needs, which spares a small machine some 20 s of processor time.",
+    )
     lease_s: float = Field(20.0, ge=1, le=600, description="How long a claim holds without renewal, s.")
     poll_s: float = Field(0.2, ge=0.02, le=60, description="How often the worker looks for work, s.")
     job_timeout_s: float = Field(3600.0, ge=1, le=604800, description="Longest run of a job, s.")

@@ -179,3 +179,26 @@ def test_what_cannot_be_loaded_ends_the_worker(caplog: pytest.LogCaptureFixture)
     cluster = NotLoading()
     assert asyncio.run(last_part(cluster)).failed
     assert "modules and kernels: warming up failed" in caplog.text
+
+
+async def only_what_is_needed() -> None:
+    cluster = Processes()
+    kernels = Kernels(cast(Cluster, cluster), ahead=False)
+    kernels.go_on(2)
+    await settled()
+    assert cluster.begun == []
+    assert not kernels.there("benchmark")
+    for _ in BENCHMARK:
+        kernels.go_on(1)
+        await settled()
+        await cluster.end(cluster.begun[-1])
+    assert sorted(cluster.begun) == sorted(BENCHMARK)
+    assert kernels.there("benchmark")
+    kernels.go_on(2)
+    await settled()
+    assert len(cluster.begun) == len(BENCHMARK), "nothing waits for the others"
+    assert cluster.everywhere == 0
+
+
+def test_a_worker_may_compile_only_what_the_next_job_needs() -> None:
+    asyncio.run(only_what_is_needed())
