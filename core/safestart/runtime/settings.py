@@ -81,8 +81,8 @@ class Settings(BaseSettings):
     )
     warm_up: Literal["all", "needed"] = Field(
         "all",
-        description="What a worker compiles or loads after its start: all kernels, so that no later job waits for them, or "
-        "those that the next job needs, which spares a small machine some 20 s of processor time.",
+        description="What a worker compiles or loads after its start: all kernels, so that no later job waits for "
+        "them, or those that the next job needs, which spares a small machine some 20 s of processor time.",
     )
     lease_s: float = Field(20.0, ge=1, le=600, description="How long a claim holds without renewal, s.")
     poll_s: float = Field(0.2, ge=0.02, le=60, description="How often the worker looks for work, s.")
