@@ -173,7 +173,7 @@ class _farm:
     def __enter__(self) -> Any:
         from tests.acceptance.worker_process import Farm
 
-        self.farm = Farm(Path(tempfile.mkdtemp()), self.processes)
+        self.farm = Farm(Path(tempfile.mkdtemp()), self.processes, "all")
         self.farm.start()
         return self.farm
 

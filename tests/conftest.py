@@ -4,7 +4,8 @@ Property tests have no time limit for an example, and always the same examples; 
 ``pytest --hypothesis-profile=default``.
 
 Hundreds of tests start processes of ours. They keep their compiled modules even where the environment says not to:
-without them each of those processes compiles the text of all modules again, two thirds of its start.
+without them each of those processes compiles the text of all modules again, two thirds of its start. Workers load no
+kernels that no job of the test needs: that takes each of them ten seconds and more.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from hypothesis import HealthCheck, settings
 
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
+os.environ.setdefault("SAFESTART_WARM_UP", "needed")
 
 settings.register_profile(
     "steady", deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow]

@@ -89,6 +89,18 @@ def statuses(farm: Farm, job: str) -> list[str]:
     return [event.data["status"] for event in farm.jobs.events(job) if event.kind == "status"]
 
 
+def test_all_kernels_follow_beside_the_jobs_that_do_not_need_them(tmp_path: Path) -> None:
+    farm = Farm(tmp_path, warm_up="all")
+    try:
+        farm.start()
+        assert farm.ended(farm.submit("certificate", CERTIFICATE)).status is JobStatus.SUCCESSFUL
+        until(lambda: "every process holds all modules and kernels" in farm.said(), "the kernels")
+        assert all(f"kernels of {part} are there" in farm.said() for part in PARTS)
+        assert "warming up failed" not in farm.said()
+    finally:
+        farm.close()
+
+
 def test_a_job_is_picked_up_and_ends_with_its_result(farm: Farm) -> None:
     job = farm.submit("certificate", CERTIFICATE)
     ended = farm.ended(job)
@@ -99,9 +111,6 @@ def test_a_job_is_picked_up_and_ends_with_its_result(farm: Farm) -> None:
     assert ended.versions is not None
     assert "numpy" in ended.versions["packages"]
     assert farm.worker is not None
-    # The job waited for no kernel but its own; the others follow.
-    until(lambda: "all kernels are there" in farm.said(), "the kernels")
-    assert all(f"kernels of {part} are there" in farm.said() for part in PARTS)
     assert "warming up failed" not in farm.said()
     assert farm.jobs.crew().workers == 1
     heard = [

@@ -28,8 +28,8 @@ DASK_GIVES_UP_S = 2.0
 class Farm:
     """A database and at most one worker on it."""
 
-    def __init__(self, folder: Path, processes: int = 2) -> None:
-        self._number = processes
+    def __init__(self, folder: Path, processes: int = 2, warm_up: str = "needed") -> None:
+        self._number, self._warm_up = processes, warm_up
         self.url = f"sqlite:///{folder / 'farm.sqlite3'}"
         self.log = folder / "worker.log"
         self.database = Database(self.url)
@@ -46,6 +46,7 @@ class Farm:
             "SAFESTART_LEASE_S": f"{LEASE_S:g}",
             "SAFESTART_MAX_ATTEMPTS": str(MAX_ATTEMPTS),
             "SAFESTART_SILENCE_S": f"{silence_s:g}",
+            "SAFESTART_WARM_UP": self._warm_up,
             # Dask's own patience with a process that is to come back, which the worker must not keep to.
             "DASK_DISTRIBUTED__DEPLOY__LOST_WORKER_TIMEOUT": f"{DASK_GIVES_UP_S:g}s",
         }
