@@ -26,7 +26,7 @@ import numpy as np
 from safestart.dynamics.cwh import transition_matrix
 from safestart.dynamics.two_body_kernel import STAGES, WEIGHTS, drifted, placed, pushed
 from safestart.hopping.approach import mean_motion_of
-from safestart.missed_burn.earth import Earth, target_before
+from safestart.missed_burn.earth.motion import Earth, target_before
 from safestart.missed_burn.plan import Burn, Errors, Failures, Plan, Question
 from safestart.missed_burn.prove import Proof, Verdict, prove
 from safestart.model.scenario import Floats

@@ -8,7 +8,6 @@ import socket
 import ssl
 import time
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import psutil
@@ -19,7 +18,6 @@ from safestart.errors import JobFailed
 from safestart.processes.execute import execute
 from safestart.processes.registry import process
 from safestart.records.comparable import comparable
-from safestart.runtime.warmup import PARTS
 from safestart.store.records import JobStatus
 from safestart_worker.cluster.credentials import throwaway
 from tests.acceptance.worker_process import DASK_GIVES_UP_S, Farm, over
@@ -88,18 +86,6 @@ def result_of(farm: Farm, job: str) -> Any:
 
 def statuses(farm: Farm, job: str) -> list[str]:
     return [event.data["status"] for event in farm.jobs.events(job) if event.kind == "status"]
-
-
-def test_all_kernels_follow_beside_the_jobs_that_do_not_need_them(tmp_path: Path) -> None:
-    farm = Farm(tmp_path, warm_up="all")
-    try:
-        farm.start()
-        assert farm.ended(farm.submit("certificate", CERTIFICATE)).status is JobStatus.SUCCESSFUL
-        until(lambda: "every process holds all modules and kernels" in farm.said(), "the kernels")
-        assert all(f"kernels of {part} are there" in farm.said() for part in PARTS)
-        assert "warming up failed" not in farm.said()
-    finally:
-        farm.close()
 
 
 def test_a_job_is_picked_up_and_ends_with_its_result(farm: Farm) -> None:

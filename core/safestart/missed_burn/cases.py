@@ -12,8 +12,8 @@ import numpy as np
 
 from safestart.dynamics.burn import frame
 from safestart.dynamics.cwh import input_matrix, transition_matrix
-from safestart.missed_burn.earth import lift_of, target_before
-from safestart.missed_burn.earth_cases import late_and_stuck
+from safestart.missed_burn.earth.cases import late_and_stuck
+from safestart.missed_burn.earth.motion import lift_of, target_before
 from safestart.missed_burn.finite_cases import finite_cases
 from safestart.missed_burn.plan import Burn, Question, duration_of
 from safestart.missed_burn.sets import Case, StateSet, add_burn, pieces, shell

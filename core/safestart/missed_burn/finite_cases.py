@@ -21,7 +21,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from safestart.dynamics.burn import frame
-from safestart.missed_burn.earth import drift_after
+from safestart.missed_burn.earth.motion import drift_after
 from safestart.missed_burn.plan import Burn, Question, duration_of
 from safestart.missed_burn.pushed import CwhPushed, EarthPushed, Pushed
 from safestart.missed_burn.sets import Case, StateSet, Thrust, pieces, shell

@@ -17,7 +17,7 @@ from safestart.model.scenario import MAX_MEAN_MOTION, Floats, number
 _UP = 1.0 + 1e-15
 
 if TYPE_CHECKING:
-    from safestart.missed_burn.earth import Earth
+    from safestart.missed_burn.earth.motion import Earth
 
 MOST_BURNS = 200
 LONGEST_PHASE = 0.5

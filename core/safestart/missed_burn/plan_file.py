@@ -18,7 +18,7 @@ from safestart.interchange.ephemeris import Ephemeris
 from safestart.interchange.epochs import SECOND
 from safestart.interchange.frames import rotation_to_gcrf, to_gcrf
 from safestart.interchange.relative import in_lvlh, lvlh_axes
-from safestart.missed_burn.earth import burnt
+from safestart.missed_burn.earth.motion import burnt
 from safestart.missed_burn.plan import Burn
 from safestart.missed_burn.plan_text import Elements, Filed, courses_of, last_before
 from safestart.model.orbit import MU

@@ -9,7 +9,7 @@ from enum import StrEnum
 import numpy as np
 
 from safestart.missed_burn.cases import cases_of
-from safestart.missed_burn.earth_bound import earth_bound
+from safestart.missed_burn.earth.bound import earth_bound
 from safestart.missed_burn.kernels.drift import FIRST, least_distance
 from safestart.missed_burn.plan import Question
 from safestart.missed_burn.replay import MemberFlight, flown_of

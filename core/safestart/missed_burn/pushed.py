@@ -16,7 +16,7 @@ from numpy.polynomial import chebyshev
 
 from safestart.dynamics.cwh import input_matrix, transition_matrix
 from safestart.dynamics.two_body_kernel import frame_of
-from safestart.missed_burn.earth import Drift, inverse, moved
+from safestart.missed_burn.earth.motion import Drift, inverse, moved
 from safestart.model.scenario import Floats
 
 _NODES = 24

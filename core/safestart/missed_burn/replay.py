@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from safestart.dynamics.burn import frame, misdirected
 from safestart.dynamics.cwh import input_matrix, transition_matrix
 from safestart.dynamics.two_body_kernel import STAGES, WEIGHTS, drifted, placed, seen
-from safestart.missed_burn.earth import burnt, target_before
+from safestart.missed_burn.earth.motion import burnt, target_before
 from safestart.missed_burn.plan import Question
 from safestart.missed_burn.sets import Case, shell
 from safestart.missed_burn.zone import POINT, Zone

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from safestart.missed_burn.document import document_of
-from safestart.missed_burn.earth import Earth
+from safestart.missed_burn.earth.motion import Earth
 from safestart.missed_burn.plan import Burn, Errors, Failures, Plan, Question
 from safestart.missed_burn.prove import prove
 from safestart.missed_burn.zone import Zone

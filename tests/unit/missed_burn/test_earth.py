@@ -12,8 +12,8 @@ from safestart.dynamics.two_body_kernel import STAGES, WEIGHTS, drifted, placed,
 from safestart.errors import InvalidInput
 from safestart.missed_burn.cases import cases_of
 from safestart.missed_burn.document import document_of
-from safestart.missed_burn.earth import Earth, drift_after, moved, target_before
-from safestart.missed_burn.earth_bound import strays_along
+from safestart.missed_burn.earth.bound import strays_along
+from safestart.missed_burn.earth.motion import Earth, drift_after, moved, target_before
 from safestart.missed_burn.plan import Errors, Failures, Plan, Question
 from safestart.missed_burn.prove import Verdict, greatest_scale, prove
 from safestart.missed_burn.question_document import question_document

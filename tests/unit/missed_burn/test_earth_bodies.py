@@ -8,11 +8,11 @@ import pytest
 from flint import arb
 
 from safestart.dynamics.two_body_kernel import STAGES, WEIGHTS, drifted, placed, pushed, seen
-from safestart.missed_burn import earth
 from safestart.missed_burn import pushed as prover_pushes
 from safestart.missed_burn.document import document_of
-from safestart.missed_burn.earth import Earth, drift_after, target_before
-from safestart.missed_burn.earth_frame import Turning
+from safestart.missed_burn.earth import motion as earth
+from safestart.missed_burn.earth.frame import Turning
+from safestart.missed_burn.earth.motion import Earth, drift_after, target_before
 from safestart.missed_burn.plan import Burn, Errors, Failures, Plan, Question
 from safestart.missed_burn.prove import Proof, Verdict, prove
 from safestart.missed_burn.pushed import EarthPushed

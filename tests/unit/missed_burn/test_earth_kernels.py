@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from safestart.dynamics.two_body_kernel import STAGES, WEIGHTS, target_with
-from safestart.missed_burn.earth import inverse
+from safestart.missed_burn.earth.motion import inverse
 from safestart.missed_burn.kernels.strays import influence_of, remainder, strays_from
 from safestart.missed_burn.kernels.table import image_at, images_of
 from safestart.missed_burn.kernels.variation import carried, course_of

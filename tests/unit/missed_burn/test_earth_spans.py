@@ -8,7 +8,7 @@ import pytest
 from flint import arb, fmpq
 
 from safestart.missed_burn.document import document_of
-from safestart.missed_burn.earth import Earth, moved
+from safestart.missed_burn.earth.motion import Earth, moved
 from safestart.missed_burn.plan import Errors, Failures, Plan, Question
 from safestart.missed_burn.prove import Proof, Verdict, prove
 from safestart.missed_burn.zone import POINT, Zone

@@ -8,7 +8,7 @@ k = K (b - a)^2/8, and so sup |y| <= max(|y(a)|, |y(b)|) / (1 - k). For a unit v
 
 f_d as in :mod:`safestart.missed_burn.kernels.drift`, less what the true motion may stray. A zone turns with LVLH: its
 centre and blocks are taken at the nodes, and between them they are within W (b - a)^2/8 times their size of a chord
-(:mod:`safestart.missed_burn.earth_frame`).
+(:mod:`safestart.missed_burn.earth.frame`).
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from safestart.hopping.approach import Approach
 from safestart.hopping.barrier import Noise
 from safestart.hopping_flights.fly import HoppingFlight, World, fly
 from safestart.missed_burn.document import document_of
-from safestart.missed_burn.earth import Earth
+from safestart.missed_burn.earth.motion import Earth
 from safestart.missed_burn.plan import Errors, Plan, Question
 from safestart.missed_burn.prove import Proof, Verdict, greatest_scale, prove
 from safestart.processes.base import Artifact, ProcessOutput

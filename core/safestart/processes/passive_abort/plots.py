@@ -10,7 +10,7 @@ from matplotlib.ticker import MaxNLocator
 
 from safestart.dynamics.cwh import transition_matrix
 from safestart.dynamics.two_body_kernel import STAGES, WEIGHTS, drifted, seen
-from safestart.missed_burn.earth import target_before
+from safestart.missed_burn.earth.motion import target_before
 from safestart.missed_burn.plan import Question
 from safestart.missed_burn.prove import Finding, Proof, Verdict
 from safestart.missed_burn.sets import Case

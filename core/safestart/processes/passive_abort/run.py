@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from safestart.missed_burn.document import document_of
-from safestart.missed_burn.earth import Earth
+from safestart.missed_burn.earth.motion import Earth
 from safestart.missed_burn.plan import Plan, Question
 from safestart.missed_burn.prove import Proof, Verdict, greatest_scale, prove
 from safestart.missed_burn.replay import MemberFlight

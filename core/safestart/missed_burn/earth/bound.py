@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from safestart.missed_burn.earth import GRID, PARTS, PER_PART, Drift, drift_after
+from safestart.missed_burn.earth.motion import GRID, PARTS, PER_PART, Drift, drift_after
 from safestart.missed_burn.kernels.strays import UNBOUNDED, strays_from
 from safestart.missed_burn.kernels.table import images_of, least_between
 from safestart.missed_burn.plan import Question

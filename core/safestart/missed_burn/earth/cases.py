@@ -14,7 +14,7 @@ import numpy as np
 
 from safestart.dynamics.burn import frame
 from safestart.dynamics.two_body_kernel import frame_of
-from safestart.missed_burn.earth import Drift, drift_after, inverse, moved
+from safestart.missed_burn.earth.motion import Drift, drift_after, inverse, moved
 from safestart.missed_burn.plan import Question, duration_of
 from safestart.missed_burn.sets import Case, StateSet, pieces, shell
 from safestart.model.scenario import Floats

@@ -31,7 +31,7 @@ from safestart.dynamics.two_body_kernel import (
     target_with,
 )
 from safestart.errors import invalid
-from safestart.missed_burn.earth_frame import Turning, frames_along, turning_of
+from safestart.missed_burn.earth.frame import Turning, frames_along, turning_of
 from safestart.missed_burn.kernels.strays import influence_of
 from safestart.missed_burn.kernels.variation import carried, course_of
 from safestart.missed_burn.plan import Plan, Question, longest_drift

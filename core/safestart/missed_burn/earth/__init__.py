@@ -1,0 +1,1 @@
+"""The missed-burn proof about the true Earth: two bodies with J2, an orbit of any eccentricity."""
