@@ -18,8 +18,8 @@ from typing import Any, Literal
 import clarabel
 import numpy as np
 from scipy.linalg import expm
-from scipy.sparse import csc_array
 
+from tests.fuzzing.cone import largest
 from tests.fuzzing.printed import Printed
 
 Truth = Literal["true", "false", "open"]
@@ -238,15 +238,8 @@ def _solve(claim: Printed, rows: list[Any], a_max: float, end: int, free: bool) 
     # Thrusts in units of a_max.
     held = kinds[0] + sum(d + 1 for r in rows for _ in r[3])
     a[:held, :size] *= a_max
-    cost = np.zeros(columns)
-    cost[-1] = -1.0
-    settings = clarabel.DefaultSettings()
-    settings.verbose, settings.max_threads = False, 1
-    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-9
-    found = clarabel.DefaultSolver(
-        csc_array((columns, columns)), cost, csc_array(a), b, cones, settings
-    ).solve()
-    if str(found.status) not in ("Solved", "AlmostSolved"):
+    found, well = largest(a, b, cones)
+    if not well:
         raise _Unsolved(str(found.status))
     x = np.array(found.x)
     u = x[:size].reshape(end, d)

@@ -205,8 +205,11 @@ def decided(found: Verified, document: Document, rng: Random) -> str:
 
 
 def _question(document: Document) -> str:
-    """Question and start as they are shown, numbers that are equal alike."""
-    shown = question_shown(document)
+    """Question and start as they are shown, numbers that are equal alike.
+
+    The feedback and the tube are found by the prover, as a thrust history is: they are evidence.
+    """
+    shown = {key: value for key, value in question_shown(document).items() if key not in ("feedback", "tube")}
     table = shown["question"].get("attitude", {}).get("times_s")
     if table is not None:
         # Entries beyond the horizon say nothing.

@@ -9,8 +9,8 @@ from typing import Any, Literal
 
 import clarabel
 import numpy as np
-from scipy.sparse import csc_array
 
+from tests.fuzzing.cone import largest
 from tests.fuzzing.space.flown import (
     NONE,
     admissible,
@@ -186,15 +186,8 @@ def _best(claim: SpacePrinted, turns: Any, rates: Any, end: int) -> tuple[Any, A
     a, b = np.vstack(left), np.concatenate(right)
     if "ball" in said:
         a[: len(a) - 4 * end, :size] *= bound
-    cost = np.zeros(columns)
-    cost[-1] = -1.0
-    settings = clarabel.DefaultSettings()
-    settings.verbose, settings.max_threads = False, 1
-    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-9
-    found = clarabel.DefaultSolver(
-        csc_array((columns, columns)), cost, csc_array(a), b, cones, settings
-    ).solve()
-    if str(found.status) not in ("Solved", "AlmostSolved"):
+    found, well = largest(a, b, cones)
+    if not well:
         return None
     x = np.array(found.x)
     u = x[:size].reshape(end, channels)
