@@ -138,7 +138,7 @@ class Hold:
         """Largest |rows e|, rows (2, 4), over the ellipsoid."""
         m = rows * self.spread * rows.transpose()
         spread = abs(acb(m[0, 0] - m[1, 1], 2 * m[0, 1]))
-        return (self.level * (m[0, 0] + m[1, 1] + spread) / 2).sqrt()
+        return _root(self.level * (m[0, 0] + m[1, 1] + spread) / 2)
 
 
 def _turn(angle: arb) -> acb:
@@ -147,7 +147,13 @@ def _turn(angle: arb) -> acb:
 
 def _largest(x: acb, y: acb) -> arb:
     """Largest |Re(e^(i theta) (x, y))| over all theta."""
-    return ((abs(x) ** 2 + abs(y) ** 2 + abs(x * x + y * y)) / 2).sqrt()
+    sizes = sum((e.real * e.real + e.imag * e.imag for e in (x, y)), arb(0))
+    return _root((sizes + abs(x * x + y * y)) / 2)
+
+
+def _root(square: arb) -> arb:
+    """Upper bound on the root of what is not negative, though its ball may reach below 0."""
+    return square.abs_upper().sqrt()
 
 
 def _require_positive(matrix: arb_mat, said: str) -> None:
