@@ -12,7 +12,7 @@ that it gave.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -24,7 +24,7 @@ from safestart.control.hold.loop import SIDES, Hold
 from safestart.dynamics.cwh import planar_input, planar_transition
 from safestart.model.scenario import Floats
 
-_LONGEST = 512
+_FEWEST, _LONGEST = 4, 512
 _ATTEMPTS = 8
 
 
@@ -44,20 +44,21 @@ def polyhedron(hold: Hold, inner: Ellipsoid, phase: float) -> Polyhedron | None:
     if inner.level <= 0.0:
         return None
     size = 8.0 * np.array([math.hypot(*inner.extents[:2]), math.hypot(*inner.extents[2:])])
+    steps = _FEWEST
     for _ in range(_ATTEMPTS):
-        found = _closed(hold, inner, phase, hold.sag(float(size[0]), float(size[1])))
+        found = _closed(hold, inner, phase, hold.sag(float(size[0]), float(size[1])), steps)
         if found is None:
             return None
         largest = _sizes(hold.design.closed_loop, found)
         if (largest <= size).all():
-            return found
-        size = 1.5 * largest
+            return replace(found, volume=_volume(hold, found.vertices))
+        # With other sags it takes as many steps, as a rule: fewer need not be tried.
+        size, steps = 1.5 * largest, found.steps
     return None
 
 
-def _closed(hold: Hold, inner: Ellipsoid, phase: float, sag: float) -> Polyhedron | None:
-    """Rows of more and more steps, until the vertices end in the ellipsoid."""
-    steps = 4
+def _closed(hold: Hold, inner: Ellipsoid, phase: float, sag: float, steps: int) -> Polyhedron | None:
+    """Rows of more and more ``steps``, until the vertices end in the ellipsoid; without its volume."""
     root: Floats = np.asarray(np.linalg.cholesky(hold.design.cost), dtype=np.float64)
     while steps <= _LONGEST:
         rows, bounds = _rows(hold, phase, steps, sag)
@@ -107,11 +108,14 @@ def _irredundant(rows: Floats, bounds: Floats, root: Floats, steps: int) -> Poly
         return None
     scaled = np.unique(np.round(-normals / distances[:, None], 12), axis=0)
     kept = np.sort(hull.vertices)
-    solid = _hull(scaled)
-    if solid is None:
-        return None
-    volume = float(solid.volume / abs(np.linalg.det(root)))
-    return Polyhedron(rows[kept], bounds[kept], scaled @ np.linalg.inv(root), steps, volume)
+    return Polyhedron(rows[kept], bounds[kept], scaled @ np.linalg.inv(root), steps, math.nan)
+
+
+def _volume(hold: Hold, vertices: Floats) -> float:
+    """m^4/s^2."""
+    root = np.linalg.cholesky(hold.design.cost)
+    solid = _hull(vertices @ root)
+    return math.nan if solid is None else float(solid.volume / abs(np.linalg.det(root)))
 
 
 def _hull(points: Floats) -> Any:
