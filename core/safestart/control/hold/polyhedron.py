@@ -46,19 +46,23 @@ def polyhedron(hold: Hold, inner: Ellipsoid, phase: float) -> Polyhedron | None:
     size = 8.0 * np.array([math.hypot(*inner.extents[:2]), math.hypot(*inner.extents[2:])])
     steps = _FEWEST
     for _ in range(_ATTEMPTS):
-        found = _closed(hold, inner, phase, hold.sag(float(size[0]), float(size[1])), steps)
-        if found is None:
+        closed = _closed(hold, inner, phase, hold.sag(float(size[0]), float(size[1])), steps)
+        if closed is None:
             return None
+        found, scaled = closed
         largest = _sizes(hold.design.closed_loop, found)
         if (largest <= size).all():
-            return replace(found, volume=_volume(hold, found.vertices))
+            volume = _volume(hold, scaled)
+            return None if volume is None else replace(found, volume=volume)
         # With other sags it takes as many steps, as a rule: fewer need not be tried.
         size, steps = 1.5 * largest, found.steps
     return None
 
 
-def _closed(hold: Hold, inner: Ellipsoid, phase: float, sag: float, steps: int) -> Polyhedron | None:
-    """Rows of more and more ``steps``, until the vertices end in the ellipsoid; without its volume."""
+def _closed(
+    hold: Hold, inner: Ellipsoid, phase: float, sag: float, steps: int
+) -> tuple[Polyhedron, Floats] | None:
+    """Rows of more and more ``steps``, until the vertices end in the ellipsoid; see :func:`_irredundant`."""
     root: Floats = np.asarray(np.linalg.cholesky(hold.design.cost), dtype=np.float64)
     while steps <= _LONGEST:
         rows, bounds = _rows(hold, phase, steps, sag)
@@ -66,7 +70,7 @@ def _closed(hold: Hold, inner: Ellipsoid, phase: float, sag: float, steps: int) 
             return None
         found = _irredundant(rows, bounds, root, steps)
         if found is not None:
-            last = found.vertices @ np.linalg.matrix_power(hold.design.closed_loop, steps + 1).T
+            last = found[0].vertices @ np.linalg.matrix_power(hold.design.closed_loop, steps + 1).T
             if (((last @ root) ** 2).sum(axis=1) <= inner.level).all():
                 return found
         steps *= 2
@@ -96,8 +100,11 @@ def _rows(hold: Hold, phase: float, steps: int, sag: float) -> tuple[Floats, Flo
     return np.concatenate(rows), np.concatenate(bounds)
 
 
-def _irredundant(rows: Floats, bounds: Floats, root: Floats, steps: int) -> Polyhedron | None:
-    """By the polar body: rows / bounds on its hull are the faces, its facets are the vertices; None: unbounded."""
+def _irredundant(rows: Floats, bounds: Floats, root: Floats, steps: int) -> tuple[Polyhedron, Floats] | None:
+    """By the polar body: rows / bounds on its hull are the faces, its facets are the vertices; None: unbounded.
+
+    Without its volume, which takes as long again; with the vertices y = root' e (V, 4), which give it.
+    """
     # y = root' e has comparable components.
     polar = rows @ np.linalg.inv(root).T / bounds[:, None]
     hull = _hull(polar)
@@ -108,14 +115,14 @@ def _irredundant(rows: Floats, bounds: Floats, root: Floats, steps: int) -> Poly
         return None
     scaled = np.unique(np.round(-normals / distances[:, None], 12), axis=0)
     kept = np.sort(hull.vertices)
-    return Polyhedron(rows[kept], bounds[kept], scaled @ np.linalg.inv(root), steps, math.nan)
+    return Polyhedron(rows[kept], bounds[kept], scaled @ np.linalg.inv(root), steps, math.nan), scaled
 
 
-def _volume(hold: Hold, vertices: Floats) -> float:
-    """m^4/s^2."""
+def _volume(hold: Hold, scaled: Floats) -> float | None:
+    """Of a set with the vertices y = root' e (V, 4), m^4/s^2; None: Qhull fails."""
     root = np.linalg.cholesky(hold.design.cost)
-    solid = _hull(vertices @ root)
-    return math.nan if solid is None else float(solid.volume / abs(np.linalg.det(root)))
+    solid = _hull(scaled)
+    return None if solid is None else float(solid.volume / abs(np.linalg.det(root)))
 
 
 def _hull(points: Floats) -> Any:
