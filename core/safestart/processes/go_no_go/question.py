@@ -42,7 +42,7 @@ def with_arrival(
     if question.goal is None or inputs.after_arrival == "any":
         return answers
     if inputs.after_arrival == "hold":
-        answers = [held(question, *each) for each in zip(starts, answers, strict=True)]
+        answers = [with_hold_after(question, *each) for each in zip(starts, answers, strict=True)]
     return [
         replace(
             answer, verdict=Verdict.UNDECIDED, reason=_NO_HOLD if inputs.after_arrival == "hold" else _NO_STAY
@@ -60,7 +60,7 @@ def stays(inputs: GoNoGoInputs, answer: Answer) -> bool:
     return (answer.held if inputs.after_arrival == "hold" else answer.arrival) is not None
 
 
-def held(question: Question, start: Floats, answer: Answer) -> Answer:
+def with_hold_after(question: Question, start: Floats, answer: Answer) -> Answer:
     """A GO of `synchronize` with the LQR's set that holds its end, if one does; raises ``InvalidInput`` in space."""
     if question.dimensions != 2:
         raise invalid("after_arrival", "stay or any for starts in space: the LQR's sets are planar", "hold")
@@ -110,7 +110,7 @@ def told(question: Question | SpaceQuestion, answer: Answer) -> str:
         return (
             f"a thrust history keeps {spare} to every face for {span:g} s"
             if answer.verdict is Verdict.GO
-            else f"no thrust {held_over(question)} stays for {span:g} s: each history is at some time at least {short} "
+            else f"no thrust {held(question)} stays for {span:g} s: each history is at some time at least {short} "
             "outside a face"
         )
     scales = f" (1 m/s of the speed limit counts as {SPEED_SCALE:g} m)" if fast else ""
@@ -123,7 +123,7 @@ def told(question: Question | SpaceQuestion, answer: Answer) -> str:
         if answer.held is not None:
             x, y = answer.held.point.tolist()
             return (
-                f"{told}; then the LQR about ({x:.3g}, {y:.3g}) m keeps it for ever, thrust {held_over(question)}, at "
+                f"{told}; then the LQR about ({x:.3g}, {y:.3g}) m keeps it for ever, thrust {held(question)}, at "
                 f"least {answer.held.margin:.2f} m from every face"
             )
         if answer.arrival is None:
@@ -133,10 +133,10 @@ def told(question: Question | SpaceQuestion, answer: Answer) -> str:
             f"{answer.arrival.margin:.2f} m from every face"
         )
     asked = "is at rest in the hold ball within" if question.goal is not None else "stays for"
-    told = f"no thrust {held_over(question)}{fast} {asked} {span:g} s"
+    told = f"no thrust {held(question)}{fast} {asked} {span:g} s"
     return f"{told}: each history misses a limit by at least {short}{scales}"
 
 
-def held_over(question: Question | SpaceQuestion) -> str:
+def held(question: Question | SpaceQuestion) -> str:
     """What the exact question varies: a NO_GO says nothing about thrust that changes within a step."""
     return f"held over steps of {question.dt:g} s"

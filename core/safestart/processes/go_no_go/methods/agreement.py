@@ -45,7 +45,7 @@ def agreeing(inputs: GoNoGoInputs, said: Verdicts) -> Verdicts:
             continue
         finer, answer = found
         margins[k] = finite(answer.margin_m)
-        said.reason[k] = f"{asked.sentence(finer, answer)}, thrust {asked.held_over(finer)}"
+        said.reason[k] = f"{asked.sentence(finer, answer)}, thrust {asked.held(finer)}"
         said.proof[k], said.decided_by[k] = proof_of(finer, starts[k], answer), "exact"
     return said._replace(margin_m=margins)
 

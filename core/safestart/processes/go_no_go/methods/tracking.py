@@ -65,7 +65,7 @@ def decide(inputs: GoNoGoInputs, _: Conditions, context: Context) -> Verdicts:
         flight, exact = _flight(question, approach, start), decide_start(question, start)
         answer = _answer(question, flight)
         if by_hold and flight.arrived is not None:
-            answer = asked.held(question, start, answer)
+            answer = asked.with_hold_after(question, start, answer)
         stays = question.goal is None or asked.stays(inputs, answer)
         verdict, by = flown.verdict_of(flight, exact, stays=stays)
         answer = answer if by == "tracking" else exact
