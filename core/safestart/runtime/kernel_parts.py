@@ -49,7 +49,7 @@ class _NoEnvironments:
         """Nothing: Python calls no part, so none needs its environment."""
 
 
-class _PartLibrary(JITCodeLibrary):  # type: ignore[misc]
+class _PartLibrary(JITCodeLibrary):
     """Code to link into callers, neither optimised as a whole nor turned into machine code."""
 
     @property
@@ -71,7 +71,7 @@ class _PartLibrary(JITCodeLibrary):  # type: ignore[misc]
 
 
 @register_pass(mutates_CFG=False, analysis_only=False)
-class _IntoPart(LoweringPass):  # type: ignore[misc]
+class _IntoPart(LoweringPass):
     """Lower into a :class:`_PartLibrary`."""
 
     _name = "safestart_into_part"
@@ -85,7 +85,7 @@ class _IntoPart(LoweringPass):  # type: ignore[misc]
         return True
 
 
-class _PartCompiler(CompilerBase):  # type: ignore[misc]
+class _PartCompiler(CompilerBase):
     """Numba's own passes, with the library of a part."""
 
     def define_pipelines(self) -> list[Any]:
