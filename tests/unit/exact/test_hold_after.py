@@ -9,7 +9,7 @@ import pytest
 
 from safestart.attitude.spin import Spin
 from safestart.constraints.corridor import corridor_of
-from safestart.control.controller import Command
+from safestart.control.hold.arrive_and_hold import ArriveAndHold
 from safestart.control.hold.hold_lqr import Design, HoldLqr
 from safestart.control.hold.turning_reference import TurningReference
 from safestart.dynamics.cwh import Cwh, planar_input, planar_transition
@@ -33,21 +33,6 @@ def pilot_of(question: Question, held: Held, phase: float) -> HoldLqr:
     return HoldLqr(Design(-held.gain, closed, held.cost), reference, phase, most)
 
 
-class Whole:
-    """The thrust history, then the hold."""
-
-    def __init__(self, thrust: Floats, hold: HoldLqr) -> None:
-        self._thrust, self._hold = thrust, hold
-
-    def begin(self, state: Floats) -> None:
-        """Nothing to forget."""
-
-    def command(self, k: int, state: Floats) -> Command:
-        if k < len(self._thrust):
-            return Command(np.array([*self._thrust[k], 0.0]), True, "history")
-        return self._hold.command(k, state)
-
-
 @pytest.fixture(scope="module")
 def held() -> tuple[Floats, Held]:
     answer = with_hold(QUESTION, START, decide(QUESTION, START))
@@ -61,7 +46,7 @@ def test_the_whole_flight_is_one(held: tuple[Floats, Held]) -> None:
     target = QUESTION.scenario.target
     plant = Plant(Cwh(target.mean_motion), Spin(target.tumble_rate))
     start = np.array([*START[:2], 0.0, *START[2:], 0.0])
-    pilot = Whole(thrust, pilot_of(QUESTION, found, 0.0))
+    pilot = ArriveAndHold(thrust, pilot_of(QUESTION, found, 0.0))
     corridor = corridor_of(QUESTION.scenario.corridor)
     record = fly(plant, [corridor], pilot, start, len(thrust) + 300, QUESTION.dt)
     # The margin of a flight is over all its time.
