@@ -141,8 +141,8 @@ def decide(
     the corridor at all times of ``horizon_s`` seconds; ``synchronize``: in addition, at rest in the body frame in the
     ball around the hold point at some time within ``within_s`` seconds; its GO needs a proof of what comes
     ``after_arrival``: ``stay``, that the chaser can stay for ever; ``hold``, that an LQR keeps it there (planar);
-    ``any``: nothing is asked. Thrust is held over intervals of 2 s. Raises ``InvalidInput`` for other inputs; a failure of the
-    solver is UNDECIDED.
+    ``any``: nothing is asked. Thrust is held over intervals of 2 s. Raises ``InvalidInput`` for other inputs; a failure
+    of the solver is UNDECIDED.
     """
     point, rest = point_of(start), Rest(rest)
     goal, span = asked_of(question, horizon_s, within_s)
