@@ -52,9 +52,9 @@ class SpaceWatch:
         self._levels: Floats = self.offsets
         self.names = tuple(face.name for face in faces)
         self._in_body = np.array([face.frame == "body" for face in faces])
-        self.normals = self._turned(np.zeros(1))[0]
         self.prediction = prediction_of(question.motion, question.dt, question.steps, 3, 1)
         self._sample()
+        self.normals: Floats = self._normals[0]  # the first sample is at t = 0
         begins = question.dt * np.arange(question.steps, dtype=np.float64)
         self._pushes: Floats | None = None
         if question.thrust.kind != "ball":
@@ -88,11 +88,12 @@ class SpaceWatch:
         self._length = (tau[1:] - tau[:-1])[segments]
         self._begin, self._longest = times[segments], float(self._length.max())
         self._phi, self._held = self._tables(tau, times)
-        self._normals = self._turned(times)
-        slopes = self._turning(times, times)
+        turn = question.attitude.rotation(times) if self._in_body.any() else None
+        self._normals = self._turned(times, turn)
+        slopes = self._turning(times, turn)
         self._slope_first, self._slope_last = slopes[self._first], slopes[self._last]
         if len(knots):
-            self._slope_last = self._turning(times, np.nextafter(times, -np.inf))[self._last]
+            self._slope_last = self._turning(np.nextafter(times, -np.inf), turn)[self._last]
 
     @property
     def intervals(self) -> Ints:
@@ -132,19 +133,21 @@ class SpaceWatch:
             return phi[back], held[back]
         return moved_many(self.question.motion, times - tau, times, 3)
 
-    def _turned(self, times: Floats) -> Floats:
-        """Normals (T, F, 3) in LVLH axes."""
+    def _turned(self, times: Floats, turn: Floats | None = None) -> Floats:
+        """Normals (T, F, 3) in LVLH axes; ``turn`` (T, 3, 3) are the attitude's rotations then, if known."""
         out = np.broadcast_to(self._own, (len(times), *self._own.shape))
         if not self._in_body.any():
             return out
-        turned: Floats = self._own @ self.question.attitude.rotation(times)
+        turned: Floats = self._own @ (self.question.attitude.rotation(times) if turn is None else turn)
         return np.where(self._in_body[:, None], turned, out)
 
-    def _turning(self, times: Floats, just: Floats) -> Floats:
-        """Rates (T, F, 3) of the normals in LVLH axes, with the angular velocity of the times ``just``."""
-        if not self._in_body.any():
-            return np.zeros((len(times), *self._own.shape))
-        turn = self.question.attitude.rotation(times)
+    def _turning(self, just: Floats, turn: Floats | None) -> Floats:
+        """Rates (T, F, 3) of the normals in LVLH axes, with the angular velocity of the times ``just``.
+
+        ``turn`` (T, 3, 3) are the attitude's rotations; None where no face turns with the body.
+        """
+        if turn is None:
+            return np.zeros((len(just), *self._own.shape))
         omega = self.question.attitude.angular_velocity(just)
         moved: Floats = np.cross(omega[:, None, :], self._own[None]) @ turn
         return np.where(self._in_body[:, None], moved, 0.0)
