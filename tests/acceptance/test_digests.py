@@ -28,6 +28,27 @@ def test_every_question_has_digests() -> None:
     assert set(digests.stored()) == set(questions.names())
 
 
+def test_the_service_keeps_the_arrays_that_the_process_computes() -> None:
+    # Both were stored at different times: an old digest that a merge brings back is found here.
+    stored, compared = digests.stored(), 0
+    for process_id in PROCESS_IDS:
+        here, served = stored[f"{process_id}/example"], stored[f"service/{process_id}/example"]
+        for name in (name for name in here if name.endswith(".npz")):
+            assert digests.differences({name: here[name]}, {name: served[f"artifacts/{name}"]}) == []
+            compared += 1
+    assert compared > 5
+
+
+def test_times_within_a_cell_are_left_out() -> None:
+    def cell(seconds: float, radius: float) -> content.Digests:
+        return content.table(
+            f'name,detail\ntube,"{{""compile_s"":{seconds},""radius_m"":{radius}}}"\n'.encode()
+        )
+
+    assert cell(0.1, 2.0) == cell(0.2, 2.0)
+    assert cell(0.1, 2.0) != cell(0.1, 3.0)
+
+
 def test_every_process_is_asked_for_its_example_here_and_over_http() -> None:
     names = set(questions.names())
     assert {f"{process_id}/example" for process_id in PROCESS_IDS} <= names
