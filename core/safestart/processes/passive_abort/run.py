@@ -13,7 +13,7 @@ from safestart.missed_burn.earth.motion import Earth
 from safestart.missed_burn.plan import Plan, Question
 from safestart.missed_burn.prove import Proof, Verdict, greatest_scale, prove
 from safestart.missed_burn.replay import MemberFlight
-from safestart.processes.base import Artifact, ProcessOutput
+from safestart.processes.base import Artifact, ProcessOutput, Undrawn
 from safestart.processes.passive_abort.filed import left_out, resolved
 from safestart.processes.passive_abort.plots import picture
 from safestart.processes.passive_abort.question import plain_question
@@ -47,7 +47,7 @@ def run(inputs: PassiveAbortInputs, context: Context) -> ProcessOutput:
     inputs, filed = resolved(inputs)
     question = question_of(inputs)
     proof = prove(question, tick=lambda k, of: context.step(0.6 * k / of, 1.0, "cases"))
-    artifacts: list[Artifact] = []
+    artifacts: list[Artifact | Undrawn] = []
     told: list[str] = []
     look: Look | None = None
     if proof.verdict is Verdict.PROVED:

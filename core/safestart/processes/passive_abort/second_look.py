@@ -61,7 +61,7 @@ def seconds_of(document: Mapping[str, Any]) -> float:
     near = {(max(case["burn"], 0), case.get("reference", case["kind"])) for case in cases}
     flown = max(b + span for b, span in zip(begins, spans, strict=True)) + sum(spans[k] for k, _ in near)
     orbits = flown * question["mean_motion_rad_s"] / math.tau
-    return _ORBIT * orbits + _REFERENCE * len(near) + _EARTH_CASE * len(cases) + _EARTH_CELL * cells
+    return float(_ORBIT * orbits + _REFERENCE * len(near) + _EARTH_CASE * len(cases) + _EARTH_CELL * cells)
 
 
 def _longest(question: Mapping[str, Any], burn: int) -> float:
