@@ -13,7 +13,8 @@ from safestart.missed_burn.earth.motion import Earth
 from safestart.missed_burn.plan import Plan, Question
 from safestart.missed_burn.prove import Proof, Verdict, greatest_scale, prove
 from safestart.missed_burn.replay import MemberFlight
-from safestart.processes.base import Artifact, ProcessOutput, Undrawn
+from safestart.processes.base import Artifact, ProcessOutput
+from safestart.processes.output import Undrawn
 from safestart.processes.passive_abort.filed import left_out, resolved
 from safestart.processes.passive_abort.plots import picture
 from safestart.processes.passive_abort.question import plain_question
