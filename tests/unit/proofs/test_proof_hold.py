@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from flint import arb, fmpq
 from scipy.linalg import expm
 
 from safestart.exact.answer import Answer, Held, Verdict
@@ -18,7 +19,11 @@ from safestart.exact.hold_after import held_after, with_hold
 from safestart.exact.prove import proof_of
 from safestart.exact.question import Goal, Question
 from safestart.model.scenario import Chaser, CorridorShape, Floats, Scenario, Target
+from safestart.proofs.balls import Motion
 from safestart.proofs.checker import check
+from safestart.proofs.hold.check import Hold, _At
+from safestart.proofs.single import Witness
+from safestart.proofs.statement import read
 from safestart.proofs.strict import ProofRejected
 from tests.unit.proofs.forgery import Document, assert_all_is_read, changed, places, sealed
 
@@ -243,6 +248,95 @@ def test_a_thousand_flights_from_the_boundary_stay(seed: int) -> None:
     near = least < held.margin + 0.1 * (held.point[1] - 0.75)
     assert near or most > 0.9 * 0.02 or fast > 0.9 * (question.speed_limit or math.inf)
     assert float(np.linalg.norm(states - np.array([state_at(t) for t in angle]), axis=1).max()) < 1e-3
+
+
+def loop(document: Document, **change: Any) -> Hold:
+    """The checker's own loop of a document, at its precision."""
+    stated = read(document)
+    assert stated.held is not None
+    faces = Witness(stated).faces
+    return Hold(
+        replace(stated.held, **change), Motion(stated), arb(stated.dt), faces, arb(stated.a_max), arb("1.5")
+    )
+
+
+def test_the_bounds_are_those_of_the_ellipsoid(document: Document) -> None:
+    """Distances, distance from the target and speed at instants of a step, against thousands of errors and angles."""
+    question = replace(QUESTION, scenario=replace(QUESTION.scenario, target=Target(0.2, 1.3e-3)))
+    claim = document["hold_after"]
+    held = Held(np.array([0.6, 1.9]), np.array(claim["gain"]), np.array(claim["cost"]), 1.2, 0.1)
+    made = changed(document, "question.tumble_rate_rad_s", 0.2)
+    made = changed(made, "question.mean_motion_rad_s", 1.3e-3)
+    hold = loop(made, point=[fmpq(3, 5), fmpq(19, 10)], level=fmpq(6, 5))
+    state_at, thrust_at = loop_of(question, held)
+    root = math.sqrt(held.level) * np.linalg.inv(np.linalg.cholesky(held.cost)).T
+    angles = np.linspace(0.0, 2.0 * math.pi, 90, endpoint=False)
+    wanted, given = (np.array([f(t) for t in angles]) for f in (state_at, thrust_at))
+    for share in (0.0, 0.3, 0.5, 1.0):
+        phi, b = steps(1.3e-3, 2.0 * share)
+        image = (phi + b @ held.gain) @ root
+        seen = wanted @ phi.T + given @ b.T
+        place, fast = (np.linalg.svd(image[k : k + 2], compute_uv=False)[0] for k in (0, 2))
+        body = np.array([turned(p, -(t + 0.4 * share)) for p, t in zip(seen[:, :2], angles, strict=True)])
+        found = hold._bounds(arb(2.0 * share))
+        for name, normal, offset in (
+            ("hold_plane", [0.0, -1.0], -0.75),
+            ("right", [1.0, -1.2], 3.0 - 1.2 * 0.75),
+            ("left", [-1.0, -1.2], 3.0 - 1.2 * 0.75),
+        ):
+            length = math.hypot(*normal)
+            least = float(((offset - body @ normal) / length).min()) - place
+            assert float(found.left[name]) == pytest.approx(least, abs=1e-5)
+        farthest = float(np.linalg.norm(seen[:, :2], axis=1).max()) + place
+        assert farthest - 1e-9 <= float(found.far) <= farthest + 1e-2
+        assert float(found.fast) == pytest.approx(
+            float(np.linalg.norm(seen[:, 2:], axis=1).max()) + fast, abs=1e-4
+        )
+        over = hold._bounds(arb(2.0 * share) + arb(1, 1) / 100)
+        assert float(over.far.abs_upper()) >= float(found.far)
+        assert float(over.fast.abs_upper()) >= float(found.fast)
+
+
+@pytest.mark.parametrize("more", [-1e-9, 1e-9])
+def test_between_two_instants_it_may_fall_by_so_much(document: Document, more: float) -> None:
+    """h^2 / 8 of a_max + 3 n^2 r + 2 n v + 2 w v + w^2 r; the speed rises by h / 2 of the first three."""
+    hold = loop(document)
+    n, w, far, fast, h = 1.1e-3, 0.05, 900.0, 40.0, 0.5
+    push = 0.02 + 3.0 * n * n * far + 2.0 * n * fast
+    sag = h * h / 8.0 * (push + 2.0 * w * fast + w * w * far)
+    calm = _At(dict.fromkeys(hold.faces, arb(1)), arb(0), arb(0))
+    over = _At(calm.left, arb(far), arb(fast))
+    hold.margin, hold.speed = arb(1.0 - sag + more), None
+    for before, after in ((calm, replace(calm, left=calm.left | {"left": arb(2)})),):
+        for pair in ((before, after), (after, before)):
+            if more > 0.0:
+                with pytest.raises(ProofRejected, match="the distance to"):
+                    hold._require(*pair, over, arb(h))
+            else:
+                hold._require(*pair, over, arb(h))
+    hold.margin = arb("0.1")
+    for pair in ((calm, replace(calm, fast=arb(3))), (replace(calm, fast=arb(3)), calm)):
+        hold.speed = arb(3.0 + h / 2.0 * push - more)
+        if more > 0.0:
+            with pytest.raises(ProofRejected, match="the speed"):
+                hold._require(*pair, over, arb(h))
+        else:
+            hold._require(*pair, over, arb(h))
+
+
+def test_the_thrust_alone_refuses_a_level(document: Document) -> None:
+    """Ten metres from every face and without a speed limit."""
+    question = replace(
+        QUESTION,
+        speed_limit=None,
+        goal=Goal(1.0, 0.5, (0.0, 12.0)),
+        scenario=Scenario(Target(0.02, 1.1e-3), Chaser(0.02), replace(SHAPE, c_x=2.0)),
+    )
+    made_far = made(question, np.array([0.0, 12.0, -0.24, 0.0]))
+    level = made_far["hold_after"]["level"]
+    check(changed(made_far, "hold_after.level", 0.9 * level))
+    with pytest.raises(ProofRejected, match="the feedback may take"):
+        check(changed(made_far, "hold_after.level", 1.1 * level))
 
 
 def test_its_cost_is_that_of_scipys_riccati_equation(document: Document) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -10,6 +11,7 @@ from safestart.exact.answer import Answer, Held, Verdict
 from safestart.exact.question import SPEED_SCALE, Goal, Question
 from safestart.exact.space.question import SpaceQuestion
 from safestart.model.scenario import Floats
+from safestart.processes.go_no_go.question_fields import AfterArrival
 from safestart.processes.go_no_go.spec import GoNoGoInputs
 from safestart.processes.wire import DT_S
 
@@ -36,28 +38,26 @@ def question_of(inputs: GoNoGoInputs, dimensions: int) -> Question:
 
 
 def with_arrival(
-    inputs: GoNoGoInputs, question: Question, starts: Floats, answers: list[Answer]
+    after: AfterArrival, question: Question, starts: Sequence[Floats] | Floats, answers: list[Answer]
 ) -> list[Answer]:
-    """GOs of `synchronize` become UNDECIDED of which nothing proves that the chaser stays after its end, as asked."""
-    if question.goal is None or inputs.after_arrival == "any":
+    """GOs of `synchronize` become UNDECIDED without the proof that is asked of the time ``after`` their end."""
+    if question.goal is None or after == "any":
         return answers
-    if inputs.after_arrival == "hold":
+    if after == "hold":
         answers = [with_hold_after(question, *each) for each in zip(starts, answers, strict=True)]
     return [
-        replace(
-            answer, verdict=Verdict.UNDECIDED, reason=_NO_HOLD if inputs.after_arrival == "hold" else _NO_STAY
-        )
-        if answer.verdict is Verdict.GO and not stays(inputs, answer)
+        replace(answer, verdict=Verdict.UNDECIDED, reason=_NO_HOLD if after == "hold" else _NO_STAY)
+        if answer.verdict is Verdict.GO and not stays(after, answer)
         else answer
         for answer in answers
     ]
 
 
-def stays(inputs: GoNoGoInputs, answer: Answer) -> bool:
+def stays(after: AfterArrival, answer: Answer) -> bool:
     """Whether a GO of `synchronize` has the proof of what comes after its end that was asked for."""
-    if inputs.after_arrival == "any":
+    if after == "any":
         return True
-    return (answer.held if inputs.after_arrival == "hold" else answer.arrival) is not None
+    return (answer.held if after == "hold" else answer.arrival) is not None
 
 
 def with_hold_after(question: Question, start: Floats, answer: Answer) -> Answer:

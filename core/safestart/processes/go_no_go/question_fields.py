@@ -13,6 +13,7 @@ from safestart.processes.go_no_go.uncertainty import HalfWidths
 from safestart.processes.wire import Horizon
 
 QuestionKind = Literal["stay", "synchronize"]
+AfterArrival = Literal["stay", "hold", "any"]
 
 
 class QuestionFields(HalfWidths):
@@ -45,7 +46,7 @@ class QuestionFields(HalfWidths):
     rest_speed_m_s: float = Field(
         0.05, ge=1e-4, le=100, description="Largest speed in the body frame that counts as at rest, m/s."
     )
-    after_arrival: Literal["stay", "hold", "any"] = Field(
+    after_arrival: AfterArrival = Field(
         "stay",
         description="stay: GO of synchronize needs a proof that the chaser stays for ever after its end, else it is "
         "UNDECIDED. hold: it needs a proof that an LQR with thrust held over steps keeps it there for ever, and every "

@@ -123,7 +123,7 @@ class Hold:
         whole = phi + held * self.gain
         x = acb_mat(phi) * self.state + acb_mat(held) * self.thrust
         # x + i y = e^(i theta) (X + i Y) / 2 + e^(-i theta) conj(X - i Y) / 2, theta any angle.
-        turning, other = (x[0, 0] + acb(0, 1) * x[1, 0]) / 2, abs(x[0, 0] - acb(0, 1) * x[1, 0]) / 2
+        turning, other = (x[0, 0] + acb(0, 1) * x[1, 0]) / 2, (x[0, 0] - acb(0, 1) * x[1, 0]).abs_upper() / 2
         centre = _turn(-self.motion.w * s) * turning
         place, speed = (
             self._size(arb_mat([[whole[i, j] for j in range(4)] for i in rows])) for rows in ((0, 1), (2, 3))
@@ -132,12 +132,12 @@ class Hold:
             name: room - normal[0] * centre.real - normal[1] * centre.imag - other - place
             for name, (normal, room) in self.faces.items()
         }
-        return _At(left, abs(turning) + other + place, _largest(x[2, 0], x[3, 0]) + speed)
+        return _At(left, turning.abs_upper() + other + place, _largest(x[2, 0], x[3, 0]) + speed)
 
     def _size(self, rows: arb_mat) -> arb:
         """Largest |rows e|, rows (2, 4), over the ellipsoid."""
         m = rows * self.spread * rows.transpose()
-        spread = abs(acb(m[0, 0] - m[1, 1], 2 * m[0, 1]))
+        spread = acb(m[0, 0] - m[1, 1], 2 * m[0, 1]).abs_upper()
         return _root(self.level * (m[0, 0] + m[1, 1] + spread) / 2)
 
 
@@ -148,7 +148,7 @@ def _turn(angle: arb) -> acb:
 def _largest(x: acb, y: acb) -> arb:
     """Largest |Re(e^(i theta) (x, y))| over all theta."""
     sizes = sum((e.real * e.real + e.imag * e.imag for e in (x, y)), arb(0))
-    return _root((sizes + abs(x * x + y * y)) / 2)
+    return _root((sizes + (x * x + y * y).abs_upper()) / 2)
 
 
 def _root(square: arb) -> arb:

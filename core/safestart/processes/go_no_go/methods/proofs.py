@@ -53,7 +53,7 @@ def prove(inputs: GoNoGoInputs, solve: Solve, context: Context) -> Verdicts:
         reasons = [disturbed.sentence(disturbance, question, answer) for answer in answers]
     else:
         answers, by = solve(question, starts, context)
-        answers = asked.with_arrival(inputs, question, starts, answers)
+        answers = asked.with_arrival(inputs.after_arrival, question, starts, answers)
         reasons = [asked.sentence(question, answer) for answer in answers]
     return Verdicts(
         [answer.verdict.value for answer in answers],

@@ -66,7 +66,7 @@ def decide(inputs: GoNoGoInputs, _: Conditions, context: Context) -> Verdicts:
         answer = _answer(question, flight)
         if by_hold and flight.arrived is not None:
             answer = asked.with_hold_after(question, start, answer)
-        stays = question.goal is None or asked.stays(inputs, answer)
+        stays = question.goal is None or asked.stays(inputs.after_arrival, answer)
         verdict, by = flown.verdict_of(flight, exact, stays=stays)
         answer = answer if by == "tracking" else exact
         verdicts.append(verdict.value)
