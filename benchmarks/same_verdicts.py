@@ -1,8 +1,8 @@
 """Random questions answered by the compiled solver and by Clarabel: the same verdicts, brackets that meet, proofs.
 
 ``python -m benchmarks.same_verdicts FILE [--cases N] [--seconds S] [--seed K] [--proofs-every P]`` answers the cases of
-seed K from where FILE (JSON lines, one a block) ends, until N are done or S seconds are over. Checking a proof takes six
-times as long as both answers, so P above 1 checks those of every P-th case. Progress goes to stderr after every 20
+seed K from where FILE (JSON lines, one a block) ends, until N are done or S seconds are over. Checking a proof takes
+six times as long as both answers, so P above 1 checks those of every P-th case. Progress goes to stderr after every 20
 blocks; at the end one JSON document sums up all blocks of the file. Questions are `stay` in the plane and in space:
 thrust 1 mm/s^2 to 1 m/s^2, no tumble to 5 deg/s, with and without mean motion, 20 to 300 s, corridors of slope 0.3 to
 3, starts at rest in either frame or moving.
