@@ -21,7 +21,7 @@ from safestart.exact.question import Goal, Question
 from safestart.model.scenario import Chaser, CorridorShape, Floats, Scenario, Target
 from safestart.proofs.balls import Motion
 from safestart.proofs.checker import check
-from safestart.proofs.hold.check import Hold, _At
+from safestart.proofs.hold.check import Hold, _At, _require_positive
 from safestart.proofs.single import Witness
 from safestart.proofs.statement import read
 from safestart.proofs.strict import ProofRejected
@@ -286,7 +286,7 @@ def test_the_bounds_are_those_of_the_ellipsoid(document: Document) -> None:
         ):
             length = math.hypot(*normal)
             least = float(((offset - body @ normal) / length).min()) - place
-            assert float(found.left[name]) == pytest.approx(least, abs=1e-5)
+            assert float(found.left[name]) == pytest.approx(least, abs=2e-8)
         farthest = float(np.linalg.norm(seen[:, :2], axis=1).max()) + place
         assert farthest - 1e-9 <= float(found.far) <= farthest + 1e-2
         assert float(found.fast) == pytest.approx(
@@ -322,6 +322,20 @@ def test_between_two_instants_it_may_fall_by_so_much(document: Document, more: f
                 hold._require(*pair, over, arb(h))
         else:
             hold._require(*pair, over, arb(h))
+
+
+def test_pivots_tell_a_positive_matrix() -> None:
+    rng = np.random.default_rng(4)
+    for _ in range(20):
+        half = rng.normal(size=(4, 4))
+        _require_positive(arb_mat((half @ half.T + 0.01 * np.eye(4)).tolist()), "")
+    for i in range(4):
+        for j in range(i):
+            # Its diagonal is positive, its least eigenvalue -0.1.
+            bent = np.eye(4)
+            bent[i, j] = bent[j, i] = 1.1
+            with pytest.raises(ProofRejected, match="bent"):
+                _require_positive(arb_mat(bent.tolist()), "bent")
 
 
 def test_its_pieces_tile_the_step(document: Document, monkeypatch: pytest.MonkeyPatch) -> None:
