@@ -34,6 +34,9 @@ SAME_ARITHMETIC = {
     "XLA_FLAGS": "--xla_cpu_max_isa=AVX2",
     # A sum over two threads is another sum.
     "OPENBLAS_NUM_THREADS": "1",
+    # What is read before it is written is absurd (1.4e306) instead of zero or the last call's, and so the same
+    # everywhere, which no answer survives.
+    "MALLOC_PERTURB_": "128",
 }
 
 Files = dict[str, dict[str, str]]
@@ -92,7 +95,7 @@ def stored() -> dict[str, Files]:
 
 
 def arithmetic() -> dict[str, str]:
-    """Versions of the computing packages, on which the last bits depend besides our code."""
+    """Versions of the computing packages and the processor, on which the last bits depend besides our code."""
     packages = (
         "numpy",
         "scipy",
@@ -105,7 +108,16 @@ def arithmetic() -> dict[str, str]:
         "pyarrow",
     )
     found = {name: version(name) for name in packages if _installed(name)}
-    return found | {"libc": " ".join(platform.libc_ver())}
+    # XLA compiles hj-reachability's single precision for the processor that it finds, whatever its flags say.
+    return found | {"libc": " ".join(platform.libc_ver()), "processor": _processor()}
+
+
+def _processor() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        return platform.machine()
+    return next((line.partition(":")[2].strip() for line in lines if line.startswith("model name")), "")
 
 
 def _installed(name: str) -> bool:

@@ -28,6 +28,41 @@ def test_every_question_has_digests() -> None:
     assert set(digests.stored()) == set(questions.names())
 
 
+def test_the_service_keeps_the_arrays_that_the_process_computes() -> None:
+    # Both were stored at different times: an old digest that a merge brings back is found here.
+    stored, compared = digests.stored(), 0
+    for process_id in PROCESS_IDS:
+        here, served = stored[f"{process_id}/example"], stored[f"service/{process_id}/example"]
+        for name in (name for name in here if name.endswith(".npz")):
+            assert digests.differences({name: here[name]}, {name: served[f"artifacts/{name}"]}) == []
+            compared += 1
+    assert compared > 5
+
+
+def test_all_is_what_its_parts_are() -> None:
+    stored, compared = digests.stored(), 0
+    whole = stored["reproduce/all"]["printed-1.json"]
+    for name in ("table2", "table3", "chain", "collision-avoidance", "tracking-mpc", "passive-safety"):
+        part = stored[f"reproduce/{name}"]["printed-1.json"]
+        for place in (place for place in part if place.startswith("printed.")):
+            same = f"printed.{name.replace('-', '_')}.{place.removeprefix('printed.')}"
+            # A place of the whole is one level deeper, and may hold what are several places of the part.
+            if same in whole and not any(other.startswith(f"{place}.") for other in part):
+                assert whole[same] == part[place], same
+                compared += 1
+    assert compared > 100
+
+
+def test_times_within_a_cell_are_left_out() -> None:
+    def cell(seconds: float, radius: float) -> content.Digests:
+        return content.table(
+            f'name,detail\ntube,"{{""compile_s"":{seconds},""radius_m"":{radius}}}"\n'.encode()
+        )
+
+    assert cell(0.1, 2.0) == cell(0.2, 2.0)
+    assert cell(0.1, 2.0) != cell(0.1, 3.0)
+
+
 def test_every_process_is_asked_for_its_example_here_and_over_http() -> None:
     names = set(questions.names())
     assert {f"{process_id}/example" for process_id in PROCESS_IDS} <= names

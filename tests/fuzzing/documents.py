@@ -6,7 +6,7 @@ import contextlib
 import json
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from random import Random
 from typing import Any
@@ -16,6 +16,7 @@ import numpy as np
 from safestart.disturbance.prove import proof_against
 from safestart.disturbance.tube import Disturbance, decide_disturbed, tube_of
 from safestart.exact.decide import decide
+from safestart.exact.hold_after import with_hold
 from safestart.exact.prove import proof_of
 from safestart.exact.question import Goal, Question
 from safestart.families.decide import decide_for_all
@@ -32,10 +33,11 @@ from tests.fuzzing.abort.decided import truth_of_drifts
 from tests.fuzzing.abort.made import MADE as OF_BURNS
 from tests.fuzzing.abort.printed import printed as printed_drifts
 from tests.fuzzing.arrived import truth_after
-from tests.fuzzing.decided import truth
+from tests.fuzzing.decided import Truth, truth
 from tests.fuzzing.disturbed import truth_against
+from tests.fuzzing.held import truth_held
 from tests.fuzzing.mutants import known_fields, mutants, paths
-from tests.fuzzing.printed import printed
+from tests.fuzzing.printed import Printed, printed
 from tests.fuzzing.space.decided import truth_in_space
 from tests.fuzzing.space.made import MADE as IN_SPACE
 from tests.fuzzing.space.printed import printed as printed_in_space
@@ -55,6 +57,11 @@ def _one(question: Question, *start: float) -> Document:
     return proof_of(question, state, decide(question, state))
 
 
+def _held(question: Question, *start: float) -> Document:
+    state = np.array(start)
+    return proof_of(question, state, with_hold(question, state, decide(question, state)))
+
+
 def _all(verdict_start: tuple[float, ...], rate: float, **change: Any) -> Document:
     question = Question(_scenario(rate, 0.1), 2.0, 2, 2, None, None, 0.5)
     family = Family(question, 2e-3, 5e-3, 1e-5, (0.0, 0.2, 0.01, 0.0))
@@ -68,6 +75,8 @@ def _against(question: Question, disturbance: Disturbance, *start: float) -> Doc
     return proof_against(question, disturbance, tube_of(question, disturbance), state, answer)
 
 
+# One step, too short to come to rest: the stop afterwards takes time.
+MOVING = Question(_scenario(0.05, 0.02), 2.0, 1, 2, Goal(0.5, 0.05, (0.0, 1.5)), 1.5, 0.5)
 MAKERS: dict[str, Callable[[], Document]] = {
     "stay-go": lambda: _one(Question(_scenario(0.05, 0.1), 2.0, 4), 2.0, 6.0, 0.1, -0.2),
     "stay-no-go": lambda: _one(Question(_scenario(0.1, 0.05), 2.0, 4), 8.0, 6.0, 0.2, 0.0),
@@ -80,14 +89,8 @@ MAKERS: dict[str, Callable[[], Document]] = {
     "synchronize-go": lambda: _one(
         Question(_scenario(0.05, 0.3), 2.0, 4, 2, GOAL, 1.5, 0.5), 0.3, 2.0, 0.0, -0.1
     ),
-    # One step, too short to come to rest: the stop afterwards takes time.
-    "synchronize-go-moving": lambda: _one(
-        Question(_scenario(0.05, 0.02), 2.0, 1, 2, Goal(0.5, 0.05, (0.0, 1.5)), 1.5, 0.5),
-        0.1,
-        1.5,
-        -0.075,
-        0.065,
-    ),
+    "synchronize-go-moving": lambda: _one(MOVING, 0.1, 1.5, -0.075, 0.065),
+    "synchronize-go-held": lambda: _held(MOVING, 0.1, 1.5, -0.075, 0.065),
     "synchronize-no-go": lambda: _one(
         Question(_scenario(0.05, 0.05), 2.0, 4, 2, GOAL, 1.5, 0.5), 0.5, 3.0, 0.3, 0.0
     ),
@@ -198,10 +201,23 @@ def decided(found: Verified, document: Document, rng: Random) -> str:
         said = printed_drifts(found.statement)
         return "false" if said.least != found.margin_m else truth_of_drifts(said, rng)
     claim = printed(found.verdict, found.margin_m, found.statement)
-    answer = truth_against(claim, document, rng) if claim.who == "against" else truth(claim, rng)
+    answer = truth_against(claim, document, rng) if claim.who == "against" else _until_the_end(claim, rng)
     if claim.stop is not None and answer != "false":
         answer = "false" if truth_after(claim, document) == "false" else answer
+    if claim.held is not None and answer != "false":
+        answer = "false" if truth_held(claim, claim.held, document) == "false" else answer
     return answer
+
+
+_UNTIL: dict[Printed, Truth] = {}
+
+
+def _until_the_end(claim: Printed, rng: Random) -> Truth:
+    """The truth of what is claimed up to the end, looked up where only claims about the time after it changed."""
+    alone = replace(claim, stop=None, after=0.0, held=None)
+    if alone not in _UNTIL:
+        _UNTIL[alone] = truth(alone, rng)
+    return _UNTIL[alone]
 
 
 def _question(document: Document) -> str:

@@ -11,6 +11,7 @@ from typing import Any
 Range = tuple[float, float]
 _NUMBER = r"-?[0-9.]+(?:e[-+]?[0-9]+)?"
 _VECTOR = rf"\[{_NUMBER}(?:, {_NUMBER})*\]"
+_ROWS = rf"{_VECTOR}(?:, {_VECTOR})*"
 _VALUE = rf"{_NUMBER}(?: to {_NUMBER})?"
 _BRACKET = r" \([^()]*\)"
 _LINES = (
@@ -23,6 +24,12 @@ _LINES = (
     rf"after that end for ever: it stops against the body frame in (?P<stop>{_NUMBER}) s and stands there, at least "
     rf"(?P<after>{_NUMBER}) m from every face, within the limits, by thrust that follows the turn of the body "
     r"\(not held over steps\)",
+    rf"after that end for ever under a feedback: thrust u_ref \+ K \(x - x_ref\), held over the same steps, x position "
+    rf"and velocity in LVLH, x_ref at (?P<point>{_VECTOR}) m in the body frame at every step, u_ref what keeps it "
+    rf"there, K = \[(?P<gain>{_ROWS})\]; at least (?P<kept>{_NUMBER}) m from every face, within "
+    r"(?P<within>the thrust limit|the limits of thrust and speed)",
+    rf"so from every x with \(x - x_ref\)' P \(x - x_ref\) <= (?P<level>{_NUMBER}) at a step, whatever the angle of "
+    rf"the body, that of the end being one, P = \[(?P<cost>{_ROWS})\]",
     r"thrust held over each step, motion in (?P<space>the orbit plane|space)",
     rf"corridor in the body frame, m: y >= (?P<plane>{_NUMBER}), "
     rf"\|x\| <= (?P<x0>{_NUMBER}) \+ (?P<c_x>{_NUMBER}) \(y - (?P=plane)\)"
@@ -63,6 +70,20 @@ _WHO = {
 _FACES = "the distance to the nearest face"
 
 
+Rows = tuple[tuple[float, ...], ...]
+
+
+@dataclass(frozen=True)
+class Feedback:
+    """What is said of a feedback after the end: ``margin`` m kept from every x whose cost is at most ``level``."""
+
+    point: tuple[float, ...]
+    gain: Rows
+    cost: Rows
+    level: float
+    margin: float
+
+
 @dataclass(frozen=True)
 class Printed:
     """A claim: ``verdict`` with ``margin`` m for ``who``; ranges are (low, high), ``half`` is 0 for a known start."""
@@ -94,6 +115,7 @@ class Printed:
     radius_m: float = 0.0
     height_m: float = 0.0
     feedback: float = 0.0
+    held: Feedback | None = None
     lines: tuple[str, ...] = field(default=(), compare=False)
 
 
@@ -137,6 +159,14 @@ def printed(verdict: str, margin: float, lines: tuple[str, ...]) -> Printed:
         assert who == "one", lines
         assert (said, "hold" in found) == ("GO", True), lines
         out |= {"stop": float(found["stop"]), "after": float(found["after"])}
+    if "point" in found:
+        assert (who, said, d, "hold" in found, "level" in found) == ("one", "GO", 2, True, True), lines
+        assert ("speed" in found) is ("speed" in found["within"]), lines
+        out["held"] = Feedback(
+            _vector(found, "point", 2),
+            *(tuple(map(tuple, json.loads(f"[{found[key]}]"))) for key in ("gain", "cost")),
+            *(float(found[key]) for key in ("level", "kept")),
+        )
     if "hold" in found:
         assert "first" in found, lines
         out |= {

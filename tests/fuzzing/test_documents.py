@@ -11,6 +11,7 @@ import pytest
 
 from safestart.proofs import refute, statement, weights
 from safestart.proofs.checker import check
+from safestart.proofs.hold.check import Hold
 from safestart.proofs.single import Witness
 from tests.fuzzing.abort.decided import truth_of_drifts
 from tests.fuzzing.abort.made import MADE as OF_BURNS
@@ -20,6 +21,7 @@ from tests.fuzzing.decided import truth
 from tests.fuzzing.disturbed import truth_against
 from tests.fuzzing.documents import KINDS, original, run
 from tests.fuzzing.files import FILES
+from tests.fuzzing.held import truth_held
 from tests.fuzzing.printed import Printed, printed
 from tests.fuzzing.space.decided import truth_in_space
 from tests.fuzzing.space.made import MADE as IN_SPACE
@@ -93,6 +95,31 @@ def test_the_decision_about_the_time_after_the_end_is_one(change: dict[str, Any]
     said, document = claim("synchronize-go-moving"), json.loads(original("synchronize-go-moving"))
     assert truth_after(said, document) == "true"
     assert truth_after(replace(said, **change), document) == "false"
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        *({"level": 4.0}, {"level": 1e-3}, {"margin": 0.7}, {"point": (0.1, 1.3)}, {"point": (1.0, 1.8)}),
+        *({"gain": ((0.0,) * 4,) * 2}, {"gain": ((-0.1, 0.0, -0.5, 0.0), (0.0, -0.1, 0.0, -0.5))}),
+        {"cost": tuple(tuple(0.5 * float(i == j) for j in range(4)) for i in range(4))},
+    ],
+)
+def test_the_decision_about_a_feedback_is_one(change: dict[str, Any]) -> None:
+    said, document = claim("synchronize-go-held"), json.loads(original("synchronize-go-held"))
+    assert said.held is not None
+    assert truth_held(said, said.held, document) == "true"
+    assert truth_held(said, replace(said.held, **change), document) == "false"
+    assert truth_held(replace(said, thrusts=(0.01, 0.01)), said.held, document) == "false"
+    assert truth_held(replace(said, speed=0.1), said.held, document) == "false"
+
+
+@pytest.mark.parametrize("blind", ["check", "_require"])
+def test_a_checker_that_does_not_look_at_the_feedback_is_caught(
+    monkeypatch: pytest.MonkeyPatch, blind: str
+) -> None:
+    monkeypatch.setattr(Hold, blind, lambda *_: None)
+    assert run("synchronize-go-held", 400, 3).false
 
 
 def test_a_checker_that_does_not_look_after_the_end_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:

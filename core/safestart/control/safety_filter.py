@@ -99,9 +99,10 @@ def _keep_out(plan, x, normals, bounds, weights):  # type: ignore[no-untyped-def
     """Write the keep-out row of one step: e . p_1 >= R, linearised at the direction e of the free drift at node 1."""
     d = normals.shape[0]
     row = plan.keep_out_row
-    drift = np.zeros(3)
+    drift = np.empty(3)
     square = 0.0
     for i in range(d):
+        drift[i] = 0.0
         for c in plan.components:
             drift[i] += plan.node_transition[i, c] * x[c]
         square += drift[i] * drift[i]

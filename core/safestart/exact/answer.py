@@ -60,6 +60,22 @@ class Arrival:
 
 
 @dataclass(frozen=True, slots=True)
+class Held:
+    """After the end of `synchronize`: a feedback that keeps the chaser for ever (:mod:`safestart.exact.hold_after`).
+
+    The thrust is u_ref + ``gain`` (2, 4) e, held over the question's steps, e the error (LVLH, m and m/s) against a
+    reference that is at ``point`` (2,), m, of the body frame at every step. All e with e' ``cost`` e <= ``level``
+    stay ``margin`` m from every face; that of the end is one.
+    """
+
+    point: Floats
+    gain: Floats
+    cost: Floats
+    level: float
+    margin: float
+
+
+@dataclass(frozen=True, slots=True)
 class Answer:
     """Verdict and bracket of the signed margin m in metres (all face distances >= m at all times, at best).
 
@@ -70,7 +86,8 @@ class Answer:
 
     For `synchronize` m is the best over T, ``thrust`` ends at the T it was found for, and ``parts`` stand for
     ``multipliers``. The loop ends with the verdict, so the bracket may be wide. ``arrival`` says how a GO goes on for
-    ever; None where that is not proved. ``restriction`` names the convex parts of the demands by which a GO was found.
+    ever; None where that is not proved. ``held`` says the same by a feedback, where that was asked. ``restriction``
+    names the convex parts of the demands by which a GO was found.
     """
 
     verdict: Verdict
@@ -83,6 +100,7 @@ class Answer:
     reason: str = ""
     parts: tuple[Part, ...] = ()
     arrival: Arrival | None = None
+    held: Held | None = None
     restriction: tuple[str, ...] = ()
 
     @property

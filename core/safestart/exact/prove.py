@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from safestart.errors import invalid
-from safestart.exact.answer import Answer, Multiplier, Verdict
+from safestart.exact.answer import Answer, Held, Multiplier, Verdict
 from safestart.exact.limits import AT_END
 from safestart.exact.question import SPEED_SCALE, Goal, Question
 from safestart.model.scenario import Floats
@@ -47,6 +47,8 @@ def proof_of(question: Question, state: Floats, answer: Answer) -> dict[str, Any
                 "stop_s": answer.arrival.stop,
                 "margin_m": max(margin - GO_STAND_BACK_M, 0.5 * margin),
             }
+        if answer.held is not None:
+            document["hold_after"] = _hold_after(answer.held)
     elif answer.verdict is Verdict.NO_GO:
         document["margin_m"] = min(answer.upper + NO_GO_STAND_BACK_M, 0.5 * answer.upper)
         document |= refuted_by(answer, question.latest, free=question.goal is not None)
@@ -54,6 +56,16 @@ def proof_of(question: Question, state: Floats, answer: Answer) -> dict[str, Any
         raise invalid("answer", "a GO or NO_GO", answer.verdict.value)
     document["digest"] = digest_of(document)
     return document
+
+
+def _hold_after(held: Held) -> dict[str, Any]:
+    return {
+        "point_m": held.point.tolist(),
+        "gain": held.gain.tolist(),
+        "cost": held.cost.tolist(),
+        "level": held.level,
+        "margin_m": max(held.margin - GO_STAND_BACK_M, 0.5 * held.margin),
+    }
 
 
 def question_of(question: Question) -> dict[str, Any]:

@@ -19,6 +19,7 @@ from safestart.model.orbit import MU
 from safestart.model.scenario import Floats, number
 
 MOST_HOPS = 100
+_ROUND_OFF = 1e-12
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +78,15 @@ class Approach:
         first = self.hops[0].left_with.copy()
         first[3:] = 0.0
         return np.array([first, *(hop.arrives_with for hop in self.hops)])
+
+
+def without_round_off(vectors: Floats) -> Floats:
+    """Vectors (K, 3) in which a component below 1e-12 of its vector's size is 0, as on the V-bar, where half an orbit's
+    sine is one of round-off."""
+    sizes = np.linalg.norm(vectors, axis=1, keepdims=True)
+    # A sum with 0 makes -0 a 0.
+    out: Floats = np.where(np.abs(vectors) <= _ROUND_OFF * sizes, 0.0, vectors) + 0.0
+    return out
 
 
 def mean_motion_of(semi_major_axis: float) -> float:

@@ -15,6 +15,7 @@ from typing import Any
 from flint import arb, arb_mat, fmpq
 
 from safestart.proofs.balls import PRECISION, Motion
+from safestart.proofs.hold.check import Hold
 from safestart.proofs.refute import refute
 from safestart.proofs.statement import Stated, read
 from safestart.proofs.strict import ProofRejected
@@ -89,6 +90,10 @@ class Witness:
             state = phi * state + held * u
         if self.limits.hold is not None:
             self._end(state, arb(self.dt * len(self.stated.thrust)))
+        if self.stated.held is not None:
+            most = None if self.limits.most is None else arb(self.limits.most)
+            hold = Hold(self.stated.held, self.motion, arb(self.dt), self.faces, arb(self.stated.a_max), most)
+            hold.check(state, arb(self.dt * len(self.stated.thrust)))
         return self.pieces
 
     def _end(self, state: arb_mat, time: arb) -> None:

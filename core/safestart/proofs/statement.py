@@ -13,6 +13,8 @@ from typing import Any
 
 from flint import fmpq
 
+from safestart.proofs.hold import statement as hold
+from safestart.proofs.hold.statement import StatedHold
 from safestart.proofs.strict import LARGEST, ProofRejected, fields, number, part, shown, vector
 from safestart.proofs.weights import Limits, Weight, limits_of, parts_of
 
@@ -43,7 +45,7 @@ class Stated:
     ``shape`` holds the corridor's numbers, ``faces`` maps a name to (normal, offset). The end is any of the steps
     ``earliest`` .. ``steps``; both are equal if it is fixed. ``thrust`` (k, d) for GO; for NO_GO ``parts`` (first,
     last, weights), each against the ends first .. last, together against all ends in question. ``arrival`` (stop in
-    s, margin in m) claims that a `synchronize` GO goes on for ever.
+    s, margin in m) and ``held`` claim that a `synchronize` GO goes on for ever, by a stop and by a feedback.
     """
 
     verdict: str
@@ -62,6 +64,7 @@ class Stated:
     thrust: list[list[fmpq]]
     parts: list[tuple[int, int, list[Weight]]]
     arrival: tuple[fmpq, fmpq] | None = None
+    held: StatedHold | None = None
 
 
 def digest_of(document: Mapping[str, Any]) -> str:
@@ -92,7 +95,7 @@ def read(document: Any) -> Stated:
         raise ProofRejected("kind, verdict: required stay or synchronize, and GO or NO_GO")
     go, free = verdict == "GO", kind == "synchronize"
     proved_by = "thrust_m_s2" if go else "parts" if free else "multipliers"
-    fields(document, "document", (*DOCUMENT, proved_by), ("arrival",) if go and free else ())
+    fields(document, "document", (*DOCUMENT, proved_by), ("arrival", hold.FIELD) if go and free else ())
     ends = ("earliest_step", "goal") if free else ()
     fields(question, f"question ({kind})", (*_QUESTION, *ends), ("speed_limit", "keep_out_m"))
     d, steps = part(question, "dimensions", int), part(question, "steps", int)
@@ -124,6 +127,7 @@ def read(document: Any) -> Stated:
         thrust=_thrust(evidence, earliest, steps, d) if go else [],
         parts=[] if go else parts_of(parts, (earliest, steps), faces, limits, dt * steps, d),
         arrival=_arrival(document["arrival"]) if "arrival" in document else None,
+        held=hold.read(document[hold.FIELD], d) if hold.FIELD in document else None,
     )
 
 

@@ -37,6 +37,7 @@ def lines(stated: Stated) -> tuple[str, ...]:
         f"{found(stated)} the margin, {_margin(stated)}",
         *_asked(stated),
         *_arrival(stated),
+        *_held(stated),
         f"tumble rate about the orbit normal, from the axes of LVLH on: {_rate(stated.w, stated.w)}",
         f"mean motion: {_value(stated.n, stated.n)} rad/s",
         f"thrust: at most {_value(stated.a_max, stated.a_max)} m/s^2, no disturbance",
@@ -51,6 +52,21 @@ def _arrival(stated: Stated) -> list[str]:
     return [
         f"after that end for ever: it stops against the body frame in {stop} s and stands there, at least {margin} m "
         "from every face, within the limits, by thrust that follows the turn of the body (not held over steps)"
+    ]
+
+
+def _held(stated: Stated) -> list[str]:
+    held = stated.held
+    if held is None:
+        return []
+    gain, cost = (", ".join(map(_vector, rows)) for rows in (held.gain, held.cost))
+    limits = "the thrust limit" if stated.limits.most is None else "the limits of thrust and speed"
+    return [
+        f"after that end for ever under a feedback: thrust u_ref + K (x - x_ref), held over the same steps, x position "
+        f"and velocity in LVLH, x_ref at {_vector(held.point)} m in the body frame at every step, u_ref what keeps it "
+        f"there, K = [{gain}]; at least {_number(held.margin)} m from every face, within {limits}",
+        f"so from every x with (x - x_ref)' P (x - x_ref) <= {_number(held.level)} at a step, whatever the angle of "
+        f"the body, that of the end being one, P = [{cost}]",
     ]
 
 

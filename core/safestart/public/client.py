@@ -11,6 +11,7 @@ import numpy as np
 
 from safestart.errors import Unavailable
 from safestart.model.scenario import MAX_RANGE, Rest, Scenario, number
+from safestart.processes.go_no_go.question_fields import AfterArrival
 from safestart.public.certificates import Certificates
 from safestart.public.decisions import Asked, Decision, asked_of
 from safestart.public.flights import Flight
@@ -94,6 +95,7 @@ class Client:
         question: Asked = "stay",
         horizon_s: float = 60.0,
         within_s: float = 200.0,
+        after_arrival: AfterArrival = "stay",
     ) -> Decision:
         """As `safestart.decide`."""
         point, rest = point_of(start), Rest(rest)
@@ -107,6 +109,7 @@ class Client:
             "question": question,
             "horizon_s": horizon_s,
             "within_s": within_s,
+            "after_arrival": after_arrival,
         }
         found = self._wire.post("/go-no-go", asked)
         (verdict,), (margin,), (reason,) = found["verdict"], found["margin_m"], found["reason"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
@@ -17,10 +17,13 @@ from safestart.exact.prove import proof_of
 from safestart.exact.question import Goal, Question
 from safestart.model.scenario import Floats, Rest, Scenario
 from safestart.optim.prediction import prediction_of
-from safestart.processes.go_no_go.question import sentence
+from safestart.processes.go_no_go.question import sentence, with_arrival
+from safestart.processes.go_no_go.question_fields import AfterArrival
 from safestart.processes.wire import DT_S
+from safestart.public.controllers import Pilot
 from safestart.public.shown import COLOURS, Shown
 from safestart.public.starts import point_of, seconds
+from safestart.simulation.starts import steps_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -69,6 +72,23 @@ class Decision(Shown):
             raise invalid("proof", "a decided verdict", self.verdict)
         return verify(self.proof)
 
+    def pilot(self, *, duration_s: float = 600.0) -> Pilot:
+        """The controller of a GO with ``after_arrival="hold"``: its thrust history, then the LQR that holds it there.
+
+        For `fly` or any simulator, with a command every 2 s for ``duration_s`` seconds. Raises ``InvalidInput`` for
+        another decision, or a duration out of range.
+        """
+        from safestart.control.hold.arrive_and_hold import ArriveAndHold
+        from safestart.control.hold.hold_lqr import hold_of
+
+        found = (self.proof or {}).get("hold_after")
+        if found is None:
+            raise invalid("pilot", "a GO of synchronize with after_arrival hold", self.verdict)
+        gain, cost, point = (np.array(found[key]) for key in ("gain", "cost", "point_m"))
+        target, most = self.scenario.target, self.scenario.chaser.max_acceleration
+        hold = hold_of(gain, cost, point, target.tumble_rate, target.mean_motion, DT_S, most)
+        return Pilot("hold", ArriveAndHold(self.thrust_m_s2, hold), DT_S, steps_of(duration_s, DT_S))
+
     def facts(self) -> Mapping[str, object]:
         """Verdict, margin and reason."""
         margin = "none" if np.isnan(self.margin_m) else f"{self.margin_m:.6g} m"
@@ -113,19 +133,24 @@ def decide(
     question: Asked = "stay",
     horizon_s: float = 60.0,
     within_s: float = 200.0,
+    after_arrival: AfterArrival = "stay",
 ) -> Decision:
     """Can any thrust history keep the chaser in the rotating corridor? (docs/theory/exact.md)
 
     ``start`` (2,) or (3,): body-frame position in metres, at rest in LVLH or in the body frame (``rest``). ``stay``: in
     the corridor at all times of ``horizon_s`` seconds; ``synchronize``: in addition, at rest in the body frame in the
-    ball around the hold point at some time within ``within_s`` seconds. Thrust is held over intervals of 2 s. Raises
-    ``InvalidInput`` for other inputs; a failure of the solver is UNDECIDED.
+    ball around the hold point at some time within ``within_s`` seconds; its GO needs a proof of what comes
+    ``after_arrival``: ``stay``, that the chaser can stay for ever; ``hold``, that an LQR keeps it there (planar);
+    ``any``: nothing is asked. Thrust is held over intervals of 2 s. Raises ``InvalidInput`` for other inputs; a failure
+    of the solver is UNDECIDED.
     """
     point, rest = point_of(start), Rest(rest)
     goal, span = asked_of(question, horizon_s, within_s)
     asked = Question(scenario, DT_S, round(span / DT_S), len(point), goal)
     state = state_at_rest(scenario, point, rest)
-    answer = decide_start(asked, state)
+    if after_arrival not in get_args(AfterArrival):
+        raise invalid("after_arrival", "stay, hold or any", after_arrival)
+    (answer,) = with_arrival(after_arrival, asked, [state], [decide_start(asked, state)])
     decided = answer.verdict is not Verdict.UNDECIDED
     return Decision(
         scenario,

@@ -29,6 +29,8 @@ import numpy as np
 from numba import njit, types
 from numba.core.caching import FunctionCache
 
+from safestart.runtime.kernel_parts import part
+
 log = logging.getLogger("safestart.kernels")
 
 _OURS = "safestart"
@@ -45,7 +47,9 @@ def compiled(**options: Any) -> Callable[[Any], Any]:
     def decorate(function: Any) -> Any:
         # Nothing takes a kernel's address for C, so no wrapper is compiled for that.
         named: dict[str, Any] = {"nogil": True, "no_cfunc_wrapper": True, **options}
-        kernel = by_types(njit(**named)(function))
+        kernel = njit(**named)(function)
+        inner = part(function, **named)
+        kernel.get_call_template, kernel.get_overload = inner.get_call_template, inner.get_overload
         try:
             kernel._cache = KernelCache(function)
             kernel._cache.options = _options(kernel)
@@ -54,23 +58,6 @@ def compiled(**options: Any) -> Callable[[Any], Any]:
         return kernel
 
     return decorate
-
-
-def by_types(kernel: Any) -> Any:
-    """The same kernel, compiled once for the types of its arguments where another kernel calls it.
-
-    Numba compiles a callee for a literal argument first, and again for its type: a loop's counter, which starts as the
-    literal 0, cost a second compilation of everything that it is passed to.
-    """
-    template = kernel.get_call_template
-
-    def for_types(args: Any, kws: Any) -> Any:
-        return template(
-            tuple(map(types.unliteral, args)), {name: types.unliteral(one) for name, one in kws.items()}
-        )
-
-    kernel.get_call_template = for_types
-    return kernel
 
 
 class KernelCache(FunctionCache):

@@ -36,13 +36,14 @@ def roll_out(plan, truth, draws, starts, counts, sums, log_state, log_command, l
     logging = len(log_state) > 0
     drawing = len(draws) > 0
     bounds, work, index = np.empty(m), np.empty((10, 4)), np.empty(4, np.int64)
-    nominal, command, previous = np.zeros(3), np.zeros(3), np.zeros(3)
+    nominal, command, previous = np.empty(3), np.empty(3), np.empty(3)
     before, after = np.empty((2, count)), np.empty((2, count))
     x, seen = np.empty(6), np.empty(6)
     for flight in range(len(starts)):
         for i in range(6):
             x[i] = starts[flight, i]
-        previous[:] = 0.0
+        for i in range(3):
+            previous[i], command[i] = 0.0, 0.0
         r0 = math.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2])
         v_max = plan.closing_factor * math.sqrt(law.max_acceleration * r0)
         # At the start the body frame coincides with LVLH.

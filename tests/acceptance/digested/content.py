@@ -97,18 +97,28 @@ def _array(array: np.ndarray[Any, Any]) -> str:
 def table(data: bytes) -> Digests:
     """One digest per column of a CSV file, over its written values."""
     rows = list(csv.reader(io.StringIO(data.decode(), newline="")))
-    return _columns(rows[0], {name: [row[place] for row in rows[1:]] for place, name in enumerate(rows[0])})
+    values = {
+        name: [_cell(row[place]) if row[place].startswith("{") else row[place] for row in rows[1:]]
+        for place, name in enumerate(rows[0])
+    }
+    return _columns(rows[0], values)
 
 
 def parquet(data: bytes) -> Digests:
     """One digest per column of a Parquet file, over its type and values."""
-
     found = read(data)
     values = {
-        field.name: [str(field.type), *map(repr, found.column(field.name).to_pylist())]
+        field.name: [str(field.type), *map(_cell, found.column(field.name).to_pylist())]
         for field in found.schema
     }
     return _columns(found.column_names, values)
+
+
+def _cell(value: Any) -> str:
+    """A cell, without its times where it holds an object as text."""
+    if isinstance(value, str) and value.startswith("{"):
+        return json.dumps(comparable(json.loads(value)))
+    return repr(value)
 
 
 def _columns(names: list[str], values: Mapping[str, list[str]]) -> Digests:

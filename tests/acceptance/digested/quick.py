@@ -156,5 +156,15 @@ QUICK: dict[str, Inputs | tuple[Inputs, ...]] = {
         "horizon_min": 240,
         "critical_abort": False,
     },
+    "passive-abort/earth-zones": {
+        "model": "earth",
+        "eccentricity": 0.02,
+        "start": {"position_m": [0, 260, 0], "velocity_m_s": [0, 0, 0]},
+        "burns": [{"time_s": 0, "impulse_m_s": [0.05, 0, 0.01], "duration_s": 60}],
+        "zones": [{"kind": "box", "centre_m": [4, -20, 3], "half_m": [8, 30, 5]}],
+        "keep_out_m": 10,
+        "abort_orbits": 0.5,
+        "failures": {"late_s": 20, "partial": True, "stuck_s": 2},
+    },
     "safe-abort-map/small": {"arc": {"rings": 1, "angles": 6}, "windows": 6},
 }

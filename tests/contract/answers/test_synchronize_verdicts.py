@@ -39,6 +39,34 @@ def test_both_verdicts_with_their_proofs() -> None:
     assert (soon["verdict"], soon["end_s"], soon["proof"]) == (["NO_GO"], [None], None)
 
 
+def test_the_hold_after_it() -> None:
+    """A third start stands by a face so near that no set of the LQR holds its end."""
+    hold = SYNC | {"after_arrival": "hold"}
+    found = ask(states=[NEAR, FAR], **hold)
+    assert found["verdict"] == ["GO", "NO_GO"]
+    near, far = found["hold_after"]
+    assert far is None
+    assert near["code"] == "proved"
+    assert "keeps it for ever, thrust held over steps of 2 s" in found["reason"][0]
+    proof = found["proof"][0]
+    assert near["level"] == proof["hold_after"]["level"]
+    assert any("under a feedback" in line for line in check(json.loads(json.dumps(proof))).statement)
+    # A ball of a millimetre on the hold plane leaves no room for errors of rounding.
+    edge = ask(states=[NEAR], **hold, ball_radius_m=0.001, rest_speed_m_s=0.05)
+    assert edge["verdict"] == ["UNDECIDED"]
+    assert edge["proof"] == [None]
+    assert edge["hold_after"] == [{"code": "not_proved"} | dict.fromkeys(set(near) - {"code"})]
+    assert "for ever" not in edge["reason"][0]
+    for other in ("stay", "any"):
+        plain = ask(states=[NEAR], **SYNC, after_arrival=other)
+        assert "hold_after" not in plain
+        assert "hold_after" not in plain["proof"][0]
+    assert "hold_after" not in ask(states=[NEAR], method="exact", after_arrival="hold"), "nothing arrives"
+    with pytest.raises(InvalidInput, match="planar") as error:
+        ask(states=[NEAR | {"z_m": 1}], **hold)
+    assert error.value.field == "after_arrival"
+
+
 def test_limits_in_space_and_at_rest_in_the_body_frame() -> None:
     spatial = ask(
         states=[{"x_m": 3, "y_m": 20, "z_m": 2}], **SYNC, hold_y_m=2, hold_z_m=0.5, speed_limit_m_s=1
@@ -105,6 +133,10 @@ def test_over_http(tmp_path: Path) -> None:
         assert client.get("/go-no-go", params=POINT | NEAR).json()["question"] == "stay"
         many = client.post("/go-no-go", json=POINT | {"states": [NEAR, FAR]} | SYNC).json()
         assert many["verdict"] == ["GO", "NO_GO"]
+        held = client.get("/go-no-go", params=POINT | NEAR | SYNC | {"after_arrival": "hold"}).json()
+        assert held["hold_after"]["code"] == "proved"
+        assert client.get(held["proof_url"]).json() == held["proof"]
+        assert "hold_after" not in one
         for inputs, field, said in BAD:
             for refused in (
                 client.get("/go-no-go", params=POINT | NEAR | inputs),

@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 from safestart.constraints.corridor import corridor_of
+from safestart.control.hold.ellipsoid import ellipsoid
 from safestart.control.hold.hold_lqr import Design
-from safestart.control.hold.hold_sets import Hold, ellipsoid, polyhedron
+from safestart.control.hold.loop import Hold
+from safestart.control.hold.polyhedron import polyhedron
 from safestart.control.hold.turning_reference import TurningReference
 from safestart.dynamics.cwh import planar_input, planar_transition
 from safestart.errors import InvalidInput

@@ -126,6 +126,19 @@ def test_no_flight_with_j2_comes_nearer_to_a_zone(proof: Proof) -> None:
     assert close < 8.0
 
 
+def test_the_nearest_member_is_as_near_as_the_finding_says(proof: Proof) -> None:
+    # Looked up at a node whose zone had not been turned yet, it was what memory held.
+    question = proof.question
+    for finding in proof.findings:
+        case = finding.case
+        drift = drift_after(question, case.burn, case.share)
+        node = round(finding.when / drift.step)
+        off = case.centre - drift.reference + finding.member @ case.columns
+        place = drift.frames[node] @ (drift.path[node] + drift.tables[node, :3] @ off)
+        near = question.zones[finding.zone].distance(place)
+        assert near == pytest.approx(finding.nearest, abs=1e-3)
+
+
 def test_about_a_circle_zones_are_those_of_cwh() -> None:
     plan = _asked(60.0).plan
     sure = Errors((0.1,) * 3, (1e-4,) * 3, 0.001, 1e-3)

@@ -119,3 +119,14 @@ def test_there_is_no_document_unless_it_is_asked_for_and_proved() -> None:
     violated = execute("hop-plan", {"angle_deg": 0, "document": True})
     assert violated.document["outputs"]["document"] is None
     assert not violated.artifacts
+
+
+def test_a_table_shows_no_round_off() -> None:
+    """Half an orbit's sine is 1e-16: the V-bar's impulses had -6e-18 m/s along it."""
+    said = execute("hop-plan", {"angle_deg": 0}).document["outputs"]
+    shown = [hop["impulse_m_s"] for hop in said["plan"]["hops"]] + [said["plan"]["stop_m_s"]]
+    shown += [burn["impulse_m_s"] for burn in said["burns"]] + [burn["position_m"] for burn in said["burns"]]
+    for vector in shown:
+        largest = max(map(abs, vector))
+        assert all(e == 0.0 or abs(e) > 1e-9 * largest for e in vector)
+        assert "-0.0" not in map(repr, vector)

@@ -38,6 +38,16 @@ def test_a_go_is_proved_and_certified(question):
     assert (outputs["end_s"] or [None])[0] == (58.0 if question == "synchronize" else None)
 
 
+def test_a_hold_after_its_arrival():
+    asked = PLANAR | {"omega_t_deg_s": 2, "a_max_m_s2": 0.05, "question": "synchronize", "proofs": True}
+    asked |= {"after_arrival": "hold", "states": [{"x_m": 5, "y_m": 40}, {"x_m": 20, "y_m": 78}]}
+    outputs = execute("go-no-go", asked).document["outputs"]
+    assert outputs["verdict"] == ["GO", "NO_GO"]
+    near, far = outputs["hold_after"]
+    assert (near["code"], far) == ("proved", None)
+    assert any("under a feedback" in line for line in checker.check(outputs["proof"][0]).statement)
+
+
 def test_what_it_cannot_take_is_undecided_beside_the_exact_answer():
     """A regulator with a short horizon has no plan where the exact answer is GO."""
     tuned = {"n_c": 1, "n_lqr": 1}

@@ -106,6 +106,27 @@ def test_decide_is_proved_either_way():
     assert space.proof["question"]["kind"] == "synchronize"
 
 
+def test_a_hold_after_the_arrival_flies():
+    asked = {"question": "synchronize", "within_s": 80.0}
+    held = ss.decide(POINT, START, **asked, after_arrival="hold")
+    assert held.go
+    assert "keeps it for ever" in held.reason
+    assert any("under a feedback" in line for line in held.verify().statement)
+    flown = ss.fly(POINT, START, held.pilot(duration_s=400.0), horizon_s=400.0)
+    assert flown.safe
+    assert flown.closest_m > 0.1
+    assert flown.body_m[-1] == pytest.approx(held.proof["hold_after"]["point_m"], abs=1e-6)
+    for other in ("stay", "any"):
+        found = ss.decide(POINT, START, **asked, after_arrival=other)
+        assert "hold_after" not in found.proof
+        with pytest.raises(InvalidInput, match="after_arrival hold"):
+            found.pilot()
+    with pytest.raises(InvalidInput, match="stay, hold or any"):
+        ss.decide(POINT, START, **asked, after_arrival="leave")
+    with pytest.raises(InvalidInput, match="planar"):
+        ss.decide(POINT, (*START, 3.0), **asked, after_arrival="hold")
+
+
 def test_verify_reads_files_and_refuses_forgeries(tmp_path):
     proof = ss.decide(POINT, START).proof
     assert proof is not None

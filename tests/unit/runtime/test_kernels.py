@@ -1,6 +1,7 @@
 """Compiled kernels on disk: every dependency is part of the key, and no broken or missing cache stops the work."""
 
 import ast
+import gc
 import importlib
 import logging
 import os
@@ -19,9 +20,10 @@ from typing import Any
 
 import pytest
 from numba import config
+from numba.core import event
 
 import safestart
-from safestart.runtime import kernels
+from safestart.runtime import kernels, warmup
 from safestart.runtime.kernels import KernelCache, compiled
 
 NOT_IMPORTED = ("migrations", "__main__", "orphan_guard", ".cli")
@@ -270,3 +272,51 @@ def test_every_kernel_is_keyed_by_what_its_text_names() -> None:
 def test_no_kernel_goes_round_the_keyed_cache() -> None:
     root = Path(str(safestart.__file__)).parent
     assert [str(file) for file in root.rglob("*.py") if "cache=True" in file.read_text()] == []
+
+
+def test_a_kernel_is_machine_code_only_where_python_calls_it() -> None:
+    """Its caller has its code inside; both give the same value, whoever is called first."""
+    inner = compiled()(lambda x, by=3.0: by * x)
+    outer = compiled()(lambda x: inner(x) + inner(x, 0.5))
+    assert outer(2.0) == 7.0
+    assert not inner.overloads
+    assert inner(2.0) == 6.0
+    assert len(inner.overloads) == 1
+    assert outer(4) == 14.0
+
+
+def test_a_literal_argument_is_no_compilation_of_its_own() -> None:
+    inner = compiled()(lambda x, k: x + k)
+    outer = compiled()(lambda x: inner(x, 1) + inner(x, 2) + inner(x, len((x, x))))
+    seen: list[Any] = []
+
+    class Compilations(event.Listener):
+        def on_start(self, event: Any) -> None:
+            seen.append(event.data["dispatcher"].py_func)
+
+        def on_end(self, event: Any) -> None:
+            pass
+
+    with event.install_listener("numba:compile", Compilations()):
+        assert outer(1.0) == 8.0
+    assert seen.count(inner.py_func) == 1
+
+
+def test_a_warm_up_leaves_the_collector_as_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Off while it compiles; on again after an error, too, and left off where it was off."""
+    inside: list[bool] = []
+
+    def part() -> None:
+        inside.append(gc.isenabled())
+        raise RuntimeError
+
+    monkeypatch.setattr(warmup, "PARTS", {"one": part})
+    for before in (True, False):
+        (gc.enable if before else gc.disable)()
+        try:
+            with pytest.raises(RuntimeError):
+                warmup.warm("one")
+            assert gc.isenabled() is before
+        finally:
+            gc.enable()
+    assert inside == [False, False]

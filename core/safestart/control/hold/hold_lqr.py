@@ -49,6 +49,16 @@ class Design:
         return cls(np.asarray(gain, dtype=np.float64), closed, np.asarray(cost, dtype=np.float64))
 
 
+def hold_of(
+    gain: Floats, cost: Floats, point: Floats, rate: float, mean_motion: float, step: float, most: float
+) -> HoldLqr:
+    """The hold of a terminal set: thrust = reference + ``gain`` (2, 4) error, the reference at ``point`` (2,), m, of a
+    body that turns at ``rate`` rad/s and is aligned with LVLH at interval 0; ``step`` s, ``most`` m/s^2."""
+    closed = planar_transition(mean_motion, step) + planar_input(mean_motion, step) @ gain
+    reference = TurningReference.of(point, rate, mean_motion, step)
+    return HoldLqr(Design(-gain, closed, cost), reference, 0.0, most)
+
+
 class HoldLqr:
     """The controller, planar; ``phase`` rad is the body's angle at the start. It cuts no command: see the sets.
 

@@ -55,8 +55,12 @@ class TurningReference:
     @property
     def most_thrust(self) -> float:
         """Largest |u| over all angles: max |Re(e^(i theta) c)|^2 = (|c|^2 + |c . c|) / 2."""
-        squared = float(np.vdot(self.thrust, self.thrust).real + abs(self.thrust @ self.thrust))
-        return math.sqrt(0.5 * squared)
+        return _largest(self.thrust)
+
+    def most_speed(self, tau: float) -> float:
+        """Largest LVLH speed over all angles, m/s, ``tau`` s after a node."""
+        a, b = planar_transition(self.mean_motion, tau), planar_input(self.mean_motion, tau)
+        return _largest(a[2:] @ self.state + b[2:] @ self.thrust)
 
     def between(self, tau: float) -> tuple[Floats, float]:
         """Where the body sees the reference ``tau`` s after a node: within a radius, m, of a point (2,)."""
@@ -65,3 +69,9 @@ class TurningReference:
         # x + i y = e^(i theta) (X + i Y) / 2 + e^(-i theta) conj(X - i Y) / 2.
         turning = cmath.exp(-1j * self.rate * tau) * (x + 1j * y) / 2.0
         return np.array([turning.real, turning.imag]), float(abs(x - 1j * y) / 2.0)
+
+
+def _largest(phasor: Complexes) -> float:
+    """Largest |Re(e^(i theta) phasor)| over all theta."""
+    squared = float(np.vdot(phasor, phasor).real + abs(phasor @ phasor))
+    return math.sqrt(0.5 * squared)

@@ -6,10 +6,9 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from safestart.runtime.kernels import by_types
+from safestart.runtime import kernel_parts
 
 Indices = NDArray[np.uint64]
 Whole = NDArray[np.int64]
@@ -22,21 +21,15 @@ FAST = {"contract", "nsz"}
 """Allow fused multiply-add and ignore the sign of zero; allow nothing that assumes away NaN."""
 
 # No wrappers: only kernels call them.
-_BARE: dict[str, Any] = {
-    "nogil": True,
-    "error_model": "numpy",
-    "fastmath": FAST,
-    "no_cpython_wrapper": True,
-    "no_cfunc_wrapper": True,
-}
+_BARE: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": FAST}
 
 
 # Parts are not cached; the entry point is, with everything that it calls (see :mod:`safestart.runtime.kernels`).
 def part(function: Callable[..., Any]) -> Any:
     """Decorator for functions that entry points call."""
-    return by_types(njit(**_BARE)(function))
+    return kernel_parts.part(function, **_BARE)
 
 
 def inlined(function: Callable[..., Any]) -> Any:
     """The same for functions called per block; inlined, as passing a dozen arrays costs as much as the work."""
-    return by_types(njit(**_BARE, forceinline=True)(function))
+    return kernel_parts.part(function, **_BARE, forceinline=True)

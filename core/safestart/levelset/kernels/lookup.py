@@ -23,11 +23,11 @@ def lookup(
     one-sided. ``states`` (P, n) must lie in the box.
     """
     n = len(shape)
-    strides = np.ones(n, np.int64)
+    strides, cell, node = np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n, np.int64)
+    share = np.empty(n)
+    strides[n - 1] = 1
     for i in range(n - 2, -1, -1):
         strides[i] = strides[i + 1] * shape[i + 1]
-    cell, share = np.empty(n, np.int64), np.empty(n)
-    node = np.empty(n, np.int64)
     for p in range(len(states)):
         for i in range(n):
             position = (states[p, i] - low[i]) / spacing[i]

@@ -16,7 +16,7 @@ def fastest(shape: Whole, plan: Whole, scale: Floats, where: Whole, data: Floats
     outer, length, axes = plan[0], plan[1], len(shape)
     size = np.uint64(length)
     sums = np.empty(length, data.dtype)
-    index = np.zeros(outer, np.int64)
+    index = np.empty(outer, np.int64)
     most = data.dtype.type(0.0)
     blocks = 1
     for k in range(outer):

@@ -72,12 +72,13 @@ def sweep(
     mean = np.empty(axes * length, v.dtype)
     spare = np.empty((2 * width + 1) * length, v.dtype)
     at = np.empty(7, np.uint64)
-    index = np.empty(outer, np.int64)
+    index, moved = np.empty(outer, np.int64), np.empty(axes, np.int64)
     fused = scheme == FIRST and flux == LAX_FRIEDRICHS
     # Axes that an input moves; the others need no mean slope.
-    moved = np.zeros(axes, np.bool_)
+    for axis in range(axes):
+        moved[axis] = 0
     for axis in entries:
-        moved[axis] = True
+        moved[axis] = 1
     for block in range(begin, end):
         rest = block
         for k in range(outer - 1, -1, -1):
@@ -122,7 +123,7 @@ def sweep(
                 if fused:
                     first_blend(
                         source, at, scale[axis], rate, kink, data, rates, kinks, total, mean,
-                        np.uint64(row * pitch), to, np.uint64(run), moved[axis],
+                        np.uint64(row * pitch), to, np.uint64(run), moved[axis] == 1,
                     )  # fmt: skip
                 else:
                     part, span = np.uint64(row * pitch), np.uint64(run)
@@ -131,7 +132,7 @@ def sweep(
             if flux == GODUNOV:
                 godunov(left, right, rate, kink, data, rates, kinks, total, size)
             elif not fused:
-                blend(left, right, rate, kink, data, rates, kinks, total, mean, to, size, moved[axis])
+                blend(left, right, rate, kink, data, rates, kinks, total, mean, to, size, moved[axis] == 1)
         if flux == LAX_FRIEDRICHS:
             add_inputs(
                 groups,

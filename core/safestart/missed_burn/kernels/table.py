@@ -198,6 +198,7 @@ def least_between(
         middle = (begin + end) // 2
         if not sharp[worst]:
             sharp[worst] = True
+            _known(middle, known, path, tables, centre, columns, ends, frames, offset, still, images, sizes)
             for i in range(3):
                 origin[i] = path[middle, i]
                 for j in range(3):

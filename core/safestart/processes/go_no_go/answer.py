@@ -24,6 +24,7 @@ class Verdicts(NamedTuple):
     proof: list[dict[str, Any] | None] | None = None
     decided_by: list[str | None] | None = None
     tracking: list[dict[str, Any]] | None = None
+    hold_after: list[dict[str, Any] | None] | None = None
 
 
 class Answer(NamedTuple):
@@ -56,6 +57,7 @@ class Answer(NamedTuple):
             "examples": said.examples,
             "tracking": said.tracking,
             "proof": said.proof,
+            **({} if said.hold_after is None else {"hold_after": said.hold_after}),
         }
 
     def document_of_one(self) -> dict[str, Any]:
@@ -80,6 +82,7 @@ class Answer(NamedTuple):
             "method": inputs.method,
             "question": inputs.question,
             "rest": inputs.rest.value,
+            **({} if said.hold_after is None else {"hold_after": said.hold_after[0]}),
         }
 
     def decided_by(self) -> list[str | None]:

@@ -14,7 +14,14 @@ from safestart.processes.flat import Flat
 from safestart.processes.go_no_go import run
 from safestart.processes.go_no_go.method_registry import PROVING, MethodName, method_of
 from safestart.processes.go_no_go.question_fields import QuestionKind
-from safestart.processes.go_no_go.spec import DECIDED_BY, SPEC, GoNoGoInputs, StateInput
+from safestart.processes.go_no_go.spec import (
+    DECIDED_BY,
+    HOLD_AFTER,
+    SPEC,
+    GoNoGoInputs,
+    HoldAfter,
+    StateInput,
+)
 from safestart.processes.go_no_go.uncertainty import Member
 from safestart.processes.tracking_mpc.controller_input import TrackingAnswer
 from safestart.processes.wire import CorridorInput
@@ -75,6 +82,7 @@ class GoNoGoAnswer(WireModel):
     method: MethodName
     question: QuestionKind
     rest: Rest
+    hold_after: HoldAfter | None = Field(None, description=HOLD_AFTER)
 
 
 @dataclass(frozen=True, slots=True)

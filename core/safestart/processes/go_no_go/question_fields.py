@@ -13,6 +13,7 @@ from safestart.processes.go_no_go.uncertainty import HalfWidths
 from safestart.processes.wire import Horizon
 
 QuestionKind = Literal["stay", "synchronize"]
+AfterArrival = Literal["stay", "hold", "any"]
 
 
 class QuestionFields(HalfWidths):
@@ -45,10 +46,11 @@ class QuestionFields(HalfWidths):
     rest_speed_m_s: float = Field(
         0.05, ge=1e-4, le=100, description="Largest speed in the body frame that counts as at rest, m/s."
     )
-    after_arrival: Literal["stay", "any"] = Field(
+    after_arrival: AfterArrival = Field(
         "stay",
         description="stay: GO of synchronize needs a proof that the chaser stays for ever after its end, else it is "
-        "UNDECIDED. any: what comes after the end is not asked.",
+        "UNDECIDED. hold: it needs a proof that an LQR with thrust held over steps keeps it there for ever, and every "
+        "state of an ellipsoid around it (planar; see hold_after). any: what comes after the end is not asked.",
     )
     speed_limit_m_s: float | None = Field(
         None, ge=0.001, le=1000, description="Largest LVLH speed at all times, m/s; absent: none."

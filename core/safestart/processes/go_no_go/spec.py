@@ -24,6 +24,8 @@ DECIDED_BY = (
     "null when UNDECIDED."
 )
 
+HOLD_AFTER = "With after_arrival hold: what keeps the chaser after its end; null for NO_GO. Else absent."
+
 
 # A dataclass with slots: 100 000 of them take a quarter of the memory of models.
 @dataclass(config=ConfigDict(extra="forbid", allow_inf_nan=False), frozen=True, slots=True, kw_only=True)
@@ -44,6 +46,21 @@ class GoNoGoInputs(ScenarioInput, QuestionFields):
 
     states: list[StateInput] = Field(min_length=1, max_length=MAX_STATES, description="Starts at rest.")
     rest: Rest = Field(Rest.LVLH, description="Frame in which the starts are at rest.")
+
+
+class HoldAfter(WireModel):
+    """What an LQR keeps for ever after the end of synchronize: thrust = reference + gain error, held over 2 s.
+
+    The reference is at ``point_m`` of the body frame at every step; every error (x, y, vx, vy, LVLH) with
+    error' cost error <= level stays ``margin_m`` from every face, at every angle of the body; that of the end is one.
+    """
+
+    code: Literal["proved", "not_proved"]
+    point_m: list[float] | None
+    gain: list[list[float]] | None = Field(description="2 x 4, 1/s^2 and 1/s.")
+    cost: list[list[float]] | None = Field(description="4 x 4, symmetric.")
+    level: float | None
+    margin_m: float | None
 
 
 class GoNoGoOutputs(WireModel):
@@ -91,6 +108,10 @@ class GoNoGoOutputs(WireModel):
     )
     proof: list[dict[str, Any] | None] | None = Field(
         None, description="Proof documents for `safestart verify`, when asked for; null for UNDECIDED."
+    )
+    # Untyped, so that results that do not have it have no table of it; GoNoGoAnswer types it.
+    hold_after: list[dict[str, Any] | None] | None = Field(
+        None, description=f"{HOLD_AFTER} Each is a HoldAfter, as in the answer on one start."
     )
 
 

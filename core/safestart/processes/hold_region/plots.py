@@ -7,7 +7,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from safestart.attitude.body_frame import rotation
-from safestart.control.hold.hold_sets import Ellipsoid, Hold, Polyhedron
+from safestart.control.hold.ellipsoid import Ellipsoid
+from safestart.control.hold.loop import Hold
+from safestart.control.hold.polyhedron import Polyhedron
 from safestart.model.scenario import Floats
 from safestart.processes.hold_region.spec import HoldRegionInputs
 from safestart.processes.plotting import draw_corridor, drawn_as, figure

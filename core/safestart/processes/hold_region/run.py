@@ -10,8 +10,10 @@ import numpy as np
 from safestart.attitude.body_frame import rotation
 from safestart.attitude.spin import Spin
 from safestart.constraints.corridor import corridor_of
+from safestart.control.hold.ellipsoid import Ellipsoid, ellipsoid
 from safestart.control.hold.hold_lqr import Design, HoldLqr
-from safestart.control.hold.hold_sets import Ellipsoid, Hold, Polyhedron, ellipsoid, polyhedron
+from safestart.control.hold.loop import Hold
+from safestart.control.hold.polyhedron import Polyhedron, polyhedron
 from safestart.control.hold.turning_reference import TurningReference
 from safestart.dynamics.cwh import Cwh
 from safestart.model.scenario import Floats

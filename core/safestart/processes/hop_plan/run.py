@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from safestart.hopping.approach import Approach, approach, mean_motion_of
+from safestart.hopping.approach import Approach, approach, mean_motion_of, without_round_off
 from safestart.hopping_safety.fan import drifts_of, worst_drift
 from safestart.hopping_safety.quick_document import document_of
 from safestart.hopping_safety.quick_proof import Bounds, error_level, hop_bounds, position_rows, start_bounds
@@ -99,17 +99,17 @@ def _hops(
 
 
 def _burns(plan: Approach) -> list[dict[str, Any]]:
-    states = plan.states()
+    positions, impulses = (without_round_off(v) for v in (plan.states()[:, :3], plan.impulses))
     return [
         {
             "burn": k + 1,
             "time_s": time,
-            "distance_m": float(np.linalg.norm(state[:3])),
-            "position_m": state[:3].tolist(),
+            "distance_m": float(np.linalg.norm(position)),
+            "position_m": position.tolist(),
             "impulse_m_s": impulse,
         }
-        for k, (time, state, impulse) in enumerate(
-            zip(plan.times.tolist(), states, plan.impulses.tolist(), strict=True)
+        for k, (time, position, impulse) in enumerate(
+            zip(plan.times.tolist(), positions, impulses.tolist(), strict=True)
         )
     ]
 

@@ -11,7 +11,7 @@ from safestart.campaign.rates import Share
 from safestart.campaign.spread import Spread
 from safestart.campaign.study import Study
 from safestart.campaign.table import Column, Kind
-from safestart.hopping.approach import Approach, approach, mean_motion_of
+from safestart.hopping.approach import Approach, approach, mean_motion_of, without_round_off
 from safestart.processes.hopping.spec import PER_SHARD, HoppingInputs
 
 NOTES = [
@@ -61,6 +61,7 @@ def summary(inputs: HoppingInputs, documents: Iterable[dict[str, Any]]) -> dict[
 
 def plan_document(plan: Approach) -> dict[str, Any]:
     """The plan on the wire."""
+    impulses = without_round_off(plan.impulses).tolist()
     return {
         "hops": [
             {
@@ -70,9 +71,9 @@ def plan_document(plan: Approach) -> dict[str, Any]:
                 "orbits": hop.orbits,
                 "impulse_m_s": impulse,
             }
-            for hop, impulse in zip(plan.hops, plan.impulses.tolist(), strict=False)
+            for hop, impulse in zip(plan.hops, impulses, strict=False)
         ],
-        "stop_m_s": plan.impulses[-1].tolist(),
+        "stop_m_s": impulses[-1],
         "orbits": plan.orbits,
         "fuel_1norm_m_s": plan.fuel_1norm,
         "fuel_2norm_m_s": plan.fuel_2norm,

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
 from safestart.dynamics.cwh import transition_matrix
 from safestart.dynamics.two_body_kernel import STAGES, WEIGHTS, drifted, seen
@@ -29,6 +29,13 @@ _MARKS = {
     "stuck": "v",
 }
 _NAMES = {"start": "missed", "made": "missed", "cut": "cut short"}
+_KINDS = {_NAMES.get(kind, kind): kind for kind in _MARKS}
+_ORDER = tuple(_KINDS)
+_BESIDE = 0.6
+"""Width over which the failures of a burn are spread, in burns."""
+_TITLE, _LABEL = 20, 15
+_WIDE = 1.9
+"""Width of the upper panel over its height."""
 _SAMPLES = 240
 _MEMBERS = 12
 _OUTLINE = 180
@@ -37,18 +44,20 @@ _OUTLINE = 180
 @drawn_as("aborts.png")
 def picture(proof: Proof) -> Figure:
     """Left: free drifts after every burn, some members of each set, coloured by the proof. Right: distances."""
-    drawing = figure(12.0, 5.2)
-    plane, bars = drawing.subplots(1, 2, width_ratios=(1.25, 1.0))
+    # Two panels, one above the other, in letters that can be read where the picture is a few centimetres wide.
+    drawing = figure(8.0, 9.0)
+    plane, bars = drawing.subplots(2, 1, height_ratios=(1.25, 1.0))
     keep_out = proof.question.keep_out
     draw_drifts(plane, proof, range(len(proof.findings)))
     _distances(bars, proof)
     motion = "true" if proof.question.earth else "linear" if proof.question.radius is None else "nonlinear"
     verdict = {
-        Verdict.PROVED: f"proved: at no time nearer than {proof.least:.2f} m",
-        Verdict.VIOLATED: f"violated: a flight within the errors comes nearer than {keep_out:g} m",
-        Verdict.UNKNOWN: f"unknown: {proof.gap:.2f} m of {keep_out:g} m are not proved",
+        Verdict.PROVED: f"PROVED: never nearer than {proof.least:.1f} m",
+        Verdict.VIOLATED: f"VIOLATED: a flight comes nearer than {keep_out:g} m",
+        Verdict.UNKNOWN: f"UNKNOWN: {proof.gap:.1f} m of {keep_out:g} m not proved",
     }[proof.verdict]
-    drawing.suptitle(f"Burns that fail, {motion} motion; {verdict}", fontsize=11)
+    colour = COLOURS[proof.verdict.value]
+    drawing.suptitle(f"{verdict}\nburns that fail, {motion} motion", fontsize=_TITLE, color=colour)
     return drawing
 
 
@@ -56,34 +65,54 @@ def draw_drifts(axes: Axes, proof: Proof, which: range) -> None:
     """Drifts of missed burns in the orbit plane, V-bar to the left as the target flies to the left, nadir down."""
     keep_out = proof.question.keep_out
     outlines = [_outline(zone, keep_out) for zone in proof.question.zones]
-    marks = [1.5 * point for outline in outlines for point in (outline.min(axis=0), outline.max(axis=0))]
+    marks = [point for outline in outlines for point in (outline.min(axis=0), outline.max(axis=0))]
+    drawn: list[Floats] = []
+    shown: set[str] = set()
     for k in which:
         finding = proof.findings[k]
         if finding.case.kind not in ("start", "made"):
             continue
-        colour = COLOURS["PROVED" if finding.least >= keep_out else _refuted(finding, keep_out)]
+        word = "PROVED" if finding.least >= keep_out else _refuted(finding, keep_out)
         paths = _paths(proof.question, finding.case)
         for path in paths:
-            axes.plot(path[:, 1], path[:, 0], color=colour, linewidth=0.6, alpha=0.45)
+            label = "_" if word in shown else word.lower()
+            shown.add(word)
+            axes.plot(path[:, 1], path[:, 0], color=COLOURS[word], linewidth=1.2, alpha=0.5, label=label)
+        drawn += paths
         start = paths[0][0]
-        axes.plot(start[1], start[0], marker="x", color="#222222", markersize=6, zorder=6)
+        axes.plot(
+            start[1], start[0], marker="x", color="#222222", markersize=11, markeredgewidth=2.5, zorder=6
+        )
         marks.append(start[:2])
     for zone, outline in zip(proof.question.zones, outlines, strict=True):
         axes.add_patch(Polygon(outline[:, ::-1], facecolor="#F6D5D0", edgecolor="#8C2B1D", zorder=1))
         if zone != POINT:
             axes.add_patch(Polygon(_outline(zone, 0.0)[:, ::-1], facecolor="#D98C7E", zorder=1))
-    axes.plot(0.0, 0.0, marker="s", color="#333333", markersize=4, zorder=5)
+    axes.plot(0.0, 0.0, marker="s", color="#333333", markersize=9, zorder=5)
+    _framed(
+        axes, np.array(marks), np.concatenate([path[:, :2] for path in drawn]) if drawn else np.zeros((0, 2))
+    )
+    axes.set_xlabel("along-track y [m], flight to the left", fontsize=_LABEL)
+    axes.set_ylabel("radial x [m], Earth below", fontsize=_LABEL)
+    axes.tick_params(labelsize=_LABEL)
+    axes.set_title("drifts after a missed burn (burns: x)", fontsize=_LABEL)
+    axes.legend(fontsize=_LABEL, loc="best")
+
+
+def _framed(axes: Axes, marks: Floats, paths: Floats) -> None:
+    """Limits that show all ``marks`` (N, 2) and as much of the ``paths`` (P, 2) as leaves those readable; radial and
+    along-track, m, to one scale."""
+    low, high = marks.min(axis=0), marks.max(axis=0)
+    room = 0.35 * float((high - low).max())
+    if len(paths):
+        low = np.minimum(low, np.maximum(paths.min(axis=0), low - room))
+        high = np.maximum(high, np.minimum(paths.max(axis=0), high + room))
+    # To the panel's shape, so that it is filled.
+    middle, half = 0.5 * (low + high), 0.55 * (high - low)
+    radial = max(float(half[0]), float(half[1]) / _WIDE)
     axes.set_aspect("equal")
-    low, high = np.min(marks, axis=0), np.max(marks, axis=0)
-    room = 0.3 * float((high - low).max())
-    axes.set_xlim(high[1] + room, low[1] - room)
-    axes.set_ylim(low[0] - room, high[0] + room)
-    axes.set_xlabel("along-track y [m] (the target flies to the left)")
-    axes.set_ylabel("radial x [m] (Earth below)")
-    axes.set_title("free drift after each missed burn: members of its set", fontsize=10)
-    for name, colour in COLOURS.items():
-        axes.plot([], [], color=colour, label=name.lower())
-    axes.legend(fontsize=8, loc="upper right")
+    axes.set_xlim(middle[1] + _WIDE * radial, middle[1] - _WIDE * radial)
+    axes.set_ylim(middle[0] - radial, middle[0] + radial)
 
 
 def _outline(zone: Zone, around: float) -> Floats:
@@ -134,7 +163,6 @@ def _flown(flight: Floats, seconds: float) -> Floats:
 
 def _distances(axes: Axes, proof: Proof) -> None:
     keep_out = proof.question.keep_out
-    shown: set[str] = set()
     lowest: dict[tuple[int, str], Finding] = {}
     for finding in proof.findings:
         name = _NAMES.get(finding.case.kind, finding.case.kind)
@@ -142,21 +170,30 @@ def _distances(axes: Axes, proof: Proof) -> None:
         kept = lowest.get(key)
         if kept is None or finding.least < kept.least:
             lowest[key] = finding
+    # Failures of one burn beside each other.
+    names = [name for name in _ORDER if any(name == key[1] for key in lowest)]
     for (burn, name), finding in sorted(lowest.items()):
         colour = COLOURS["PROVED" if finding.least >= keep_out else _refuted(finding, keep_out)]
-        mark = _MARKS[finding.case.kind]
+        aside = (names.index(name) + 0.5) / len(names) - 0.5
+        at, kept_m = burn + _BESIDE * aside, max(finding.least, 0.01 * keep_out)
+        axes.plot(at, kept_m, marker=_MARKS[finding.case.kind], color=colour, linestyle="", markersize=10)
+    for name in names:
         axes.plot(
-            burn, max(finding.least, 0.01 * keep_out), marker=mark, color=colour, linestyle="", markersize=6
+            [], [], marker=_MARKS[_KINDS[name]], color="#777777", linestyle="", markersize=10, label=name
         )
-        if name not in shown:
-            axes.plot([], [], marker=mark, color="#777777", linestyle="", label=name)
-            shown.add(name)
-    axes.axhline(keep_out, color="#8C2B1D", linewidth=1.0)
+    axes.axhline(keep_out, color="#8C2B1D", linewidth=2.0)
     axes.set_yscale("log")
-    axes.annotate(f"keep out: {keep_out:g} m", (0.02, keep_out), xycoords=("axes fraction", "data"), fontsize=8,
+    least, most = axes.get_ylim()
+    # Room for the names of the failures above the marks.
+    axes.set_ylim(least, most * (most / least) ** 0.35)
+    axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.yaxis.set_minor_formatter(NullFormatter())
+    axes.set_xlim(-0.5, max(burn for burn, _ in lowest) + 0.5)
+    axes.annotate(f"keep out {keep_out:g} m", (0.02, keep_out), xycoords=("axes fraction", "data"), fontsize=_LABEL,
                   va="bottom", color="#8C2B1D")  # fmt: skip
-    axes.set_xlabel("burn that fails (the last mark: drift after the last burn)")
-    axes.set_ylabel("least distance proved [m]")
+    axes.set_xlabel("burn that fails (last: drift after all)", fontsize=_LABEL)
+    axes.set_ylabel("proved distance [m]", fontsize=_LABEL)
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
-    axes.set_title("what each failure keeps", fontsize=10)
-    axes.legend(fontsize=8)
+    axes.tick_params(which="both", labelsize=_LABEL)
+    axes.legend(fontsize=_LABEL, ncols=3, loc="upper center")

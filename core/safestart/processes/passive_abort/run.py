@@ -14,9 +14,11 @@ from safestart.missed_burn.plan import Plan, Question
 from safestart.missed_burn.prove import Proof, Verdict, greatest_scale, prove
 from safestart.missed_burn.replay import MemberFlight
 from safestart.processes.base import Artifact, ProcessOutput
+from safestart.processes.output import Undrawn
 from safestart.processes.passive_abort.filed import left_out, resolved
 from safestart.processes.passive_abort.plots import picture
 from safestart.processes.passive_abort.question import plain_question
+from safestart.processes.passive_abort.second_look import BUDGET, Look, looked_at, withdrawn
 from safestart.processes.passive_abort.spec import PassiveAbortInputs
 from safestart.processes.wire import finite
 from safestart.records.comparable import canonical
@@ -31,21 +33,43 @@ NOTES = {
     "orbit, the chaser's states before burns within the errors of those given; drag and other forces are not in it.",
 }
 
+UNCHECKED = (
+    f"checked: false. The independent checker would need more than about {BUDGET:g} s for it and was not asked; "
+    "safestart verify asks it."
+)
+REFUSED = (
+    "verdict: UNKNOWN, as the independent checker refuses the proof: {reason}. This is a fault of the prover; nothing "
+    "that it found counts as proved."
+)
+
 
 def run(inputs: PassiveAbortInputs, context: Context) -> ProcessOutput:
     """Verdict, cases, document or counter-example, picture."""
     inputs, filed = resolved(inputs)
     question = question_of(inputs)
     proof = prove(question, tick=lambda k, of: context.step(0.6 * k / of, 1.0, "cases"))
-    level = greatest_scale(question) if inputs.error_level else None
-    context.step(0.9, 1.0, "picture")
-    artifacts = [picture(proof)]
+    artifacts: list[Artifact | Undrawn] = []
+    told: list[str] = []
+    look: Look | None = None
     if proof.verdict is Verdict.PROVED:
-        artifacts.append(Artifact("proof.json", "application/json", canonical(document_of(proof)).encode()))
+        context.step(0.6, 1.0, "checking the proof")
+        document = document_of(proof)
+        look = looked_at(document)
+        if look.refused:
+            proof = withdrawn(proof)
+            told.append(REFUSED.format(reason=look.refused))
+        else:
+            artifacts.append(Artifact("proof.json", "application/json", canonical(document).encode()))
+            told += [] if look.checked else [UNCHECKED]
+    # A prover whose document is refused is not believed about other scales of the errors, either.
+    level = greatest_scale(question) if inputs.error_level and not (look and look.refused) else None
+    context.step(0.9, 1.0, "picture")
+    artifacts.insert(0, picture(proof))
     flown = proof.counter_example
     return ProcessOutput(
         {
             "verdict": proof.verdict.value,
+            "checked": None if look is None else look.checked,
             "model": inputs.model,
             "least_distance_m": proof.least,
             "gap_m": proof.gap,
@@ -53,7 +77,7 @@ def run(inputs: PassiveAbortInputs, context: Context) -> ProcessOutput:
             "read": filed,
             "cases": cases_of(proof),
             "counter_example": None if flown is None else flown_document(flown, question),
-            "notes": [NOTES[inputs.model], *left_out(inputs, filed)],
+            "notes": [NOTES[inputs.model], *told, *left_out(inputs, filed)],
         },
         tuple(artifacts),
     )

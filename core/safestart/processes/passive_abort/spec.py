@@ -178,6 +178,10 @@ class PassiveAbortOutputs(WireModel):
     """The verdict on the plan, what every case keeps, and the evidence."""
 
     verdict: VerdictName
+    checked: bool | None = Field(
+        description="true: the independent checker has looked at the proof and accepts it (or refuses it: then the "
+        "verdict is UNKNOWN, and notes say why); false: it was not asked, as it would take long; null: no proof."
+    )
     model: ModelName
     least_distance_m: float = Field(description="Proved over all cases and all times, m.")
     gap_m: float = Field(description="The part of keep_out_m that is not proved, m.")
@@ -213,6 +217,7 @@ SPEC = ProcessSpec(
                 Column("proved distance [m]", "least_distance_m"),
                 Column("gap [m]", "gap_m"),
                 Column("error level", "error_level"),
+                Column("proof checked", "checked"),
                 Column("model", "model"),
             ),
             good=("PROVED",),

@@ -16,7 +16,8 @@ from bisect import bisect_right
 
 from flint import arb, arb_mat, fmpq
 
-from safestart.proofs.abort.taylor import Field, Step, frobenius, middle, step
+from safestart.proofs.abort.pull import Field
+from safestart.proofs.abort.taylor import Step, frobenius, middle, step
 from safestart.proofs.strict import ProofRejected
 
 _MOST_STEPS = 20_000
@@ -54,8 +55,8 @@ class Course:
             self.motion_jumps.append((loose[2] + loose[3], made.largest))
             self.steps.append(made)
             self.begins.append(float(now))
-            r, v = made.at(made.course, made.length)
-            f, rate = made.at(made.motion, made.length)
+            r, v = made.course.at(made.length)
+            f, rate = made.motion.at(made.length)
             now = now + made.length
             if not now.is_exact():
                 raise ProofRejected("target: the times of the steps are not exact")
@@ -123,7 +124,7 @@ class Course:
                 continue
             a, b = low.max(one.begin), high.min(end)
             ball = (a + b) / 2 + arb(0, 1) * ((b - a) / 2)
-            r, v = one.at(one.course, ball - one.begin)
+            r, v = one.course.at(ball - one.begin)
             out = (r, v) if out is None else (_union(out[0], r), _union(out[1], v))
         if out is None:
             raise ProofRejected("target: a time outside the course")
@@ -138,7 +139,7 @@ class Course:
         there = scaled - one.begin
         if not (abs(there - one.length / 2) <= one.length / 2 * (1 + arb(2) ** -30)):
             raise ProofRejected("target: a time outside its step")
-        f, rate = one.at(one.motion, there)
+        f, rate = one.motion.at(there)
         whole = arb_mat(f.tolist() + rate.tolist())
         size = frobenius(whole)
         whole = whole + arb_mat(6, 6, [size * self.eta] * 36)

@@ -12,40 +12,19 @@ its chord. A zone's centre and blocks z turn with LVLH, and are within W (b - a)
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
 from flint import arb, arb_mat, fmpq
 
 from safestart.proofs.abort.complete import Complete
-from safestart.proofs.abort.course import Course, inverse
+from safestart.proofs.abort.course import Course
 from safestart.proofs.abort.finite import burning, times
-from safestart.proofs.abort.pushes import LastingPushes, Pushes, frame, lift
-from safestart.proofs.abort.reached import Reached, column, level, reach, sizes_of
+from safestart.proofs.abort.pushes import LastingPushes, Pushes, lift
+from safestart.proofs.abort.reached import Reached, column, level, reach, sizes_along, sizes_of
+from safestart.proofs.abort.reference import Reference
 from safestart.proofs.abort.sets import Sets
 from safestart.proofs.abort.statement import Asked, Event, Zone
 from safestart.proofs.abort.taylor import frobenius, middle
-from safestart.proofs.abort.turning import Turning, turning
+from safestart.proofs.abort.turning import turning
 from safestart.proofs.strict import ProofRejected
-
-
-@dataclass(slots=True)
-class Reference:
-    """A reference from a burn on: its course, its inertial state relative to the target then (6, 1), exact; over the
-    longest drift from that burn the least radius of its own and of both courses, m, a bound on |G| along both, 1/s^2,
-    and on how LVLH turns; and what is kept of it: transitions, paths, norms of blocks."""
-
-    course: Course
-    off: arb_mat
-    begin: fmpq
-    lowest: arb
-    both: arb
-    stiffness: arb
-    turning: Turning
-    moved: dict[fmpq, arb_mat] = field(default_factory=dict)
-    path: dict[fmpq, arb_mat] = field(default_factory=dict)
-    norms: dict[tuple[fmpq, int, int], tuple[arb, arb, arb, arb]] = field(default_factory=dict)
-    axes: dict[fmpq, arb_mat] = field(default_factory=dict)
-    lasting: LastingPushes | None = None
 
 
 class EarthChecker(Complete):
@@ -84,7 +63,8 @@ class EarthChecker(Complete):
             both = lowest.min(self.target.least(arb(begin), arb(begin) + until))
             stiffness = arb((2 * self.mu / both**3 + 12 * self.bulge / both**5).abs_upper())
             turns = turning(self.target, arb(begin), arb(begin) + until)
-            found = Reference(course, off, begin, lowest, both, stiffness, turns)
+            longest = self.longest(burn)
+            found = Reference(self.target, course, off, begin, longest, lowest, both, stiffness, turns)
             self.references[burn, share] = found
         return found
 
@@ -162,32 +142,18 @@ class EarthChecker(Complete):
     ) -> tuple[arb_mat, list[arb]]:
         """Positions (3, 1 + C + S) of the centre, less the zone's, of columns and of the zone's columns, and sizes of
         path, centre and blocks."""
-        whole = arb_mat(_moved(reference, time).tolist()[:3]) * table
-        path = reference.path.get(time)
-        if path is None:
-            path = reference.course.state(arb(time))[0] - self.target.state(arb(reference.begin + time))[0]
-            reference.path[time] = path
+        whole, path = reference.moved(time) * table, reference.path(time)
         off = sizes_of(whole, sizes)
         for i in range(3):
             whole[i, 0] += path[i, 0]
         if zone.is_point:
             return whole, [frobenius(path), *off]
         still = [zone.centre, *(axis for block in zone.blocks for axis in block)]
-        turned = self._axes(reference, time) * arb_mat(
-            3, len(still), [arb(v[i]) for i in range(3) for v in still]
-        )
+        turned = reference.axes(time) * arb_mat(3, len(still), [arb(v[i]) for i in range(3) for v in still])
         for i in range(3):
             whole[i, 0] -= turned[i, 0]
         both = [a + b[1:] for a, b in zip(whole.tolist(), turned.tolist(), strict=True)]
         return arb_mat(both), [frobenius(path), *off]
-
-    def _axes(self, reference: Reference, time: fmpq) -> arb_mat:
-        """LVLH axes as columns (3, 3), inertial."""
-        found = reference.axes.get(time)
-        if found is None:
-            rows, _ = frame(self.target, arb(reference.begin + time))
-            found = reference.axes[time] = rows.transpose()
-        return found
 
     def _state(self, event: Event, burn: int, reference: Reference, k: arb) -> Reached:
         """The set of an event at the planned time of its burn, inertial, relative to the target."""
@@ -234,29 +200,15 @@ class EarthChecker(Complete):
         self, event: Event, burn: int, reference: Reference, table: arb_mat, sizes: list[int], stiffness: arb
     ) -> list[arb]:
         """How far the true motion may be from the linear one in each part; raise if a trial radius does not hold."""
-        count, h, k = len(event.radii), self.longest(burn) / len(event.radii), stiffness.sqrt()
-        step = arb(h)
-        curve = stiffness * step * step / 8
-        if not curve < 1:
-            raise ProofRejected("radii_m: the parts are too long")
-        moves = [_moved(reference, h * j) for j in range(count + 1)]
-        nodes = [sizes_of(arb_mat(m.tolist()[:3]) * table, sizes) for m in moves]
-        grown, slid = (k * step).cosh(), (k * step).sinh() / k
-        pushed = (grown - 1) / stiffness
+        parts, detour = reference.parts(len(event.radii)), self._detour(event, burn, stiffness.sqrt())
+        nodes = sizes_along(parts.rows * table, sizes)
         kicks: list[arb] = []
         out: list[arb] = []
-        detour = self._detour(event, burn, k)
         for j, radius in enumerate(event.radii):
-            reached = sum((a.max(b) for a, b in zip(nodes[j], nodes[j + 1], strict=True)), arb(0)) / (
-                1 - curve
-            )
-            at, fast = arb(0), arb(0)
-            for m, kick in enumerate(kicks, 1):
-                norms = _norms(reference, h, j, m)
-                at += (norms[0] * pushed + norms[1] * slid) * kick
-                fast += (norms[2] * pushed + norms[3] * slid) * kick
+            reached = sum(map(arb.max, nodes[j], nodes[j + 1]), arb(0)) / (1 - parts.curve)
+            earlier = (parts.weights[j] * arb_mat(j, 1, kicks))[0, 0] if j else arb(0)
             push = self._remainder(arb(radius), reference.lowest)
-            there = grown * at + slid * fast + pushed * push
+            there = earlier + parts.own * push
             if not reached + detour + there < arb(radius):
                 raise ProofRejected(
                     f"radii_m: part {j} does not hold the motion within {float(radius):.9g} m"
@@ -275,25 +227,3 @@ class EarthChecker(Complete):
                 f"radii_m: required less than half the orbit's radius, received {float(rho):.9g}"
             )
         return (3 * self.mu / r**4 + 30 * self.bulge / r**6) * rho * rho
-
-
-def _moved(reference: Reference, time: fmpq) -> arb_mat:
-    """Transition (6, 6) from the burn, ``time`` s long."""
-    found = reference.moved.get(time)
-    if found is None:
-        found = reference.moved[time] = reference.course.motion(arb(time))
-    return found
-
-
-def _norms(reference: Reference, h: fmpq, j: int, m: int) -> tuple[arb, arb, arb, arb]:
-    """Norms of the blocks of the transition from m h to j h, the same for all cases of a reference."""
-    found = reference.norms.get((h, j, m))
-    if found is None:
-        whole = _moved(reference, h * j) * inverse(_moved(reference, h * m))
-        one, two, three, four = (
-            frobenius(arb_mat([[whole[r + i, c + e] for e in range(3)] for i in range(3)]))
-            for r in (0, 3)
-            for c in (0, 3)
-        )
-        found = reference.norms[h, j, m] = one, two, three, four
-    return found

@@ -6,6 +6,7 @@ States are (x, y, z, vx, vy, vz), LVLH. A set is a centre and blocks of columns 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from operator import add, mul
 
 from flint import arb, arb_mat, fmpq
 
@@ -116,6 +117,18 @@ def sizes_of(image: arb_mat, counts: list[int]) -> list[arb]:
         total = sum((image[i, at + j] * image[i, at + j] for i in range(3) for j in range(size)), arb(0))
         out.append(arb(total.abs_upper()).sqrt())
         at += size
+    return out
+
+
+def sizes_along(images: arb_mat, counts: list[int]) -> list[list[arb]]:
+    """:func:`sizes_of` at many times, from images (3 T, 1 + C) below each other."""
+    rows, out = [list(map(mul, row, row)) for row in images.tolist()], []
+    for k in range(0, len(rows), 3):
+        squares, at, sizes = list(map(add, map(add, rows[k], rows[k + 1]), rows[k + 2])), 0, []
+        for size in (1, *counts):
+            sizes.append(arb(sum(squares[at : at + size], arb(0)).abs_upper()).sqrt())
+            at += size
+        out.append(sizes)
     return out
 
 

@@ -11,6 +11,8 @@ from dataclasses import dataclass
 
 from flint import arb, arb_mat
 
+from safestart.proofs.abort.polynomial import Polynomial
+from safestart.proofs.abort.pull import Field, Pull, Series, dot
 from safestart.proofs.strict import ProofRejected
 
 ORDER = 44
@@ -18,28 +20,6 @@ _SHARE = 0.25
 """Length of a step over the disc's radius."""
 _BALLS = 64
 """Balls of time over a step for the least radius: with fewer the bound is coarser than what provers leave for it."""
-Series = list[arb]
-
-
-@dataclass(frozen=True, slots=True)
-class Field:
-    """Gravity in scaled time: mu and 3/2 mu J2 R^2, m^3 and m^5."""
-
-    mu: arb
-    bulge: arb
-
-    def pull(self, size: arb, square: arb) -> arb:
-        """Bound on |g| where |r| <= size and |r . r| >= square, also for complex r."""
-        q = size * size / square
-        return self.mu * size / square.sqrt() ** 3 + self.bulge * size / square.sqrt() ** 5 * (3 + 5 * q)
-
-    def slope(self, size: arb, square: arb) -> arb:
-        """Bound |G|, the gradient of g, where :meth:`pull` bounds |g|."""
-        q = size * size / square
-        return (
-            self.mu * (1 + 3 * q) / square.sqrt() ** 3
-            + self.bulge * (3 + 30 * q + 35 * q * q) / square.sqrt() ** 5
-        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,8 +30,8 @@ class Step:
 
     begin: arb
     length: arb
-    course: list[arb_mat]
-    motion: list[arb_mat]
+    course: Polynomial
+    motion: Polynomial
     course_defect: arb
     motion_defect: arb
     largest: arb
@@ -63,20 +43,11 @@ class Step:
         """Lower bound on p . p between two of its own scaled times after ``begin``."""
         return _lowest(self.squares, begin, end) - self.rest
 
-    def at(self, coefficients: list[arb_mat], time: arb) -> tuple[arb_mat, arb_mat]:
-        """Value and derivative at a scaled time after ``begin``."""
-        value, rate = coefficients[-1], ORDER * coefficients[-1]
-        for k in range(ORDER - 1, -1, -1):
-            value = value * time + coefficients[k]
-            if k:
-                rate = rate * time + k * coefficients[k]
-        return value, rate
-
 
 def frobenius(matrix: arb_mat) -> arb:
     """Frobenius norm, from above."""
-    total = sum((e * e for e in matrix.entries()), arb(0))
-    return arb(total.abs_upper()).sqrt()
+    entries = matrix.entries()
+    return arb(dot(entries, entries).abs_upper()).sqrt()
 
 
 def middle(matrix: arb_mat) -> arb_mat:
@@ -87,19 +58,27 @@ def middle(matrix: arb_mat) -> arb_mat:
 def step(field: Field, begin: arb, most: arb, start: tuple[arb_mat, arb_mat, arb_mat, arb_mat]) -> Step:
     """A step of at most ``most`` from exact r, r', F, F'; raise ``ProofRejected`` where the course is too bent."""
     r, f = [start[0], start[1]], [start[2], start[3]]
-    series = _Fields(field)
+    series = Pull(field)
     loose_r, loose_f = [], []
     for k in range(ORDER - 1):
-        pull, slope = series.extended(r)
-        flow = arb_mat(3, 6)
-        for j in range(k + 1):
-            flow = flow + series.slopes[j] * f[k - j]
-        divide = (k + 1) * (k + 2)
+        pull, divide = series.extended(r), (k + 1) * (k + 2)
         r.append(middle(pull / divide))
-        f.append(middle(flow / divide))
         loose_r.append(frobenius(r[-1] * divide - pull))
+    # The course does not depend on F: its gradients are known before F's coefficients are looked for.
+    slopes = series.slopes()
+    # All gradients beside each other, the latest first, and F's coefficients below each other: what belongs together
+    # in a coefficient of their product is one product of matrices.
+    beside: list[Series] = [[], [], []]
+    for slope in reversed(slopes):
+        for row, entries in zip(beside, slope.tolist(), strict=True):
+            row += entries
+    below = [e for m in f for e in m.entries()][:18]
+    for k in range(ORDER - 1):
+        first, divide = 3 * (ORDER - 2 - k), (k + 1) * (k + 2)
+        flow = arb_mat([row[first:] for row in beside]) * arb_mat(3 * (k + 1), 6, below[: 18 * (k + 1)])
+        f.append(middle(flow / divide))
         loose_f.append(frobenius(f[-1] * divide - flow))
-        del slope
+        below += f[k + 1].entries()
     sizes_r, sizes_f = [frobenius(m) for m in r], [frobenius(m) for m in f]
     radius, square = _disc(sizes_r, series.square)
     length = arb((most.min(radius * _SHARE)).mid())
@@ -113,8 +92,8 @@ def step(field: Field, begin: arb, most: arb, start: tuple[arb_mat, arb_mat, arb
     return Step(
         begin,
         length,
-        r,
-        f,
+        Polynomial(r),
+        Polynomial(f),
         _sum(loose_r, reach) + field.pull(size, square) * tail,
         _sum(loose_f, reach) + field.slope(size, square) * _sum(sizes_f, radius) * tail,
         (reached**2 + fast**2).sqrt(),
@@ -159,66 +138,3 @@ def _disc(sizes: Series, square: Series) -> tuple[arb, arb]:
             return radius, arb(low.abs_lower())
         radius = radius * 3 / 4
     raise ProofRejected("target: its course is too bent for a step")
-
-
-class _Fields:
-    """Series of g and G along a course, one coefficient after the other."""
-
-    def __init__(self, field: Field) -> None:
-        self.field = field
-        self.square: Series = []
-        self.powers: dict[int, Series] = {3: [], 5: [], 7: [], 9: []}
-        self.zz: Series = []
-        self.kept: dict[str, Series] = {name: [] for name in ("level", "alpha", "beta", "gamma", "bz")}
-        self.radial: list[list[Series]] = []
-        self.ax: list[Series] = [[], [], []]
-        self.slopes: list[arb_mat] = []
-
-    def extended(self, r: list[arb_mat]) -> tuple[arb_mat, arb_mat]:
-        """Coefficients of g (3, 1) and G (3, 3) of the next order, from the course's up to it."""
-        k = len(self.square)
-        xs: list[Series] = [[m[i, 0] for m in r[: k + 1]] for i in range(3)]
-        z = xs[2]
-        self.square.append(sum((_product(x, x, k) for x in xs), arb(0)))
-        self.zz.append(_product(z, z, k))
-        for power, series in self.powers.items():
-            series.append(self._power(power, k))
-        mu, b, (a3, a5, a7, a9) = self.field.mu, self.field.bulge, (self.powers[p] for p in (3, 5, 7, 9))
-        kept = self.kept
-        kept["level"].append(-mu * a3[k] - b * (a5[k] - 5 * _product(self.zz, a7, k)))
-        kept["alpha"].append(3 * mu * a5[k] + b * (5 * a7[k] - 35 * _product(self.zz, a9, k)))
-        kept["beta"].append(10 * b * _product(z, a7, k))
-        kept["gamma"].append(-2 * b * a5[k])
-        for i in range(3):
-            self.ax[i].append(_product(kept["alpha"], xs[i], k))
-        pull = arb_mat(3, 1, [_product(kept["level"], xs[i], k) for i in range(3)])
-        pull[2, 0] += _product(kept["gamma"], z, k)
-        slope = arb_mat(3, 3)
-        for i in range(3):
-            for j in range(i, 3):
-                slope[i, j] = _product(self.ax[i], xs[j], k)
-                if j != i:
-                    slope[j, i] = slope[i, j]
-            slope[i, i] += kept["level"][k]
-        for i in range(3):
-            bent = _product(kept["beta"], xs[i], k)
-            slope[i, 2] += bent
-            slope[2, i] += bent
-        slope[2, 2] += kept["gamma"][k]
-        self.slopes.append(slope)
-        return pull, slope
-
-    def _power(self, power: int, k: int) -> arb:
-        """Coefficient k of (r . r)^(-power/2): s f' = -(power/2) s' f."""
-        s, f = self.square, self.powers[power]
-        if k == 0:
-            return 1 / s[0].sqrt() ** power
-        total = arb(0)
-        for j in range(1, k + 1):
-            total += (-power * j - 2 * (k - j)) * s[j] * f[k - j]
-        return total / (2 * k * s[0])
-
-
-def _product(a: Series, b: Series, k: int) -> arb:
-    """Coefficient k of a product."""
-    return sum((a[j] * b[k - j] for j in range(k + 1)), arb(0))

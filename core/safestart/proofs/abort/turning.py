@@ -38,14 +38,17 @@ def turning(target: Course, begin: arb, end: arb) -> Turning:
     least, most = arb("inf"), arb(0)
     loose = _BALL * target.off
     for one in target.within(begin, end):
-        r = [e + loose for e in one.course[0].entries()]
-        v = [(e + loose) * rate for e in one.course[1].entries()]
+        r = [e + loose for e in one.course.coefficients[0].entries()]
+        v = [(e + loose) * rate for e in one.course.coefficients[1].entries()]
         size = _length([r[k - 2] * v[k - 1] - r[k - 1] * v[k - 2] for k in range(3)])
         changed = anywhere * one.length / rate
         least = least.min(arb((size - changed).lower()))
         most = most.max(arb((size + changed).upper()))
     first = target.steps[0]
-    r, v = list(first.course[0].entries()), [e * rate for e in first.course[1].entries()]
+    r, v = (
+        list(first.course.coefficients[0].entries()),
+        [e * rate for e in first.course.coefficients[1].entries()],
+    )
     size = _length(r)
     twice = _length(v) ** 2 - 2 * mu / size + bulge / size**3 * (3 * (r[2] / size) ** 2 - 1)
     # The true start lies within the loose ball; the energy's change with it is that of v and of gravity.

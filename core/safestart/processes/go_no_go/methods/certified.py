@@ -5,8 +5,12 @@ Every start is computed in plain floats, so a single start gets the same bits as
 
 from __future__ import annotations
 
+import math
+from functools import lru_cache
+
 from safestart.closed_form.certified import OUT_OF_REACH, ROUNDING
-from safestart.closed_form.certified_point import PointCertificate, certify_point, prepare
+from safestart.closed_form.certified_point import PointCertificate, Prepared, certify_point, prepare
+from safestart.model.scenario import CorridorShape, Rest
 from safestart.processes.go_no_go.answer import Verdicts
 from safestart.processes.go_no_go.conditions import Conditions
 from safestart.processes.go_no_go.methods.plain import more_asked, refuse_more
@@ -60,19 +64,29 @@ def covers(inputs: GoNoGoInputs) -> bool:
 
 def certificates(inputs: GoNoGoInputs) -> list[PointCertificate]:
     """The certificate of every start; planar and spatial ones are not mixed."""
-    scenario, states = inputs.scenario(), inputs.states
-    target, spatial = scenario.target, states[0].z_m is not None
-    given = prepare(
-        target.tumble_rate,
-        target.mean_motion,
-        scenario.chaser.max_acceleration,
-        scenario.corridor,
+    corridor, states = inputs.corridor, inputs.states
+    spatial = states[0].z_m is not None
+    given = _prepared(
+        (inputs.omega_t_deg_s, inputs.a_max_m_s2, inputs.mean_motion_rad_s),
+        (corridor.c_x, corridor.c_z, corridor.x0_m, corridor.z0_m, corridor.r_h_m),
         inputs.rest,
         spatial,
     )
     if spatial:
         return [certify_point(given, state.x_m, state.y_m, state.z_m or 0.0) for state in states]
     return [certify_point(given, state.x_m, state.y_m) for state in states]
+
+
+@lru_cache(maxsize=1024)
+def _prepared(
+    point: tuple[float, float, float],
+    shape: tuple[float, float, float, float, float],
+    rest: Rest,
+    spatial: bool,
+) -> Prepared:
+    """The operating point (deg/s, m/s^2, rad/s) and corridor by their numbers: the core's terms take longer to make."""
+    tumble, thrust, motion = point
+    return prepare(math.radians(tumble), motion, thrust, CorridorShape(*shape), rest, spatial)
 
 
 def sentence(one: PointCertificate) -> str:

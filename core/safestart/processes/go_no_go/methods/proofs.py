@@ -53,14 +53,14 @@ def prove(inputs: GoNoGoInputs, solve: Solve, context: Context) -> Verdicts:
         reasons = [disturbed.sentence(disturbance, question, answer) for answer in answers]
     else:
         answers, by = solve(question, starts, context)
-        if inputs.after_arrival == "stay":
-            answers = asked.with_arrival(question, answers)
+        answers = asked.with_arrival(inputs.after_arrival, question, starts, answers)
         reasons = [asked.sentence(question, answer) for answer in answers]
     return Verdicts(
         [answer.verdict.value for answer in answers],
         [finite(answer.margin_m) for answer in answers],
         reasons,
         end_s=[_end(question, answer) for answer in answers] if question.goal else None,
+        hold_after=asked.hold_after(inputs, question, answers),
         proof=[_proof(disturbance, question, *each) for each in zip(starts, answers, strict=True)]
         if inputs.proofs
         else None,

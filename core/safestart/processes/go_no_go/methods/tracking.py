@@ -58,11 +58,15 @@ def decide(inputs: GoNoGoInputs, _: Conditions, context: Context) -> Verdicts:
         "proof": [],
         "decided_by": [],
         "tracking": [],
+        "hold_after": [],
     }
+    by_hold = question.goal is not None and inputs.after_arrival == "hold"
     for k, start in enumerate(in_lvlh(inputs, question, points)):
         flight, exact = _flight(question, approach, start), decide_start(question, start)
         answer = _answer(question, flight)
-        stays = answer.arrival is not None or question.goal is None or inputs.after_arrival == "any"
+        if by_hold and flight.arrived is not None:
+            answer = asked.with_hold_after(question, start, answer)
+        stays = question.goal is None or asked.stays(inputs.after_arrival, answer)
         verdict, by = flown.verdict_of(flight, exact, stays=stays)
         answer = answer if by == "tracking" else exact
         verdicts.append(verdict.value)
@@ -75,6 +79,7 @@ def decide(inputs: GoNoGoInputs, _: Conditions, context: Context) -> Verdicts:
             "proof": proof_of(_covering(question, answer), start, answer) if by and inputs.proofs else None,
             "decided_by": by,
             "tracking": flown.flown_answer(flight, exact),
+            "hold_after": None if verdict is Verdict.NO_GO else asked.told_of_hold(answer.held),
         }
         for column, value in row.items():
             columns[column].append(value)
@@ -83,6 +88,8 @@ def decide(inputs: GoNoGoInputs, _: Conditions, context: Context) -> Verdicts:
         del columns["end_s"]
     if not inputs.proofs:
         del columns["proof"]
+    if not by_hold:
+        del columns["hold_after"]
     return Verdicts(verdicts, **columns)  # type: ignore[arg-type]
 
 
