@@ -1,7 +1,8 @@
 """Random questions answered by the compiled solver and by Clarabel: the same verdicts, brackets that meet, proofs.
 
-``python -m benchmarks.same_verdicts FILE [--cases N] [--seconds S] [--seed K]`` answers the cases of seed K from where
-FILE (JSON lines, one a block) ends, until N are done or S seconds are over. Progress goes to stderr after every 20
+``python -m benchmarks.same_verdicts FILE [--cases N] [--seconds S] [--seed K] [--proofs-every P]`` answers the cases of
+seed K from where FILE (JSON lines, one a block) ends, until N are done or S seconds are over. Checking a proof takes
+six times as long as both answers, so P above 1 checks those of every P-th case. Progress goes to stderr after every 20
 blocks; at the end one JSON document sums up all blocks of the file. Questions are `stay` in the plane and in space:
 thrust 1 mm/s^2 to 1 m/s^2, no tumble to 5 deg/s, with and without mean motion, 20 to 300 s, corridors of slope 0.3 to
 3, starts at rest in either frame or moving.
@@ -71,12 +72,13 @@ def by_clarabel(question: Question, state: Floats) -> Answer:
         return answer_of(found, found.narrow(1e-4))
 
 
-def block(first: int, seed: int = SEED) -> dict[str, Any]:
+def block(first: int, seed: int = SEED, proofs_every: int = 1) -> dict[str, Any]:
     """Cases ``first`` to ``first`` + ``BLOCK`` - 1: verdicts, what differs, proofs, times."""
     verdicts, before = Counter[str](), SOLVED_BY.copy()
     other: list[Any] = []
     rejected: list[Any] = []
     ours_s = cones_s = widest = 0.0
+    checked = 0
     for number in range(first, first + BLOCK):
         question, state = drawn(number, seed)
         watch_of(question)
@@ -94,7 +96,8 @@ def block(first: int, seed: int = SEED) -> dict[str, Any]:
             )
         if answer.iterations:
             widest = max(widest, answer.gap)
-        if answer.verdict is not Verdict.UNDECIDED:
+        if answer.verdict is not Verdict.UNDECIDED and number % proofs_every == 0:
+            checked += 1
             try:
                 check(json.loads(json.dumps(proof_of(question, state, answer))))
             except Exception as error:  # a study lists what fails and goes on
@@ -105,6 +108,7 @@ def block(first: int, seed: int = SEED) -> dict[str, Any]:
         "first": first,
         "verdicts": verdicts,
         "other": other,
+        "proofs_checked": checked,
         "proofs_rejected": rejected,
         "programs": programs,
         "widest_m": widest,
@@ -113,14 +117,14 @@ def block(first: int, seed: int = SEED) -> dict[str, Any]:
     }
 
 
-def study(file: Path, cases: int, seconds: float, seed: int = SEED) -> dict[str, Any]:
+def study(file: Path, cases: int, seconds: float, seed: int = SEED, proofs_every: int = 1) -> dict[str, Any]:
     """Go on with the file, then sum it up; ValueError where the file has blocks of another seed."""
     begun = time.monotonic()
     done = [json.loads(line) for line in file.read_text().splitlines()] if file.exists() else []
     if others := {one["seed"] for one in done} - {seed}:
         raise ValueError(f"{file} must hold blocks of seed {seed} only, but has some of {sorted(others)}")
     while len(done) * BLOCK < cases and time.monotonic() - begun < seconds:
-        done.append(block(len(done) * BLOCK, seed))
+        done.append(block(len(done) * BLOCK, seed, proofs_every))
         with file.open("a") as out:
             out.write(json.dumps(done[-1]) + "\n")
         if len(done) % PROGRESS_BLOCKS == 0:
@@ -147,6 +151,7 @@ def summed(done: list[dict[str, Any]]) -> dict[str, Any]:
         "cases": len(done) * BLOCK,
         "verdicts_compiled_and_clarabel": dict(verdicts),
         "other": [case for one in done for case in one["other"]],
+        "proofs_checked": sum(one["proofs_checked"] for one in done),
         "proofs_rejected": [case for one in done for case in one["proofs_rejected"]],
         "programs": dict(programs),
         "widest_bracket_m": max((one["widest_m"] for one in done), default=None),
@@ -164,8 +169,13 @@ def main() -> None:
     parser.add_argument("--cases", type=int, default=100_000)
     parser.add_argument("--seconds", type=float, default=math.inf)
     parser.add_argument("--seed", type=int, default=SEED)
+    parser.add_argument("--proofs-every", type=int, default=1)
     chosen = parser.parse_args()
-    print(json.dumps(study(chosen.file, chosen.cases, chosen.seconds, chosen.seed), indent=1))
+    print(
+        json.dumps(
+            study(chosen.file, chosen.cases, chosen.seconds, chosen.seed, chosen.proofs_every), indent=1
+        )
+    )
 
 
 if __name__ == "__main__":

@@ -95,7 +95,7 @@ def stored() -> dict[str, Files]:
 
 
 def arithmetic() -> dict[str, str]:
-    """Versions of the computing packages, on which the last bits depend besides our code."""
+    """Versions of the computing packages and the processor, on which the last bits depend besides our code."""
     packages = (
         "numpy",
         "scipy",
@@ -108,7 +108,16 @@ def arithmetic() -> dict[str, str]:
         "pyarrow",
     )
     found = {name: version(name) for name in packages if _installed(name)}
-    return found | {"libc": " ".join(platform.libc_ver())}
+    # XLA compiles hj-reachability's single precision for the processor that it finds, whatever its flags say.
+    return found | {"libc": " ".join(platform.libc_ver()), "processor": _processor()}
+
+
+def _processor() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        return platform.machine()
+    return next((line.partition(":")[2].strip() for line in lines if line.startswith("model name")), "")
 
 
 def _installed(name: str) -> bool:

@@ -39,6 +39,20 @@ def test_the_service_keeps_the_arrays_that_the_process_computes() -> None:
     assert compared > 5
 
 
+def test_all_is_what_its_parts_are() -> None:
+    stored, compared = digests.stored(), 0
+    whole = stored["reproduce/all"]["printed-1.json"]
+    for name in ("table2", "table3", "chain", "collision-avoidance", "tracking-mpc", "passive-safety"):
+        part = stored[f"reproduce/{name}"]["printed-1.json"]
+        for place in (place for place in part if place.startswith("printed.")):
+            same = f"printed.{name.replace('-', '_')}.{place.removeprefix('printed.')}"
+            # A place of the whole is one level deeper, and may hold what are several places of the part.
+            if same in whole and not any(other.startswith(f"{place}.") for other in part):
+                assert whole[same] == part[place], same
+                compared += 1
+    assert compared > 100
+
+
 def test_times_within_a_cell_are_left_out() -> None:
     def cell(seconds: float, radius: float) -> content.Digests:
         return content.table(

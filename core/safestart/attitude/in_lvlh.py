@@ -29,8 +29,11 @@ class InLvlh:
 
     def rotation(self, times: Floats) -> Floats:
         """(..., 3, 3): LVLH coordinates to body coordinates."""
+        return self._seen(self.inertial.rotation(times), times)
+
+    def _seen(self, inertial: Floats, times: Floats) -> Floats:
         # Times last, the memory order.
-        seen, angle = np.moveaxis(self.inertial.rotation(times), (-2, -1), (0, 1)), self.orbit.turned(times)
+        seen, angle = np.moveaxis(inertial, (-2, -1), (0, 1)), self.orbit.turned(times)
         out = np.empty(seen.shape)
         # The columns of C R^T: R turns about z.
         out[:, 0], out[:, 1] = into_body(np.cos(angle), np.sin(angle), seen[:, 0], seen[:, 1])
@@ -39,9 +42,17 @@ class InLvlh:
 
     def angular_velocity(self, times: Floats) -> Floats:
         """(..., 3), rad/s, of the body against LVLH, in body axes."""
-        normal, rate = self.inertial.rotation(times)[..., 2], self.orbit.rate(times)
+        return self._velocity(self.inertial.rotation(times), times)
+
+    def _velocity(self, inertial: Floats, times: Floats) -> Floats:
+        normal, rate = inertial[..., 2], self.orbit.rate(times)
         out: Floats = self.inertial.angular_velocity(times) - rate[..., None] * normal
         return out
+
+    def moving(self, times: Floats) -> tuple[Floats, Floats]:
+        """:meth:`rotation` and :meth:`angular_velocity`; the inertial rotation, which takes longest, is made once."""
+        inertial = self.inertial.rotation(times)
+        return self._seen(inertial, times), self._velocity(inertial, times)
 
     def rate_bounds(self) -> tuple[float, float]:
         """Bounds on |omega| (rad/s) and |omega dot| (rad/s^2): the sums of those of the body and of LVLH."""

@@ -87,6 +87,47 @@ def input_matrix(mean_motion: float, tau: float) -> Floats:
     return bd
 
 
+def moves_of(mean_motion: float, tau: Floats) -> tuple[Floats, Floats]:
+    """:func:`transition_matrix` (J, 6, 6) and :func:`input_matrix` (J, 6, 3) at J times, s, with the same bits."""
+    _check(mean_motion, float(np.abs(tau).max(initial=0.0)))
+    n, p = mean_motion, mean_motion * tau
+    f1, f2, f3 = _phases_alike(p)
+    # Python's cosine and power: NumPy's may round differently.
+    c = np.array([math.cos(one) for one in p.tolist()])
+    cube = np.array([one**3 for one in p.tolist()])
+    phi, bd = np.zeros((len(tau), 6, 6)), np.zeros((len(tau), 6, 3))
+    along, swing = tau * f1, 2.0 * tau * p * f2
+    phi[:, 0, 0], phi[:, 0, 3], phi[:, 0, 4] = 1.0 + 3.0 * p * p * f2, along, swing
+    phi[:, 1, 0], phi[:, 1, 1], phi[:, 1, 3] = -6.0 * cube * f3, 1.0, -2.0 * tau * p * f2
+    phi[:, 1, 4] = tau * (4.0 * f1 - 3.0)
+    phi[:, 2, 2], phi[:, 2, 5] = c, along
+    phi[:, 3, 0], phi[:, 3, 3], phi[:, 3, 4] = 3.0 * n * p * f1, c, 2.0 * p * f1
+    phi[:, 4, 0], phi[:, 4, 3], phi[:, 4, 4] = -6.0 * n * p * p * f2, -2.0 * p * f1, 4.0 * c - 3.0
+    phi[:, 5, 2], phi[:, 5, 5] = -n * p * f1, c
+    square = tau * tau
+    bd[:, 0, 0], bd[:, 0, 1] = square * f2, 2.0 * square * p * f3
+    bd[:, 1, 0], bd[:, 1, 1] = -2.0 * square * p * f3, square * (4.0 * f2 - 1.5)
+    bd[:, 2, 2] = square * f2
+    bd[:, 3, 0], bd[:, 3, 1] = along, swing
+    bd[:, 4, 0], bd[:, 4, 1] = -2.0 * tau * p * f2, tau * (4.0 * f1 - 3.0)
+    bd[:, 5, 2] = along
+    return phi, bd
+
+
+def _phases_alike(phase: Floats) -> tuple[Floats, Floats, Floats]:
+    """:func:`phase_functions` of many phases, with the same bits."""
+    square = phase * phase
+    (sinc, versine, cubic), term = np.zeros((3, len(phase))), np.ones(len(phase))
+    for k in range(11):
+        sinc += term / (2 * k + 1)
+        versine += term / ((2 * k + 1) * (2 * k + 2))
+        cubic += term / ((2 * k + 1) * (2 * k + 2) * (2 * k + 3))
+        term *= -square / ((2 * k + 1) * (2 * k + 2))
+    for j in np.nonzero(np.abs(phase) >= 0.5)[0]:
+        sinc[j], versine[j], cubic[j] = phase_functions(float(phase[j]))
+    return sinc, versine, cubic
+
+
 @dataclass(frozen=True)
 class Cwh(SteadyMotion):
     """The motion near a target on a circular orbit of ``mean_motion`` rad/s; raises ``InvalidInput`` out of range."""
@@ -103,6 +144,10 @@ class Cwh(SteadyMotion):
     def held(self, t0: float, t1: float) -> Floats:
         """B_d(t1 - t0)."""
         return input_matrix(self.mean_motion, t1 - t0)
+
+    def moves(self, begin: Floats, end: Floats) -> tuple[Floats, Floats]:
+        """Phi and B_d of many intervals, (J, 6, 6) and (J, 6, 3)."""
+        return moves_of(self.mean_motion, end - begin)
 
     def positions(self, tau: Floats, dimensions: int) -> tuple[Floats, Floats]:
         """Position rows of Phi(tau) and B_d(tau)."""

@@ -17,6 +17,7 @@ Array = NDArray[Any]
 
 # A block and its row buffers should fit in the first caches; a longer row needs no second axis.
 LONGEST_BLOCK, LONG_ROW = 4096, 256
+ROWS_AT_ONCE = 4096
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +87,10 @@ class Layout:
         flat = self.empty(dtype)
         self.nodes(flat)[...] = values
         rows = flat[SLACK:-SLACK].reshape(-1, self.pitch)
-        rows[...] = self.pad(rows[:, self.width : self.pitch - self.width])
+        # In pieces: a padded copy of a large grid would be as large as the grid.
+        for begin in range(0, len(rows), ROWS_AT_ONCE):
+            some = rows[begin : begin + ROWS_AT_ONCE]
+            some[...] = self.pad(some[:, self.width : self.pitch - self.width])
         return flat
 
     def pad(self, rows: Array) -> Array:

@@ -93,6 +93,7 @@ def solve(
     march = March(
         lattice, motion, values, start + horizon, Kind(kind), options, cap, floor, horizon / MOMENTS
     )
+    del values  # of a large grid every copy counts
     try:
         steps = march.rate * horizon / options.courant
         if not steps <= MAX_STEPS:
@@ -109,7 +110,7 @@ def solve(
                 raise invalid("lattice", f"a lattice and horizon of at most {MAX_STEPS} steps", march.steps)
             context.step(horizon - left, horizon, "time steps")
             failure = _trouble(march, options, motion)
-        field = None if failure else ValueField(lattice, np.array(march.nodes(), dtype=np.float64))
+        field = None if failure else ValueField(lattice, march.result())
     finally:
         march.close()
     return Solution(lattice, motion, start, field, failure, march.steps, clock.perf_counter() - begin)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from email.utils import format_datetime
@@ -77,7 +78,7 @@ class Deprecation:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Serve one request."""
-        if self.telltales and not any(word in scope.get("query_string", b"") for word in self.telltales):
+        if self.telltales is not None and not self.telltales.search(scope.get("query_string", b"")):
             await self.app(scope, receive, send)
             return
 
@@ -91,11 +92,12 @@ class Deprecation:
         await self.app(scope, receive, telling if scope["type"] == "http" else send)
 
 
-def _telltales() -> tuple[bytes, ...]:
-    """Words of which a query that concerns a notice holds one, percent-encoded or not; empty: any may concern one."""
+def _telltales() -> re.Pattern[bytes] | None:
+    """Words of which a query that concerns a notice holds one, percent-encoded or not; None: any may concern one."""
     if any(notice.parameter is None for notice in NOTICES.values()):
-        return ()
-    return tuple({str(notice.value or notice.parameter).encode() for notice in NOTICES.values()} | {b"%"})
+        return None
+    words = {str(notice.value or notice.parameter).encode() for notice in NOTICES.values()} | {b"%"}
+    return re.compile(b"|".join(re.escape(word) for word in sorted(words)))
 
 
 def mark(document: dict[str, Any]) -> None:

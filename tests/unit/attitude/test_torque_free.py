@@ -123,6 +123,9 @@ def test_lvlh_turns_under_it(orbit: KeplerOrbit, reference: str) -> None:
     times, h = np.array([0.0, 55.0, 900.0, 3000.0]), 1e-3
     back = orbit.rotation(times)
     np.testing.assert_allclose(seen.rotation(times) @ back, seen.inertial.rotation(times), atol=1e-13)
+    turn, omega = seen.moving(times)
+    assert turn.tobytes() == seen.rotation(times).tobytes()
+    assert omega.tobytes() == seen.angular_velocity(times).tobytes()
     np.testing.assert_allclose(
         seen.rotation(times)[0], matrix_of(np.array(attitude) / np.linalg.norm(attitude)), atol=1e-14
     )

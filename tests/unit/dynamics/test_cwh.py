@@ -74,3 +74,22 @@ def test_bad_input_is_refused(n: float, tau: float) -> None:
         cwh.transition_matrix(n, tau)
     with pytest.raises(InvalidInput):
         cwh.input_matrix(n, tau)
+
+
+@pytest.mark.parametrize("n", [0.0, 1.1e-3, 1.3e-3])
+def test_many_intervals_have_the_bits_of_each(n: float) -> None:
+    """Short ones, by series, and long ones, beyond a phase of 0.5, together; backwards, too."""
+    begin = np.array([0.0, 3.0, 10.0, 0.1, 100.0, 7.0])
+    end = np.array([0.0, 3.7, 1610.0, 0.3, 20.0, 7.0 + 1e-9])
+    motion = cwh.Cwh(n)
+    phi, held = motion.moves(begin, end)
+    for k, (t0, t1) in enumerate(zip(begin.tolist(), end.tolist(), strict=True)):
+        assert phi[k].tobytes() == motion.transition(t0, t1).tobytes()
+        assert held[k].tobytes() == motion.held(t0, t1).tobytes()
+    empty = motion.moves(np.zeros(0), np.zeros(0))
+    assert [one.shape for one in empty] == [(0, 6, 6), (0, 6, 3)]
+
+
+def test_many_intervals_refuse_a_time_that_is_not_finite() -> None:
+    with pytest.raises(InvalidInput):
+        cwh.Cwh(1e-3).moves(np.zeros(2), np.array([1.0, np.nan]))

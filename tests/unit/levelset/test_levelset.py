@@ -103,3 +103,16 @@ def test_memory_is_at_most_six_grids() -> None:
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert peak <= 6 * values.size * 8
+
+
+def test_the_first_order_scheme_holds_two_grids_beside_the_callers() -> None:
+    """The value and its next stage, later the value and the result; ghosts make them 26 / 24 as large."""
+    lattice = Lattice.of([-1.0] * 4, [1.0] * 4, (24, 24, 24, 24))
+    values = sum(axis**2 for axis in lattice.coordinates()) - np.full(lattice.shape, 0.3)
+    motion = Linear(np.eye(4)[[2, 3, 0, 1]], (Input(np.eye(4)[:, 2:], Ball(np.zeros(2), 0.1), "min"),))
+    solved(lattice, motion, values, 0.05, options=Options(Scheme.FIRST))  # compiles
+    tracemalloc.start()
+    solved(lattice, motion, values, 0.05, options=Options(Scheme.FIRST))
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak <= 2.3 * values.nbytes

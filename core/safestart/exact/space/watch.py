@@ -15,6 +15,8 @@ from typing import Self
 
 import numpy as np
 
+from safestart.attitude.in_lvlh import InLvlh
+from safestart.attitude.turning import SmoothAttitude
 from safestart.constraints.cubic import dips
 from safestart.exact import speed
 from safestart.exact.limits import AT_END, Limit
@@ -52,6 +54,7 @@ class SpaceWatch:
         self._levels: Floats = self.offsets
         self.names = tuple(face.name for face in faces)
         self._in_body = np.array([face.frame == "body" for face in faces])
+        # Not those of the first sample: a product of one rotation rounds otherwise than one of many.
         self.normals = self._turned(np.zeros(1))[0]
         self.prediction = prediction_of(question.motion, question.dt, question.steps, 3, 1)
         self._sample()
@@ -88,11 +91,15 @@ class SpaceWatch:
         self._length = (tau[1:] - tau[:-1])[segments]
         self._begin, self._longest = times[segments], float(self._length.max())
         self._phi, self._held = self._tables(tau, times)
-        self._normals = self._turned(times)
-        slopes = self._turning(times, times)
+        turn = omega = None
+        if self._in_body.any():
+            turn, omega = _moving(question.attitude, times)
+        self._normals = self._turned(times, turn)
+        slopes = self._turning(turn, omega)
         self._slope_first, self._slope_last = slopes[self._first], slopes[self._last]
         if len(knots):
-            self._slope_last = self._turning(times, np.nextafter(times, -np.inf))[self._last]
+            omega = None if turn is None else question.attitude.angular_velocity(np.nextafter(times, -np.inf))
+            self._slope_last = self._turning(turn, omega)[self._last]
 
     @property
     def intervals(self) -> Ints:
@@ -132,20 +139,21 @@ class SpaceWatch:
             return phi[back], held[back]
         return moved_many(self.question.motion, times - tau, times, 3)
 
-    def _turned(self, times: Floats) -> Floats:
-        """Normals (T, F, 3) in LVLH axes."""
+    def _turned(self, times: Floats, turn: Floats | None = None) -> Floats:
+        """Normals (T, F, 3) in LVLH axes; ``turn`` (T, 3, 3) are the attitude's rotations then, if known."""
         out = np.broadcast_to(self._own, (len(times), *self._own.shape))
         if not self._in_body.any():
             return out
-        turned: Floats = self._own @ self.question.attitude.rotation(times)
+        turned: Floats = self._own @ (self.question.attitude.rotation(times) if turn is None else turn)
         return np.where(self._in_body[:, None], turned, out)
 
-    def _turning(self, times: Floats, just: Floats) -> Floats:
-        """Rates (T, F, 3) of the normals in LVLH axes, with the angular velocity of the times ``just``."""
-        if not self._in_body.any():
-            return np.zeros((len(times), *self._own.shape))
-        turn = self.question.attitude.rotation(times)
-        omega = self.question.attitude.angular_velocity(just)
+    def _turning(self, turn: Floats | None, omega: Floats | None) -> Floats:
+        """Rates (P, F, 3) of the normals in LVLH axes at the samples.
+
+        ``turn`` (P, 3, 3) and ``omega`` (P, 3) are the attitude's; None where no face turns with the body.
+        """
+        if turn is None or omega is None:
+            return np.zeros((len(self._times), *self._own.shape))
         moved: Floats = np.cross(omega[:, None, :], self._own[None]) @ turn
         return np.where(self._in_body[:, None], moved, 0.0)
 
@@ -267,6 +275,13 @@ class SpaceWatch:
         limits = [self._limit(name, time) for name, time in zip(names, times.tolist(), strict=True)]
         made = stacked(limits, self.prediction, names, times)
         return replace(made, thrust=self._by_channels(made.thrust))
+
+
+def _moving(attitude: SmoothAttitude, times: Floats) -> tuple[Floats, Floats]:
+    """Rotations (T, 3, 3) and angular velocities (T, 3)."""
+    if isinstance(attitude, InLvlh):
+        return attitude.moving(times)
+    return attitude.rotation(times), attitude.angular_velocity(times)
 
 
 @lru_cache(maxsize=16)
