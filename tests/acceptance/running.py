@@ -46,7 +46,8 @@ def answers(url: str, process: subprocess.Popen[bytes]) -> bool:
 class Running:
     """``safestart up`` and a client of it."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, lease_s: float = 20.0) -> None:
+        """A short lease lets a killed worker's job be taken over soon; on a busy machine a living one loses it too."""
         port = free_port()
         self.database_url = f"sqlite:///{folder / 'up.sqlite3'}"
         environment = (
@@ -54,7 +55,7 @@ class Running:
             | os.environ
             | {
                 "SAFESTART_DATABASE_URL": self.database_url,
-                "SAFESTART_LEASE_S": "4",
+                "SAFESTART_LEASE_S": f"{lease_s:g}",
                 "SAFESTART_PROCESSES": "2",
             }
         )

@@ -23,7 +23,7 @@ INPUTS = {
 
 @pytest.fixture(scope="module")
 def running(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Running]:
-    up = Running(tmp_path_factory.mktemp("up"))
+    up = Running(tmp_path_factory.mktemp("up"), lease_s=4.0)
     yield up
     assert up.stop() == [], "Ctrl-C stops every child"
 

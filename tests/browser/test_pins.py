@@ -30,7 +30,6 @@ def test_pinned_starts_keep_their_question(visit: Visit) -> None:
     page = visit.go("/dashboard?omega_t_deg_s=3&x_m=5&y_m=40")
     expect(page.locator("#verdict .word")).to_have_text("GO")
     page.click("#pin")
-    page.click("text=Several starts at once")
     page.fill("#starts", "60 40\n2, 30")
     page.click("text=Check and pin them")
     rows = page.locator("#pinned tbody tr")

@@ -1,12 +1,13 @@
 // Words, geometry and statistics.
 
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { test } from "node:test";
 
 import { arc, closed, corridor, turned } from "../../service/safestart_service/static/logic/geometry.js";
 import { layerTitle } from "../../service/safestart_service/static/logic/layers.js";
 import { agreement, wilson } from "../../service/safestart_service/static/logic/statistics.js";
-import { csv, duration, figure, lines, moment, sentence } from "../../service/safestart_service/static/logic/words.js";
+import { HELD, csv, duration, figure, lines, moment, rounding, sentence } from "../../service/safestart_service/static/logic/words.js";
 
 const SHAPE = { c_x: 1.5, x0_m: 2.5, r_h_m: 0.5 };
 const near = (one, two) => assert.ok(Math.abs(one - two) < 1e-9, `${one} is not ${two}`);
@@ -72,4 +73,17 @@ test("a layer is called as the outputs call it", () => {
   assert.equal(layerTitle("to {faces.1}, {method}", outputs), "to right, exact");
   assert.equal(layerTitle("{faces.7}", outputs), "faces.7");
   assert.equal(layerTitle("plain", outputs), "plain");
+});
+
+test("what is 0 but for rounding is known by its column", () => {
+  const column = [-900, 1.1e-13, null, "x", 23];
+  assert.ok(Math.abs(column[1]) < rounding(column));
+  assert.ok(1e-9 > rounding(column), "a small margin among metres stays what it is");
+  assert.ok(!(1.1e-13 < rounding([1.1e-13, 2e-13])), "a column of small figures keeps them");
+  assert.equal(rounding([]), 0);
+});
+
+test("the steps that the pages name are those of the service", () => {
+  const wire = readFileSync(new URL("../../core/safestart/processes/wire.py", import.meta.url), "utf8");
+  assert.equal(HELD, `held over steps of ${Number(/^DT_S = ([\d.]+)$/m.exec(wire)[1])} s`);
 });

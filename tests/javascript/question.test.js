@@ -88,7 +88,7 @@ test("only a verdict that is one is proved for all", () => {
 test("the flight's caption says what is flown", () => {
   const synchronize = values({ question: "synchronize" });
   assert.equal(flownWords("GO", values()), "Flown: the proof's thrust history, to stay 60 s");
-  assert.match(flownWords("NO_GO", values()), /best attempt to stay 60 s; no thrust history can/);
+  assert.match(flownWords("NO_GO", values()), /best attempt to stay 60 s; no thrust held over steps of 2 s can$/);
   assert.match(flownWords("UNDECIDED", values()), /undecided/);
   assert.match(flownWords("NO_GO", synchronize), /attempt to stay 60 s, as none is known to come to rest at the hold point within 200 s/);
   assert.match(flownWords("GO", values({ position_half_width_m: "1" })), /nominal values, undisturbed/);

@@ -123,7 +123,8 @@ def pieces(length: float, bend: float) -> list[tuple[float, float]]:
     if length <= 0.0:
         return []
     count = min(max(math.ceil(length / math.sqrt(8.0 * _BEND / max(bend, 1e-12))), 1), _MOST_PIECES)
-    cuts = [length * k / count for k in range(count + 1)]
+    # The last one ends at the length itself, which length * count / count may miss by its rounding.
+    cuts = [*(length * k / count for k in range(count)), length]
     return list(pairwise(cuts))
 
 

@@ -2,16 +2,20 @@
 
 import json
 import math
+from itertools import pairwise
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 from safestart.cli import build
 from safestart.errors import Conflict
+from safestart.missed_burn.cases import cases_of
 from safestart.missed_burn.document import document_of
-from safestart.missed_burn.plan import Errors, Question
+from safestart.missed_burn.plan import Errors, Failures, Question
 from safestart.missed_burn.prove import Proof, Verdict, prove
 from safestart.missed_burn.question_document import question_document
+from safestart.missed_burn.sets import pieces
 from safestart.proofs.abort import check as checker
 from safestart.proofs.abort import sets
 from safestart.proofs.checker import check
@@ -169,3 +173,25 @@ def test_verify_prints_the_statement(document, tmp_path) -> None:
     assert said["valid"]
     assert said["verdict"] == "PROVED"
     assert said["question"]["keep_out_m"] == 50.0
+
+
+def test_pieces_of_time_end_where_their_length_does() -> None:
+    """length * count / count may be another number: such documents were refused."""
+    rng, missed = np.random.default_rng(4), 0
+    for length, bend in zip(
+        rng.uniform(1.0, 600.0, 2000).tolist(), rng.uniform(1e-4, 1.0, 2000), strict=True
+    ):
+        made = pieces(length, float(bend))
+        assert (made[0][0], made[-1][1]) == (0.0, length)
+        assert all(one[1] == two[0] for one, two in pairwise(made))
+        missed += length * len(made) / len(made) != length
+    assert missed > 10
+
+
+def test_a_delay_whose_pieces_round_has_a_document_that_is_accepted() -> None:
+    late = 47.24655414110222
+    plan = plan_of(40.0, 1, 1200.0)
+    asked = Question(plan, 10.0, 600.0, STUDY, Failures(late))
+    count = len([case for case in cases_of(asked) if (case.kind, case.burn) == ("late", 0)])
+    assert late * count / count != late
+    assert check(document_of(prove(asked))).verdict == "PROVED"

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from flint import arb, fmpq
+from flint import arb, arb_mat, fmpq
 from scipy.linalg import expm
 
 from safestart.exact.answer import Answer, Held, Verdict
@@ -21,7 +21,7 @@ from safestart.exact.question import Goal, Question
 from safestart.model.scenario import Chaser, CorridorShape, Floats, Scenario, Target
 from safestart.proofs.balls import Motion
 from safestart.proofs.checker import check
-from safestart.proofs.hold.check import Hold, _At
+from safestart.proofs.hold.check import Hold, _At, _require_positive
 from safestart.proofs.single import Witness
 from safestart.proofs.statement import read
 from safestart.proofs.strict import ProofRejected
@@ -286,7 +286,7 @@ def test_the_bounds_are_those_of_the_ellipsoid(document: Document) -> None:
         ):
             length = math.hypot(*normal)
             least = float(((offset - body @ normal) / length).min()) - place
-            assert float(found.left[name]) == pytest.approx(least, abs=1e-5)
+            assert float(found.left[name]) == pytest.approx(least, abs=2e-8)
         farthest = float(np.linalg.norm(seen[:, :2], axis=1).max()) + place
         assert farthest - 1e-9 <= float(found.far) <= farthest + 1e-2
         assert float(found.fast) == pytest.approx(
@@ -322,6 +322,44 @@ def test_between_two_instants_it_may_fall_by_so_much(document: Document, more: f
                 hold._require(*pair, over, arb(h))
         else:
             hold._require(*pair, over, arb(h))
+
+
+def test_pivots_tell_a_positive_matrix() -> None:
+    rng = np.random.default_rng(4)
+    for _ in range(20):
+        half = rng.normal(size=(4, 4))
+        _require_positive(arb_mat((half @ half.T + 0.01 * np.eye(4)).tolist()), "")
+    for i in range(4):
+        for j in range(i):
+            # Its diagonal is positive, its least eigenvalue -0.1.
+            bent = np.eye(4)
+            bent[i, j] = bent[j, i] = 1.1
+            with pytest.raises(ProofRejected, match="bent"):
+                _require_positive(arb_mat(bent.tolist()), "bent")
+
+
+def test_its_pieces_tile_the_step(document: Document, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each span between two neighbouring instants is enclosed whole, from the first to the last of the step."""
+    hold, whole, asked = loop(document), Hold._bounds, []
+
+    def noted(self: Hold, s: arb) -> _At:
+        asked.append((float(s.mid() - s.rad()), float(s.mid() + s.rad())))
+        return whole(self, s)
+
+    monkeypatch.setattr(Hold, "_bounds", noted)
+    answer = with_hold(QUESTION, START, decide(QUESTION, START))
+    assert answer.thrust is not None
+    phi, held = Motion(read(document)).over(arb(2))
+    state = phi * arb_mat(4, 1, START.tolist()) + held * arb_mat(2, 1, answer.thrust[0].tolist())
+    hold.check(state, arb(2))
+    instants = sorted(low for low, high in asked if high - low < 1e-6)
+    spans = sorted((low, high) for low, high in asked if high - low > 1e-6)
+    assert (instants[0], instants[-1]) == (0.0, 2.0)
+    assert len(spans) == len(instants) - 1 >= 8
+    for (low, high), before, after in zip(spans, instants, instants[1:], strict=False):
+        assert low <= before + 1e-9
+        assert high >= after - 1e-9
+        assert high - low < 1.01 * (after - before)
 
 
 def test_the_thrust_alone_refuses_a_level(document: Document) -> None:

@@ -88,6 +88,10 @@ class Cluster:
                     used += sum(psutil.Process(nanny.pid).cpu_times()[:2])
         return used
 
+    def share(self) -> float:
+        """Share of a core (0, 1] that a local process can count on: cores by what wanted them in the last minute."""
+        return min(1.0, (psutil.cpu_count() or 1) / max(1.0, psutil.getloadavg()[0]))
+
     async def complete(self) -> bool:
         """True when every local task process is there, or the cluster is not ours."""
         return await self.threads() >= self._size

@@ -15,7 +15,8 @@ from distributed import Future
 
 from safestart_worker.cluster.cluster import Cluster
 
-# A process that uses less than this share of a core does not compute; its idle event loop takes 1 to 2 %.
+# A process that uses less than this share of a core that it can have does not compute; its idle event loop takes 1
+# to 2 %. On a crowded machine one that computes gets far less than a core.
 LEAST_SHARE = 0.04
 
 
@@ -64,7 +65,7 @@ class Signs:
         lasted = now - self._since
         if lasted < self._patience_s:
             return Finding.ALIVE
-        busy = (cpu_s or 0.0) - self._cpu_s >= LEAST_SHARE * lasted
+        busy = (cpu_s or 0.0) - self._cpu_s >= LEAST_SHARE * self._cluster.share() * lasted
         waits_its_turn = kind is Finding.HOMELESS and await self._cluster.complete()
         if kind is Finding.ALIVE or (kind is Finding.HUNG and busy) or waits_its_turn:
             self.heard()

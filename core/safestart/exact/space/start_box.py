@@ -142,7 +142,7 @@ def decide_from_box(
     elif isinstance(tight, TightenedWatch):
         reason = f"a thrust history keeps {best.lower:.2f} m where all is as stated; {tight.told}"
     elif worst.distance_now < -GUARD or worst.upper < -GUARD:
-        reason = "no thrust history stays from every start of the box, and one stays from some of them"
+        reason = "no single thrust history stays from every start of the box, and one stays from some of them"
     else:
         reason = BETWEEN
     return Answer(Verdict.UNDECIDED, math.nan, worst.lower, upper, None, (), rounds, reason)

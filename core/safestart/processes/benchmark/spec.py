@@ -156,7 +156,7 @@ SPEC = ProcessSpec(
         Matrices(
             "The certificate against each engine",
             "Rows: the certificate's word. Columns: in the engine's set or not. Membership in a set is no verdict: an "
-            "outer set holds starts that nothing can fly. Intervals: Wilson, 95 %.",
+            "outer set also holds starts from which no thrust arrives. Intervals: Wilson, 95 %.",
             path="rows.*.confusion",
             names=("engine",),
             heading="{0}",

@@ -20,7 +20,7 @@ from safestart.processes.sharding import Part
 from safestart.processes.wire import finite
 from safestart.runtime.progress import Context
 from safestart.timeline.encounter import Encounter
-from safestart.timeline.verdicts import Instant, Judge, joined
+from safestart.timeline.verdicts import DT_S, Instant, Judge, joined
 
 _AT_ONCE = 50
 
@@ -169,8 +169,8 @@ def _reason(run: dict[str, Any], horizon: float, confidence: float | None) -> st
             f"with {margin:.3g} m to spare{error}"
         )
     return (
-        f"from no instant asked a thrust history stays for {horizon:g} s: each is at some time at least "
-        f"{-margin:.3g} m outside a face{error}"
+        f"from no instant asked thrust held over steps of {DT_S:g} s stays for {horizon:g} s: each history is at some "
+        f"time at least {-margin:.3g} m outside a face{error}"
     )
 
 

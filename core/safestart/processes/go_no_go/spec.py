@@ -109,7 +109,10 @@ class GoNoGoOutputs(WireModel):
     proof: list[dict[str, Any] | None] | None = Field(
         None, description="Proof documents for `safestart verify`, when asked for; null for UNDECIDED."
     )
-    hold_after: list[HoldAfter | None] | None = Field(None, description=HOLD_AFTER)
+    # Untyped, so that results that do not have it have no table of it; GoNoGoAnswer types it.
+    hold_after: list[dict[str, Any] | None] | None = Field(
+        None, description=f"{HOLD_AFTER} Each is a HoldAfter, as in the answer on one start."
+    )
 
 
 SPEC = ProcessSpec(

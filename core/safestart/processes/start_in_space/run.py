@@ -157,9 +157,9 @@ def _for_all(question: SpaceQuestion, answer: Answer, *, box: bool) -> str:
         return (
             f"one thrust history keeps {answer.lower:.2f} m to every face for {span:g} s{from_box}{members}"
         )
-    of_all = "from no start of the box any" if box else "no"
+    of_all = "from no start of the box" if box else "no"
     stated = ", even where all is as given" if question.unknowns else ""
     return (
-        f"{of_all} thrust history stays for {span:g} s{stated}: each is at some time at least "
+        f"{of_all} thrust {asked.held(question)} stays for {span:g} s{stated}: each history is at some time at least "
         f"{-answer.upper:.2f} m outside a face"
     )

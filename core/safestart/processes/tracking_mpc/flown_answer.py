@@ -33,7 +33,7 @@ def verdict_of(flight: Taken, exact: Answer, *, stays: bool = True) -> tuple[Ver
     """The verdict, and what decided it.
 
     GO: the flight arrives, its plans are certified, its distance is proved, and it ``stays`` where that is asked.
-    NO_GO: nothing can stay.
+    NO_GO: no thrust held over the steps stays.
     """
     if flight.arrived is not None and flight.certified and flight.margin > GUARD and stays:
         return Verdict.GO, "tracking"

@@ -2,8 +2,8 @@
 
 /** Terms with their meanings; `also` are other forms under which the pages show them. */
 export const TERMS = [
-  { term: "GO", means: "A start from which the requirement is proved to be met: the service knows a thrust history and a proof of it." },
-  { term: "NO GO", means: "A start for which it is proved that no thrust, held over the steps that the answer states, meets the requirement, whatever the controller." },
+  { term: "GO", means: "A start from which the requirement is proved to be met: the service knows a manoeuvre or a thrust history that meets it, and its proof." },
+  { term: "NO GO", means: "A start for which it is proved that no thrust within the limit, held over the steps that the answer states, meets the requirement, whatever the controller." },
   { term: "UNDECIDED", means: "Neither is proved. It never counts as a GO." },
   { term: "Tumble rate", means: "How fast the target turns about its axis, as seen from the orbit frame (LVLH), in degrees per second." },
   { term: "Thrust acceleration", means: "The largest acceleration that the chaser can give itself, in any direction, at any time." },
@@ -13,7 +13,7 @@ export const TERMS = [
   { term: "LVLH", means: "The orbit frame of the target: x points away from the Earth, y along the flight, z completes them." },
   { term: "Body frame", means: "The frame that is fixed in the target and turns with it; the corridor stands still in it." },
   { term: "Corridor", means: "The space in front of the port in which the chaser must stay: it widens with the distance and turns with the target." },
-  { term: "Margin", means: "How far from the nearest limit the best thrust history keeps the chaser, in metres. A negative margin says by how much every history breaks it.", also: ["margin [m]", "proved margin [m]"] },
+  { term: "Margin", means: "How far from the nearest limit the best thrust history keeps the chaser, in metres. A negative margin says by how much every thrust history, held over the steps, breaks it at some time.", also: ["margin [m]", "proved margin [m]"] },
   { term: "Mean motion", means: "The rate at which the target goes round its orbit, in radians per second." },
   { term: "Slope of the sides", means: "How much wider the corridor is on each side for every metre of distance." },
   { term: "Port half-width", means: "Half the width of the corridor at the hold radius." },

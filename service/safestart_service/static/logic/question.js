@@ -1,7 +1,7 @@
 // The question of Explore's inputs: from the texts of its fields to each panel's request, and to words.
 
 import { NUMBER, addressOf, textsFrom } from "./fields.js";
-import { figure, spoken } from "./words.js";
+import { HELD, figure, spoken } from "./words.js";
 
 /** Fields by name: their initial texts and their labels. `words` are the choices of a select. */
 export const FIELDS = {
@@ -148,7 +148,7 @@ export function proved(verdict, values) {
 export function flownWords(verdict, values) {
   const where = spread(values) ? " at the nominal values, undisturbed" : "";
   if (verdict === "GO") return `Flown: the proof's thrust history, to ${required(values)}${where}`;
-  if (values.question === "stay") return `Flown: the best attempt to ${staying(values)}${where}; ${verdict === "NO_GO" ? "no thrust history can" : "whether one can is undecided"}`;
+  if (values.question === "stay") return `Flown: the best attempt to ${staying(values)}${where}; ${verdict === "NO_GO" ? `no thrust ${HELD} can` : "whether any can is undecided"}`;
   return `Flown: the best attempt to ${staying(values)}${where}, as none is known to ${required(values)}`;
 }
 

@@ -9,6 +9,9 @@ export function figure(value, digits = 4) {
   return String(Number(value.toPrecision(digits)));
 }
 
+/** A figure smaller than this beside the others of its column is 0 but for rounding, as sin(180 deg) is. */
+export const rounding = (column) => 1e-14 * Math.max(0, ...column.filter((value) => Number.isFinite(value)).map(Math.abs));
+
 /** A name of the wire as people write it. */
 export const spoken = (name) => name.replaceAll("_", " ");
 
@@ -36,6 +39,9 @@ export function moment(text, local = false) {
   const zone = `${minutes < 0 ? "−" : "+"}${two(Math.floor(Math.abs(minutes) / 60))}:${two(Math.abs(minutes) % 60)}`;
   return `${at.getFullYear()}-${two(at.getMonth() + 1)}-${two(at.getDate())} ${clock(text, true)} ${zone}`;
 }
+
+/** What a NO GO of the exact answer is about: thrust that changes within a step may do better. */
+export const HELD = "held over steps of 2 s";
 
 /** A text as a sentence: begins with a capital, ends with one full stop. */
 export const sentence = (text) => (text ? `${text[0].toUpperCase()}${text.slice(1)}${/[.!?]$/.test(text) ? "" : "."}` : "");

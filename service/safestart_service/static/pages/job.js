@@ -48,6 +48,7 @@ function frame() {
   title();
   labels();
   $("inputs").textContent = JSON.stringify(job.inputs, null, 1);
+  $("asked").hidden = false;
   const active = isActive();
   $("tools").replaceChildren(...[
     active && !job.dismissal_requested ? el("button", { type: "button", class: "danger", onclick: cancel }, "Cancel") : null,
@@ -97,7 +98,9 @@ async function live() {
     await show();
     if (job.status === "successful") await finished();
   } catch (error) {
-    fail($("state"), error, error instanceof Problem && error.status === 404 ? null : live);
+    const unknown = error instanceof Problem && error.status === 404;
+    fail($("state"), error, unknown ? null : live);
+    if (unknown) $("state").append(el("p", {}, el("a", { href: `${root}/dashboard/jobs` }, "All jobs")));
   }
 }
 

@@ -5,7 +5,7 @@ import { FIELDS, REGIONS, STARTS, counting, proofAddress, readSpace, regionQuest
 import { offered } from "../logic/space-presets.js";
 import { Store } from "../logic/store.js";
 import { rowsOf } from "../logic/tables.js";
-import { csv, figure, sentence, spoken } from "../logic/words.js";
+import { HELD, csv, figure, sentence, spoken } from "../logic/words.js";
 import { call, execute, get, plain } from "../parts/api.js";
 import { saveButtons } from "../parts/chart.js";
 import { copies } from "../parts/copies.js";
@@ -89,7 +89,7 @@ function card(found, old, values) {
     proved && !old && values ? el("p", { id: "proof" }, download(call, proofAddress(startQuestion(values)), "proof.json", "Download the proof"), " (checked by ", el("code", {}, "safestart verify"), ")") : null);
 }
 
-const NONE = { NO_GO: "No flight: no thrust history does what is asked.", UNDECIDED: "No flight is known that does what is asked." };
+const NONE = { NO_GO: `No flight: no thrust ${HELD} does what is asked.`, UNDECIDED: "No flight is known that does what is asked." };
 
 function showFlight({ state, answer }) {
   const flown = answer?.flight?.[0];

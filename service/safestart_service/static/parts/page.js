@@ -1,6 +1,6 @@
 // Shared by all pages: elements, tables, the states empty, loading and failed, the key dialog.
 
-import { clock, figure, moment } from "../logic/words.js";
+import { clock, figure, moment, rounding } from "../logic/words.js";
 import { Problem, hasKey, useKey } from "./api.js";
 
 /** An element with attributes and children; text stays text. */
@@ -110,13 +110,13 @@ export const definition = (name, value, behind = []) => el("div", {}, el("dt", {
 
 /** A table: columns of [title, function of the row]; numbers to the right. */
 export function table(rows, columns, label) {
-  const isNumber = (of) => rows.some((row) => typeof of(row) === "number");
-  const head = el("tr", {}, ...columns.map(([title, of]) => (title === "" ? el("td") : el("th", { scope: "col", class: isNumber(of) ? "number" : null }, title))));
-  const body = rows.map((row) => el("tr", {}, ...columns.map(([, of]) => {
-    const value = of(row);
+  const cells = rows.map((row) => columns.map(([, of]) => of(row)));
+  const least = columns.map((_, k) => rounding(cells.map((row) => row[k]))), numeric = columns.map((_, k) => cells.some((row) => typeof row[k] === "number"));
+  const head = el("tr", {}, ...columns.map(([title], k) => (title === "" ? el("td") : el("th", { scope: "col", class: numeric[k] ? "number" : null }, title))));
+  const body = cells.map((row) => el("tr", {}, ...row.map((value, k) => {
     if (value instanceof Node) return el("td", {}, value);
-    const text = figure(value);
-    return el("td", { class: typeof value === "number" ? "number" : text.length > 40 ? "text" : null }, text);
+    const number = typeof value === "number", text = figure(number && Math.abs(value) < least[k] ? 0 : value);
+    return el("td", { class: number || (numeric[k] && text === "–") ? "number" : text.length > 40 ? "text" : null }, text);
   })));
   return el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": label },
     el("table", {}, el("thead", {}, head), el("tbody", {}, ...body)));

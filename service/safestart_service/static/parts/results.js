@@ -4,7 +4,7 @@ import { keyInputs } from "../logic/inputs.js";
 import { outcome } from "../logic/outcome.js";
 import { columnsOf, tablesOf } from "../logic/tables.js";
 import { inputTitle } from "../logic/titles.js";
-import { figure } from "../logic/words.js";
+import { figure, spoken } from "../logic/words.js";
 import { explained } from "./glossary.js";
 import { badge, definition, download, el, time } from "./page.js";
 import { names } from "./process.js";
@@ -51,9 +51,9 @@ export async function results(place, job, spec, call) {
 
 function images(call, process, artifacts) {
   return artifacts.filter((file) => file.media_type === "image/png").map((file) => {
-    const image = el("img", { alt: `${process}: ${file.name}` });
-    call(file.href).then((answer) => answer.blob()).then((blob) => { image.src = URL.createObjectURL(blob); }, () => { image.alt += " (not loaded)"; });
-    return el("figure", {}, image, el("figcaption", {}, file.name));
+    const image = el("img", { alt: `${process}: ${file.name}` }), whole = el("a", { target: "_blank", title: "in full size" }, image);
+    call(file.href).then((answer) => answer.blob()).then((blob) => { whole.href = image.src = URL.createObjectURL(blob); }, () => { image.alt += " (not loaded)"; });
+    return el("figure", {}, whole, el("figcaption", {}, file.name));
   });
 }
 
@@ -71,7 +71,7 @@ export function rest({ spec, outputs, tables }) {
     else if (!Array.isArray(value) || value.length) arrays.push(name);
   }
   const told = figures.filter(([, value]) => value !== null && value !== "");
-  if (told.length) parts.push(el("dl", {}, ...told.map(([name, value]) => definition(name, figure(value)))));
+  if (told.length) parts.push(el("dl", {}, ...told.map(([name, value]) => definition(spoken(name).replace(".", ": "), figure(value)))));
   if (arrays.length) parts.push(el("p", { class: "note" }, `In the result document besides: ${arrays.join(", ")}.`));
-  return parts.length ? [el("h2", {}, "Besides"), ...parts] : [];
+  return parts.length ? [el("h2", {}, "Also in the result"), ...parts] : [];
 }

@@ -14,6 +14,7 @@ from safestart.families.members import Family
 from safestart.families.prove import proof_for_all
 from safestart.model.scenario import MAX_MEAN_MOTION, MIN_ACCELERATION, Floats, number
 from safestart.processes.go_no_go.answer import Verdicts
+from safestart.processes.go_no_go.question import held
 from safestart.processes.go_no_go.spec import GoNoGoInputs
 from safestart.processes.wire import finite
 from safestart.runtime.progress import Context
@@ -34,7 +35,7 @@ def decide_families(inputs: GoNoGoInputs, question: Question, starts: Floats, co
     return Verdicts(
         [answer.verdict.value for answer in answers],
         [finite(answer.margin_m) for answer in answers],
-        [_sentence(answer, question.horizon) for answer in answers],
+        [_sentence(answer, question) for answer in answers],
         examples=[[_member(example) for example in answer.examples] for answer in answers],
         proof=[
             None if answer.verdict is Verdict.UNDECIDED else proof_for_all(family, start, answer)
@@ -67,12 +68,13 @@ def family_of(inputs: GoNoGoInputs, question: Question) -> Family:
     )
 
 
-def _sentence(answer: ForAll, horizon: float) -> str:
+def _sentence(answer: ForAll, question: Question) -> str:
+    horizon = question.horizon
     if answer.verdict is Verdict.UNDECIDED:
         return f"undecided: {answer.reason}"
     if answer.verdict is Verdict.NO_GO:
         return (
-            f"whatever is true within the half-widths, no thrust held over steps stays for {horizon:g} s: each "
+            f"whatever is true within the half-widths, no thrust {held(question)} stays for {horizon:g} s: each "
             f"history is at some time at least {-answer.margin_m:.2f} m outside a face"
         )
     kept = f"keeps {answer.margin_m:.2f} m to every face for {horizon:g} s, whatever is true within the half-widths"
