@@ -89,7 +89,7 @@ export class Flight {
     const { time_s: time, body_m: body, lvlh_m: orbit, lvlh_m_s: speed, thrust_m_s2: thrust, distance_m: distance, faces } = this.data, k = this.step;
     const at = (vector, digits) => `(${vector.map((value) => figure(value, digits)).join(", ")})`;
     const near = distance[k].indexOf(Math.min(...distance[k]));
-    return `At ${figure(time[k], 4)} s: body ${at(body[k], 4)} m · LVLH ${at(orbit[k], 4)} m, ${at(speed[k], 3)} m/s · thrust ${at(thrust[k], 3)} m/s² · ${figure(distance[k][near], 4)} m to ${spoken(faces[near])}`;
+    return `At ${figure(time[k], 4)} s: body ${at(body[k], 4)} m · LVLH ${at(orbit[k], 4)} m, ${at(speed[k], 3)} m/s · thrust ${at(thrust[k], 3)} m/s² · ${figure(Math.abs(distance[k][near]), 4)} m ${distance[k][near] < 0 ? "beyond" : "to"} ${spoken(faces[near])}`;
   }
 
   mark() {
