@@ -7,9 +7,12 @@ import pytest
 
 from safestart.cli.reproduce.hopping import hopping_document
 from safestart.errors import InvalidInput
+from safestart.missed_burn.document import document_of
 from safestart.processes.execute import execute
+from safestart.processes.hopping import run
 from safestart.processes.registry import process
 from safestart.proofs.checker import check
+from safestart.proofs.statement import digest_of
 
 
 def test_hop_time() -> None:
@@ -42,7 +45,7 @@ def test_plan_study_and_proof(studied) -> None:
     assert breach["runs"] == 120
     assert breach["low"] <= breach["probability"] == breach["count"] / 120 <= breach["high"]
     assert len(breach["per_hop"]) == len(said["proof"]["least_distance_m"]) == 4
-    assert said["proof"]["verdict"] == "PROVED"
+    assert (said["proof"]["verdict"], said["proof"]["checked"]) == ("PROVED", True)
     assert said["proof"]["lambda"] > 1.0
     assert {artifact.name for artifact in studied.artifacts} == {
         "plan.png",
@@ -52,6 +55,25 @@ def test_plan_study_and_proof(studied) -> None:
     }
     document = json.loads(next(file for file in studied.artifacts if file.name == "proof.json").data)
     assert check(document).margin_m >= 60.0
+
+
+def test_a_proof_of_hops_that_the_checker_refuses_proves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A prover that claims a metre more than it has."""
+
+    def boasted(proof):
+        document = document_of(proof)
+        document["least_distance_m"] += 1.0
+        document["digest"] = digest_of({k: v for k, v in document.items() if k != "digest"})
+        return document
+
+    monkeypatch.setattr(run, "document_of", boasted)
+    done = execute("hopping", {"runs": 1, "hops": 2, "angle_deg": 90, "keep_out_m": 20})
+    said = done.document["outputs"]
+    assert (said["proof"]["verdict"], said["proof"]["checked"]) == ("UNKNOWN", True)
+    assert said["proof"]["lambda"] is None
+    assert set(said["proof"]["least_distance_m"]) == {0.0}
+    assert any("refuses the proof" in note for note in said["notes"])
+    assert "proof.json" not in {artifact.name for artifact in done.artifacts}
 
 
 def test_the_proof_may_speak_about_the_true_earth() -> None:

@@ -21,6 +21,7 @@ from safestart.processes.base import Artifact, ProcessOutput
 from safestart.processes.hopping.plots import flights_picture, plan_picture
 from safestart.processes.hopping.spec import HoppingInputs
 from safestart.processes.hopping.study import plan_of, study_of, summary
+from safestart.processes.passive_abort.second_look import Look, looked_at, told_of, withdrawn
 from safestart.records.comparable import canonical
 from safestart.runtime.progress import Context
 
@@ -88,8 +89,18 @@ def merge(inputs: HoppingInputs, parts: Sequence[Part], context: Context) -> Pro
     plan = plan_of(inputs)
     context.step(0, 3, "proof")
     proof, level = proved(inputs, plan)
+    look: Look | None = None
+    evidence = None
+    if proof.verdict is Verdict.PROVED:
+        evidence = document_of(proof)
+        look = looked_at(evidence)
+        if look.refused:
+            # A prover whose document is refused is not believed about other scales of the errors, either.
+            proof, level, evidence = withdrawn(proof), None, None
+        document["notes"] = [*document["notes"], *told_of(look)]
     document["proof"] = {
         "verdict": proof.verdict.value,
+        "checked": None if look is None else look.checked,
         "model": inputs.proof_model,
         "lambda": level,
         "least_distance_m": [finding.least for finding in proof.findings if finding.case.kind == "made"],
@@ -103,8 +114,8 @@ def merge(inputs: HoppingInputs, parts: Sequence[Part], context: Context) -> Pro
         flights_picture(inputs, world, shown, document["study"]["breach"]),
         Artifact("approaches.parquet", MEDIA_TYPE, study_of(inputs).recorded(parts)),
     ]
-    if proof.verdict is Verdict.PROVED:
-        artifacts.append(Artifact("proof.json", "application/json", canonical(document_of(proof)).encode()))
+    if evidence is not None:
+        artifacts.append(Artifact("proof.json", "application/json", canonical(evidence).encode()))
     return ProcessOutput(document, tuple(artifacts))
 
 

@@ -120,6 +120,9 @@ class ProofOutput(WireModel):
     """The missed-burn proof of the plan's hops, with a box of one standard deviation at each burn."""
 
     verdict: Literal["PROVED", "VIOLATED", "UNKNOWN"]
+    checked: bool | None = Field(
+        description="Whether the independent checker has looked at the proof, as in passive-abort."
+    )
     model: Literal["linear", "nonlinear", "earth"] = Field(description="proof_model.")
     lambda_: float | None = Field(
         alias="lambda",
@@ -159,6 +162,7 @@ SPEC = ProcessSpec(
                 Column("from (95 %)", "study.breach.low"),
                 Column("to", "study.breach.high"),
                 Column("Proof of the hops", "proof.verdict"),
+                Column("proof checked", "proof.checked"),
                 Column("Its motion", "proof.model"),
                 Column("Error level lambda", "proof.lambda"),
                 Column("Length [orbits]", "plan.orbits"),

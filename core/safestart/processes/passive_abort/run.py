@@ -18,7 +18,7 @@ from safestart.processes.output import Undrawn
 from safestart.processes.passive_abort.filed import left_out, resolved
 from safestart.processes.passive_abort.plots import picture
 from safestart.processes.passive_abort.question import plain_question
-from safestart.processes.passive_abort.second_look import BUDGET, Look, looked_at, withdrawn
+from safestart.processes.passive_abort.second_look import Look, looked_at, told_of, withdrawn
 from safestart.processes.passive_abort.spec import PassiveAbortInputs
 from safestart.processes.wire import finite
 from safestart.records.comparable import canonical
@@ -32,15 +32,6 @@ NOTES = {
     "earth": "model: earth. The verdict speaks about both bodies about the Earth with J2, the target on its given "
     "orbit, the chaser's states before burns within the errors of those given; drag and other forces are not in it.",
 }
-
-UNCHECKED = (
-    f"checked: false. The independent checker would need more than about {BUDGET:g} s for it and was not asked; "
-    "safestart verify asks it."
-)
-REFUSED = (
-    "verdict: UNKNOWN, as the independent checker refuses the proof: {reason}. This is a fault of the prover; nothing "
-    "that it found counts as proved."
-)
 
 
 def run(inputs: PassiveAbortInputs, context: Context) -> ProcessOutput:
@@ -57,10 +48,9 @@ def run(inputs: PassiveAbortInputs, context: Context) -> ProcessOutput:
         look = looked_at(document)
         if look.refused:
             proof = withdrawn(proof)
-            told.append(REFUSED.format(reason=look.refused))
         else:
             artifacts.append(Artifact("proof.json", "application/json", canonical(document).encode()))
-            told += [] if look.checked else [UNCHECKED]
+        told = told_of(look)
     # A prover whose document is refused is not believed about other scales of the errors, either.
     level = greatest_scale(question) if inputs.error_level and not (look and look.refused) else None
     context.step(0.9, 1.0, "picture")

@@ -21,6 +21,16 @@ _ORBIT, _REFERENCE = 0.4, 0.25
 enclosed course, and the rest of what a reference takes."""
 
 
+UNCHECKED = (
+    f"checked: false. The independent checker would need more than about {BUDGET:g} s for it and was not asked; "
+    "safestart verify asks it."
+)
+REFUSED = (
+    "verdict: UNKNOWN, as the independent checker refuses the proof: {reason}. This is a fault of the prover; nothing "
+    "that it found counts as proved."
+)
+
+
 @dataclass(frozen=True, slots=True)
 class Look:
     """Whether the checker has looked at a document; ``refused``: why it does not accept it, empty where it does."""
@@ -41,6 +51,13 @@ def looked_at(document: Mapping[str, Any]) -> Look:
     except ProofRejected as error:
         return Look(True, str(error))
     return Look(True)
+
+
+def told_of(look: Look) -> list[str]:
+    """What a result says of it: nothing of a document that was accepted."""
+    if look.refused:
+        return [REFUSED.format(reason=look.refused)]
+    return [] if look.checked else [UNCHECKED]
 
 
 def withdrawn(proof: Proof) -> Proof:
