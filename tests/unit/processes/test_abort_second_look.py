@@ -14,8 +14,8 @@ from safestart.missed_burn.prove import prove
 from safestart.processes.execute import execute
 from safestart.processes.passive_abort import run, second_look
 from safestart.processes.registry import process
-from safestart.proofs.statement import digest_of
 from tests.unit.missed_burn.flights import ORBIT, plan_of
+from tests.unit.processes.boasted import boasted
 
 EXAMPLE = {**process("passive-abort").example, "error_level": False}
 
@@ -38,14 +38,6 @@ def test_without_a_proof_nothing_is_checked() -> None:
 
 
 def test_a_proof_that_the_checker_refuses_proves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A prover that claims a metre more than it has."""
-
-    def boasted(proof):
-        document = document_of(proof)
-        document["least_distance_m"] += 1.0
-        document["digest"] = digest_of({k: v for k, v in document.items() if k != "digest"})
-        return document
-
     monkeypatch.setattr(run, "document_of", boasted)
     said, files = _made(error_level=True)
     assert (said["verdict"], said["checked"]) == ("UNKNOWN", True)

@@ -7,12 +7,11 @@ import pytest
 
 from safestart.cli.reproduce.hopping import hopping_document
 from safestart.errors import InvalidInput
-from safestart.missed_burn.document import document_of
 from safestart.processes.execute import execute
 from safestart.processes.hopping import run
 from safestart.processes.registry import process
 from safestart.proofs.checker import check
-from safestart.proofs.statement import digest_of
+from tests.unit.processes.boasted import boasted
 
 
 def test_hop_time() -> None:
@@ -58,14 +57,6 @@ def test_plan_study_and_proof(studied) -> None:
 
 
 def test_a_proof_of_hops_that_the_checker_refuses_proves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A prover that claims a metre more than it has."""
-
-    def boasted(proof):
-        document = document_of(proof)
-        document["least_distance_m"] += 1.0
-        document["digest"] = digest_of({k: v for k, v in document.items() if k != "digest"})
-        return document
-
     monkeypatch.setattr(run, "document_of", boasted)
     done = execute("hopping", {"runs": 1, "hops": 2, "angle_deg": 90, "keep_out_m": 20})
     said = done.document["outputs"]
