@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.asked import parser
 from benchmarks.certified_starts import HORIZONS, question_of, starts, state_of
 from benchmarks.timing import median_seconds
 from safestart.closed_form.certified import certify, certify_grid
@@ -83,12 +84,19 @@ def measure() -> dict[str, dict[str, float]]:
 
 
 if __name__ == "__main__":
-    study, *given = sys.argv[1:] or ["measure"]
-    if study == "starts":
-        count, seed, *file = [*given, *("10000", "1")[len(given) :]]
-        result: Any = starts(int(count), int(seed), Path(file[0]) if file else None)
-    elif study == "cells":
-        result = cells(*map(int, given or [31]))
+    asked = parser(__doc__)
+    studies = asked.add_subparsers(dest="study")
+    study = studies.add_parser("starts")
+    study.add_argument("count", nargs="?", type=int, default=10_000)
+    study.add_argument("seed", nargs="?", type=int, default=1)
+    study.add_argument("file", nargs="?", type=Path)
+    studies.add_parser("cells").add_argument("size", nargs="?", type=int, default=31)
+    studies.add_parser("measure", help="times, as without a study")
+    given = asked.parse_args()
+    if given.study == "starts":
+        result: Any = starts(given.count, given.seed, given.file)
+    elif given.study == "cells":
+        result = cells(given.size)
     else:
         result = measure()
     sys.stdout.write(json.dumps(result, indent=2) + "\n")

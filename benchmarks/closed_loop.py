@@ -11,6 +11,7 @@ from statistics import median
 
 import numpy as np
 
+from benchmarks.asked import parser
 from benchmarks.peers.osqp_loop import OsqpLoop
 from benchmarks.timing import side_by_side
 from safestart.control.forecast import flight_plan
@@ -63,4 +64,5 @@ def measure(runs: int = 7) -> dict[str, dict[str, float]]:
 
 
 if __name__ == "__main__":
+    parser(__doc__).parse_args()
     print(json.dumps(measure(), indent=2))

@@ -8,13 +8,12 @@ from __future__ import annotations
 
 import json
 import math
-import sys
 import time
 from typing import Any
 
 import numpy as np
 
-from benchmarks.peers.hj_avoid_game import peer_tube
+from benchmarks.asked import parser
 from safestart.collision_avoidance.bounds.certified import lower, unavoidable, upper
 from safestart.collision_avoidance.game import Game, Players
 from safestart.collision_avoidance.tube import solve_tube
@@ -35,6 +34,9 @@ SEED = 11
 
 def counts() -> list[dict[str, Any]]:
     """Nodes that each grid calls wrongly; the same from hj-reachability; and after joining."""
+    # Imported here: JAX takes seconds to load.
+    from benchmarks.peers.hj_avoid_game import peer_tube
+
     rows = []
     variants = {
         "fused, their boundary": {"together": False, "boundary": "extrapolate_away_from_zero"},
@@ -290,11 +292,16 @@ def _shown(value: Any) -> str:
 
 
 if __name__ == "__main__":
-    asked = [name for name in sys.argv[1:] if name in STUDIES] or list(STUDIES)
+    asked = parser(__doc__)
+    asked.add_argument("studies", nargs="*", metavar="STUDY", help=f"{', '.join(STUDIES)}; all by default")
+    asked.add_argument("--json", action="store_true")
+    given = asked.parse_args()
+    if unknown := [name for name in given.studies if name not in STUDIES]:
+        asked.error(f"no such study: {', '.join(unknown)}")
     found = {}
-    for study in asked:
+    for study in given.studies or STUDIES:
         found[study] = STUDIES[study]()
-        if "--json" not in sys.argv:
+        if not given.json:
             print(f"\n{study}\n\n{_table(found[study])}", flush=True)
-    if "--json" in sys.argv:
+    if given.json:
         print(json.dumps(found))

@@ -12,6 +12,7 @@ import time
 
 import numpy as np
 
+from benchmarks.asked import parser
 from safestart.collision_avoidance.encounters.adversary import ADVERSARIES, adversary
 from safestart.collision_avoidance.encounters.clock import Clock
 from safestart.collision_avoidance.encounters.encounter import fly
@@ -69,4 +70,7 @@ def study(count: int) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(study(int(sys.argv[1]) if len(sys.argv) > 1 else 10_000))
+    asked = parser(__doc__)
+    asked.add_argument("count", nargs="?", type=int, default=10_000)
+    given = asked.parse_args()
+    sys.exit(study(given.count))

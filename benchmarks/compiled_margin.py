@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from benchmarks.asked import parser
 from benchmarks.exact_answers import draw
 from benchmarks.timing import once
 from safestart.exact import search
@@ -86,5 +87,8 @@ def study(count: int, seed: int) -> dict[str, Any]:
 
 
 if __name__ == "__main__":
-    given = [int(argument) for argument in sys.argv[1:]]
-    sys.stdout.write(json.dumps(study(*(given + [200, 3][len(given) :])), indent=2) + "\n")
+    asked = parser(__doc__)
+    asked.add_argument("count", nargs="?", type=int, default=200)
+    asked.add_argument("seed", nargs="?", type=int, default=3)
+    given = asked.parse_args()
+    sys.stdout.write(json.dumps(study(given.count, given.seed), indent=2) + "\n")

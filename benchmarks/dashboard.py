@@ -13,6 +13,7 @@ from pathlib import Path
 
 from playwright.sync_api import Page, sync_playwright
 
+from benchmarks.asked import parser
 from tests.acceptance.running import serving
 
 MOVES = 25
@@ -61,4 +62,5 @@ def measure() -> dict[str, float]:
 
 
 if __name__ == "__main__":
+    parser(__doc__).parse_args()
     print(json.dumps(measure(), indent=1))

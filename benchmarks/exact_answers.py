@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.asked import parser
 from benchmarks.peers.dense_lp import DenseLP
 from benchmarks.timing import once
 from safestart.closed_form.paper import certify
@@ -194,5 +195,8 @@ def measure() -> dict[str, dict[str, float]]:
 
 
 if __name__ == "__main__":
-    given = [int(argument) for argument in sys.argv[1:]]
-    sys.stdout.write(json.dumps(study(*(given + [2000, 1][len(given) :])), indent=2) + "\n")
+    asked = parser(__doc__)
+    asked.add_argument("starts", nargs="?", type=int, default=2000)
+    asked.add_argument("seed", nargs="?", type=int, default=1)
+    given = asked.parse_args()
+    sys.stdout.write(json.dumps(study(given.starts, given.seed), indent=2) + "\n")

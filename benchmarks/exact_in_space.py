@@ -10,7 +10,6 @@ made anew.
 from __future__ import annotations
 
 import json
-import sys
 import time
 from collections import Counter
 from statistics import median
@@ -18,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.asked import parser
 from benchmarks.peers.space_cases import dense_margin, drawn, torque_free_case
 from benchmarks.peers.space_flight import flown_margin
 from safestart.exact.answer import Verdict
@@ -111,5 +111,10 @@ def measure(cases: int = 60) -> dict[str, dict[str, float]]:
 
 
 if __name__ == "__main__":
-    numbers = [int(value) for value in sys.argv[1:]]
-    print(json.dumps(study(*(numbers + [100, 0, 20][len(numbers) :])) if numbers else measure(), indent=1))
+    asked = parser(__doc__)
+    asked.add_argument("cases", nargs="?", type=int, help="without it: what safestart bench measures")
+    asked.add_argument("first", nargs="?", type=int, default=0)
+    asked.add_argument("proofs", nargs="?", type=int, default=20)
+    given = asked.parse_args()
+    found = measure() if given.cases is None else study(given.cases, given.first, given.proofs)
+    print(json.dumps(found, indent=1))

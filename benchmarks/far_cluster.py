@@ -12,7 +12,6 @@ import argparse
 import asyncio
 import json
 import random
-import subprocess
 import sys
 import tempfile
 import threading
@@ -22,6 +21,7 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
+from benchmarks.own_group import own_group
 from safestart.processes.registry import process
 from safestart.processes.sweep.split import SLOW
 from safestart.records.comparable import comparable
@@ -92,9 +92,7 @@ def cluster(folder: Path, workers: int, delay_s: float, loss: float) -> Iterator
     with ExitStack() as stack, (folder / "log").open("wb") as log:
 
         def start(*command: str) -> None:
-            started = subprocess.Popen([sys.executable, "-m", *command], stdout=log, stderr=log)
-            stack.callback(started.wait, 60)
-            stack.callback(started.terminate)
+            stack.enter_context(own_group([sys.executable, "-m", *command], stdout=log, stderr=log))
 
         def reached(port: int) -> int:
             return Relay(port, delay_s, loss).port if delay_s else port

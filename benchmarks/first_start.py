@@ -7,6 +7,7 @@ cache again.
 
 from __future__ import annotations
 
+import argparse
 import json
 import os
 import subprocess
@@ -20,6 +21,7 @@ from typing import Any
 import psutil
 from numba.core import event
 
+from benchmarks.own_group import own_group
 from safestart.store.database import Database
 from safestart.store.jobs.repository import JobRepository
 from safestart.store.records import JobStatus
@@ -52,7 +54,7 @@ class Compiled(event.Listener):
 
 def listed(parts: list[str]) -> None:
     """Compile ``parts`` (all by default) in this process, and print each one's kernels, slowest first."""
-    from safestart.runtime import warmup
+    from safestart.runtime.kernels import warmup
 
     for part in parts or list(warmup.PARTS):
         compiled, begun = Compiled(), time.thread_time()
@@ -76,15 +78,13 @@ def started(cache: Path) -> dict[str, float]:
         job = jobs.submit("benchmark", INPUTS, timeout_s=LIMIT_S).id
         out = Path(folder) / "worker.log"
         begun = time.perf_counter()
-        with out.open("wb") as log:
-            worker = subprocess.Popen(
-                [sys.executable, "-m", "safestart_worker", "--database-url", url, "--processes", "2"],
-                env=os.environ | {"NUMBA_CACHE_DIR": str(cache), "PYTHONUNBUFFERED": "1"},
-                stdout=log,
-                stderr=log,
-            )
+        command = [sys.executable, "-m", "safestart_worker", "--database-url", url, "--processes", "2"]
+        environment = os.environ | {"NUMBA_CACHE_DIR": str(cache), "PYTHONUNBUFFERED": "1"}
         found: dict[str, float] = {}
-        try:
+        with (
+            out.open("wb") as log,
+            own_group(command, env=environment, stdout=log, stderr=log) as worker,
+        ):
             while len(found) < 4:
                 time.sleep(0.05)
                 spent, said = time.perf_counter() - begun, out.read_text(errors="replace")
@@ -102,9 +102,6 @@ def started(cache: Path) -> dict[str, float]:
                     found["first_job_cpu_s"] = sum(
                         sum(one.cpu_times()[:2]) for one in (family, *family.children(recursive=True))
                     )
-        finally:
-            worker.terminate()
-            worker.wait()
         database.close()
     return found
 
@@ -125,13 +122,24 @@ def measure() -> dict[str, dict[str, float]]:
 
 def main() -> None:
     """Print the list, or the times of a start."""
-    if sys.argv[1:2] == ["started"]:
+    from safestart.runtime.kernels.warmup import PARTS
+
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument(
+        "what", nargs="*", metavar="PART", help=f"started, or some of {', '.join(PARTS)}; all by default"
+    )
+    asked = parser.parse_args().what
+    if asked == ["started"]:
         print(json.dumps(measure()["times"], indent=2))
         return
+    if unknown := set(asked) - set(PARTS):
+        parser.error(f"no such part: {', '.join(sorted(unknown))}")
     with tempfile.TemporaryDirectory() as cache:
         inside = "from benchmarks.first_start import listed; import sys; listed(sys.argv[1:])"
         subprocess.run(
-            [sys.executable, "-c", inside, *sys.argv[1:]],
+            [sys.executable, "-c", inside, *asked],
             check=True,
             env=os.environ | {"NUMBA_CACHE_DIR": cache},
         )

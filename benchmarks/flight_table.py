@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 import safestart as ss
+from benchmarks.asked import parser
 from safestart.flight_table.export import export, points_of
 from safestart.flight_table.numbers import Point
 from safestart.flight_table.vectors import GO, NO_GO, UNDECIDED, atlas_codes, certified_code, starts_of
@@ -127,6 +128,11 @@ def _counted(program: Path, arguments: list[str], rows: Floats, function: str, p
 
 
 if __name__ == "__main__":
-    if sys.argv[1] == "starts":
-        sys.exit(compare(int(sys.argv[2])))
+    asked = parser(__doc__)
+    studies = asked.add_subparsers(dest="study", required=True)
+    studies.add_parser("starts").add_argument("count", type=int)
+    studies.add_parser("instructions")
+    given = asked.parse_args()
+    if given.study == "starts":
+        sys.exit(compare(given.count))
     instructions()

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.asked import parser
 from benchmarks.exact_answers import draw
 from safestart.exact.answer import Verdict
 from safestart.exact.decide import decide
@@ -113,8 +114,11 @@ def _spread(times: list[float]) -> dict[str, float]:
 
 
 if __name__ == "__main__":
-    given = sys.argv[1:]
-    numbers = [int(argument) for argument in given[:3]]
-    count, seed, dimensions = numbers + [200, 1, 2][len(numbers) :]
-    chosen: Witness = "per_corner" if given[3:] == ["per_corner"] else "common"
-    sys.stdout.write(json.dumps(study(count, seed, dimensions, chosen), indent=2) + "\n")
+    asked = parser(__doc__)
+    asked.add_argument("starts", nargs="?", type=int, default=200)
+    asked.add_argument("seed", nargs="?", type=int, default=1)
+    asked.add_argument("dimensions", nargs="?", type=int, default=2)
+    asked.add_argument("witness", nargs="?", choices=("common", "per_corner"), default="common")
+    given = asked.parse_args()
+    found = study(given.starts, given.seed, given.dimensions, given.witness)
+    sys.stdout.write(json.dumps(found, indent=2) + "\n")

@@ -12,6 +12,7 @@ from typing import Any
 
 import httpx
 
+from benchmarks.asked import parser
 from benchmarks.worst_requests import POINT, service
 
 HEAVY = 12
@@ -63,4 +64,5 @@ def measure() -> dict[str, float]:
 
 
 if __name__ == "__main__":
+    parser(__doc__).parse_args()
     print(measure())

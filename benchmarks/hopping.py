@@ -181,7 +181,9 @@ def proofs() -> dict[str, float]:
 
 def main() -> None:
     """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--approaches", type=int, default=10_000)
     parser.add_argument("--only", choices=("hop_times", "steps", "approaches", "proofs"))
     given = parser.parse_args()

@@ -9,20 +9,20 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
-from hylaa import lputil
-from hylaa.core import Core
-from hylaa.hybrid_automaton import HybridAutomaton
-from hylaa.settings import HylaaSettings
-from hylaa.stateset import StateSet
 
+from benchmarks.asked import parser
 from safestart.model.scenario import Floats
 from safestart.passive_safety.model import Mode, Motion, matrix
 from safestart.passive_safety.question import Question
 from safestart.passive_safety.reach.reach_set import reach
 from safestart.passive_safety.reach.tube import Tube
 from safestart.passive_safety.switching_guard import GAP_GUARD
+
+if TYPE_CHECKING:
+    from hylaa.stateset import StateSet
 
 ROWS = np.vstack([np.eye(4), -np.eye(4)])
 STEP, PERIOD = 1.0 / 80.0, 0.2
@@ -31,6 +31,13 @@ STEP, PERIOD = 1.0 / 80.0, 0.2
 
 def explore(centre: Floats, gens: Floats, end: float) -> Iterator[Floats]:
     """Supports (8,) of :data:`ROWS` at hylaa's steps of mode 1, until ``end`` (min)."""
+    # Imported here: the help is there without hylaa, too.
+    from hylaa import lputil
+    from hylaa.core import Core
+    from hylaa.hybrid_automaton import HybridAutomaton
+    from hylaa.settings import HylaaSettings
+    from hylaa.stateset import StateSet
+
     automaton = HybridAutomaton()
     far = automaton.new_mode(Mode.FAR.value)
     far.set_dynamics(matrix(Motion(Mode.FAR)))
@@ -89,4 +96,5 @@ def main() -> int:
 
 
 if __name__ == "__main__":
+    parser(__doc__).parse_args()
     sys.exit(main())

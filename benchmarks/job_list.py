@@ -11,7 +11,6 @@ from __future__ import annotations
 import json
 import random
 import shutil
-import sys
 import tempfile
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -21,6 +20,7 @@ import psycopg
 from playwright.sync_api import Page, sync_playwright
 from sqlalchemy import insert
 
+from benchmarks.asked import parser
 from safestart.processes.registry import PROCESS_IDS, process
 from safestart.store.database import Database
 from safestart.store.jobs.labelling import searched
@@ -154,5 +154,7 @@ def _spread(times: list[float]) -> dict[str, float]:
 
 
 if __name__ == "__main__":
-    for count in [int(text) for text in sys.argv[1:]] or [3000, 100_000]:
+    asked = parser(__doc__)
+    asked.add_argument("numbers", nargs="*", type=int, metavar="NUMBER", default=[3000, 100_000])
+    for count in asked.parse_args().numbers:
         print(json.dumps(measure(count)))

@@ -18,6 +18,8 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
+from benchmarks.asked import parser
+
 RUNS, PEER_RUNS = 9, 3
 SPAN = 4.0
 SCHEMES = {"low": (1, 66), "very_high": (3, 530)}
@@ -112,6 +114,7 @@ def _run() -> dict[str, dict[str, float]]:
 
 
 if __name__ == "__main__":
+    parser(__doc__).parse_args()
     if hasattr(os, "sched_setaffinity"):
         os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
     print(json.dumps(_run()))

@@ -12,7 +12,8 @@ from itertools import cycle
 from time import perf_counter
 from typing import cast
 
-PATIENCE_S = 20.0
+PATIENCE_S = 300.0
+"""Beyond the time of the load; under it the service starts more helper processes, a minute each on a busy machine."""
 # Paced connections are made before the first of them has to ask.
 CONNECTING_S = 1.0
 
@@ -89,7 +90,13 @@ async def _load(
             port,
         )
         made.append(protocol)
-    await asyncio.wait_for(asyncio.gather(*(connection.done for connection in made)), seconds + PATIENCE_S)
+    limit_s = seconds + PATIENCE_S
+    try:
+        await asyncio.wait_for(asyncio.gather(*(connection.done for connection in made)), limit_s)
+    except TimeoutError:
+        raise TimeoutError(
+            f"port {port}: required the last answer to a load of {seconds:g} s within {limit_s:g} s ({paths[0]})"
+        ) from None
     for connection in made:
         if connection.error is not None:
             raise connection.error

@@ -10,12 +10,12 @@ from __future__ import annotations
 
 import json
 import math
-import sys
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from benchmarks.asked import parser
 from safestart.attitude.spin import Spin
 from safestart.constraints.thrust_limit import ball
 from safestart.dynamics.cwh import Cwh
@@ -109,4 +109,7 @@ def study(starts: int) -> dict[str, Any]:
 
 
 if __name__ == "__main__":
-    print(json.dumps(study(int(sys.argv[1]) if len(sys.argv) > 1 else 8), indent=1))
+    asked = parser(__doc__)
+    asked.add_argument("starts", nargs="?", type=int, default=8)
+    given = asked.parse_args()
+    print(json.dumps(study(given.starts), indent=1))

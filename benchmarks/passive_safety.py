@@ -10,6 +10,7 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 from statistics import median
 
+from benchmarks.asked import parser
 from benchmarks.peers.reach_audit import drift_excess, powered_excess
 from benchmarks.timing import median_seconds, once
 from safestart.passive_safety.cases import CASES, HORIZON
@@ -92,7 +93,8 @@ def audit(flights: int, chosen: str) -> int:
 
 
 if __name__ == "__main__":
-    arguments = sys.argv[1:]
-    sys.exit(
-        audit(int(arguments[0]) if arguments else 100_000, arguments[1] if len(arguments) > 1 else "linear")
-    )
+    asked = parser(__doc__)
+    asked.add_argument("flights", nargs="?", type=int, default=100_000)
+    asked.add_argument("variant", nargs="?", choices=tuple(SYSTEMS), default="linear")
+    given = asked.parse_args()
+    sys.exit(audit(given.flights, given.variant))

@@ -33,6 +33,8 @@ from typing import Any
 import httpx
 import psutil
 
+from benchmarks.own_group import own_group
+
 QUESTION = "/go-no-go?omega_t_deg_s=3&a_max_m_s2=0.1&x_m=5&y_m=40"
 TINY = {"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "grid": {"nx": 3, "ny": 3, "y_max_m": 150}}
 READY_S = 300.0
@@ -47,8 +49,8 @@ def platform(url: str, *, worker: bool = True) -> Iterator[tuple[httpx.Client, l
     environment = os.environ | {"SAFESTART_DATABASE_URL": url, "SAFESTART_MAX_QUEUED": "100000"}
     environment |= {"SAFESTART_RATE_PER_S": "1000000", "SAFESTART_SUBMIT_RATE_PER_S": "1000000"}
     command = [sys.executable, "-m", "safestart", "up" if worker else "serve", "--port", str(port)]
-    process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    try:
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    with own_group(command, env=environment, **quiet) as process:
         # The service closes connections that are idle for 5 s; on a slow machine this could hit a request.
         brief = httpx.Limits(keepalive_expiry=1.0)
         with httpx.Client(base_url=f"http://127.0.0.1:{port}", timeout=60.0, limits=brief) as client:
@@ -59,9 +61,6 @@ def platform(url: str, *, worker: bool = True) -> Iterator[tuple[httpx.Client, l
                 time.sleep(0.1)
             family = psutil.Process(process.pid)
             yield client, [family, *family.children(recursive=True)]
-    finally:
-        process.terminate()
-        process.wait(timeout=60)
 
 
 def _answers(client: httpx.Client, path: str) -> bool:
@@ -156,7 +155,7 @@ def list_page(url: str, waiting: int = 10_000, repeats: int = 200) -> dict[str, 
 
 def clients(url: str, per_s: float = 1000.0, number: int = 200, seconds: float = 60.0) -> dict[str, Any]:
     """Many clients, ``per_s`` requests per second in all (0: each asks as soon as it can), beside a bare endpoint."""
-    from benchmarks.go_no_go import server
+    from benchmarks.server import server
 
     document = json.dumps({"verdict": "GO"})
     with (
@@ -233,7 +232,9 @@ def _used(family: list[psutil.Process]) -> dict[int, int]:
 
 def main() -> None:
     """Run them and print the measurements."""
-    parser = argparse.ArgumentParser()
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--database-url", default="")
     parser.add_argument("--only", default="")
     parser.add_argument("--jobs", type=int, default=20_000)

@@ -204,7 +204,9 @@ def seen_every(proof: Proof, every: float = SAMPLE) -> float:
 
 def main() -> None:
     """Study and print, a line for every part."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("plans", type=int, nargs="?", default=1000)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--first", type=int, default=0, help="Number of the first plan.")

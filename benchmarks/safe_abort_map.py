@@ -6,11 +6,11 @@ Two workers of one thread each, tables of exponentials included. By hand: about 
 from __future__ import annotations
 
 import os
-import sys
 import time
 
 from dask.distributed import Client, LocalCluster
 
+from benchmarks.asked import parser
 from safestart.processes.registry import process
 from safestart.processes.sharding import Part, Sharding
 from safestart.runtime.progress import Context
@@ -48,4 +48,7 @@ def main(starts: int) -> None:
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 1000)
+    asked = parser(__doc__)
+    asked.add_argument("starts", nargs="?", type=int, default=1000)
+    given = asked.parse_args()
+    main(given.starts)

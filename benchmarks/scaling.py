@@ -9,7 +9,6 @@ flights and for those that very large sweeps have, each stored by itself or with
 from __future__ import annotations
 
 import json
-import sys
 import tempfile
 import time
 from collections.abc import Iterator
@@ -21,6 +20,7 @@ from typing import Any
 import simpy
 from distributed import Client, LocalCluster
 
+from benchmarks.asked import parser
 from benchmarks.sweep import FILTER
 from benchmarks.timing import median_cpu, median_seconds
 from safestart.campaign.part import Part
@@ -205,4 +205,6 @@ def study(flights: int = 10**9) -> dict[str, Any]:
 
 
 if __name__ == "__main__":
-    print(json.dumps(study(*(int(float(text)) for text in sys.argv[1:])), indent=1))
+    asked = parser(__doc__)
+    asked.add_argument("flights", nargs="?", type=lambda text: int(float(text)), default=10**9)
+    print(json.dumps(study(asked.parse_args().flights), indent=1))

@@ -13,6 +13,7 @@ import urllib.error
 import urllib.request
 from pathlib import Path
 
+from benchmarks.own_group import own_group
 from benchmarks.timing import once
 
 RUNS = 3
@@ -44,13 +45,10 @@ def _first_answer() -> float:
     with tempfile.TemporaryDirectory() as folder:
         url = f"sqlite:///{Path(folder) / 'start.sqlite3'}"
         start = time.perf_counter()
-        server = subprocess.Popen(
-            [sys.executable, "-m", "safestart", "serve", "--port", str(port)],
-            env=os.environ | {"SAFESTART_DATABASE_URL": url},
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-        )
-        try:
+        command = [sys.executable, "-m", "safestart", "serve", "--port", str(port)]
+        environment = os.environ | {"SAFESTART_DATABASE_URL": url}
+        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        with own_group(command, env=environment, **quiet):
             while time.perf_counter() - start < LIMIT_S:
                 try:
                     with urllib.request.urlopen(
@@ -61,6 +59,3 @@ def _first_answer() -> float:
                 except urllib.error.URLError:
                     time.sleep(0.01)
             raise TimeoutError(f"no answer within {LIMIT_S:g} s")
-        finally:
-            server.terminate()
-            server.wait()

@@ -12,7 +12,6 @@ from __future__ import annotations
 import json
 import random
 import resource
-import sys
 import tempfile
 import time
 from pathlib import Path
@@ -21,6 +20,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.asked import parser
 from benchmarks.peers.osqp_loop import OsqpLoop
 from benchmarks.timing import side_by_side
 from safestart.control.forecast import flight_plan
@@ -182,13 +182,19 @@ class _farm:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) == 1:
+    asked = parser(__doc__)
+    studies = asked.add_subparsers(dest="study")
+    for name in ("cases", "workers", "chaos"):
+        studies.add_parser(name).add_argument("count", type=int)
+    studies.choices["cases"].add_argument("certificates", nargs="?", choices=("exact",))
+    studies.choices["chaos"].add_argument("kills", type=int)
+    given = asked.parse_args()
+    if given.study is None:
         found: dict[str, Any] = measure()
+    elif given.study == "cases":
+        found = cases(given.count, *filter(None, [given.certificates]))
+    elif given.study == "workers":
+        found = workers(given.count)
     else:
-        which, arguments = sys.argv[1], sys.argv[2:]
-        found = {
-            "cases": lambda: cases(int(arguments[0]), *arguments[1:]),
-            "workers": lambda: workers(int(arguments[0])),
-            "chaos": lambda: chaos(int(arguments[0]), int(arguments[1])),
-        }[which]()
+        found = chaos(given.count, given.kills)
     print(json.dumps(found, indent=2))

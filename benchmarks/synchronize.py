@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.asked import parser
 from benchmarks.exact_answers import draw
 from benchmarks.peers.flown import fly
 from safestart.closed_form.paper import certify
@@ -125,7 +126,10 @@ def study(cases: list[Case]) -> dict[str, Any]:
 
 
 if __name__ == "__main__":
-    given = [int(argument) for argument in sys.argv[1:]]
-    count, seed = given + [1000, 1][len(given) :]
-    found = {name: study(run(count, seed, goal)) for name, goal in GOALS.items()}
-    sys.stdout.write(json.dumps({"starts": count, "seed": seed, "goals": found}, indent=2) + "\n")
+    asked = parser(__doc__)
+    asked.add_argument("starts", nargs="?", type=int, default=1000)
+    asked.add_argument("seed", nargs="?", type=int, default=1)
+    given = asked.parse_args()
+    found = {name: study(run(given.starts, given.seed, goal)) for name, goal in GOALS.items()}
+    said = {"starts": given.starts, "seed": given.seed, "goals": found}
+    sys.stdout.write(json.dumps(said, indent=2) + "\n")

@@ -71,7 +71,9 @@ def inputs_for(hours: float) -> dict[str, object]:
 
 def main() -> None:
     """Ask, and print the times and the intervals."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--hours", type=float, default=24.0)
     parser.add_argument("--workers", type=int, default=2)
     options = parser.parse_args()

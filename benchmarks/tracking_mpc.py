@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.asked import parser
 from benchmarks.timing import median_seconds
 from safestart.campaign.case import Case
 from safestart.control.tracking_mpc.assemble import assemble
@@ -28,7 +29,7 @@ from safestart.control.tracking_mpc.tumble import Tumble
 from safestart.control.tracking_mpc.tuning import DockingCorridor, Tuning
 from safestart.processes.tracking_mpc.noisy import flights_of, one
 from safestart.processes.tracking_mpc.spec import TrackingMpcInputs
-from safestart.runtime.kernels import compiled
+from safestart.runtime.kernels.compiled import compiled
 from safestart.tracking.any_history import AnyHistory
 from safestart.tracking.certificate import recursion, shifts_needed
 from safestart.tracking.flight import fly
@@ -320,6 +321,7 @@ def measure() -> dict[str, dict[str, float]]:
 
 
 if __name__ == "__main__":
+    parser(__doc__).parse_args()
     print(json.dumps({"step": steps(), "regions": regions(), "noise": noise(1000)}, indent=1))
     print(json.dumps({"closed_loop": closed_loop()}, indent=1))
     print(json.dumps({"recursive": recursive(200), "programs": random_programs(10_000)}, indent=1))

@@ -24,6 +24,8 @@ from typing import Any
 import httpx
 import psutil
 
+from benchmarks.asked import parser
+from benchmarks.own_group import own_group
 from benchmarks.worst_requests_watch import health, memory, watching
 from tests.waiting import free_port
 
@@ -80,20 +82,15 @@ def service(group: Path | None = None) -> Iterator[tuple[str, psutil.Process]]:
         if group is not None:
             command = ["sh", "-c", f'echo $$ > "$0" && exec {" ".join(command)}', str(group / "cgroup.procs")]
         url = f"sqlite:///{folder}/bench.sqlite3"
-        process = subprocess.Popen(
-            command, env=os.environ | {"SAFESTART_DATABASE_URL": url}, stdout=subprocess.DEVNULL
-        )
+        environment = os.environ | {"SAFESTART_DATABASE_URL": url}
         address = f"http://127.0.0.1:{port}"
-        try:
+        with own_group(command, env=environment, stdout=subprocess.DEVNULL) as process:
             while True:
                 with suppress(httpx.TransportError):
                     httpx.get(f"{address}/healthz").raise_for_status()
                     break
                 time.sleep(0.05)
             yield address, psutil.Process(process.pid)
-        finally:
-            process.terminate()
-            process.wait()
 
 
 def watched(address: str, process: psutil.Process, work: Callable[[], Any]) -> dict[str, Any]:
@@ -151,7 +148,6 @@ def measure(
 
 
 if __name__ == "__main__":
-    measure(
-        lambda name, found: print(f"{name:40} {found}", flush=True),
-        Path(sys.argv[1]) if sys.argv[1:] else None,
-    )
+    asked = parser(__doc__)
+    asked.add_argument("cgroup", nargs="?", type=Path)
+    measure(lambda name, found: print(f"{name:40} {found}", flush=True), asked.parse_args().cgroup)

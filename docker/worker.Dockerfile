@@ -18,7 +18,7 @@ RUN mkdir /var/cache/safestart && chown 10001 /var/cache/safestart
 ENV PATH=/opt/safestart/bin:$PATH PYTHONUNBUFFERED=1 SAFESTART_LOG_FORMAT=json NUMBA_CACHE_DIR=/var/cache/safestart \
     MPLCONFIGDIR=/var/cache/safestart/matplotlib NUMBA_NUM_THREADS=1 OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 USER 10001
-RUN ["python", "-c", "from safestart.runtime.warmup import warm; warm()"]
+RUN ["python", "-c", "from safestart.runtime.kernels.warmup import warm; warm()"]
 VOLUME /var/cache/safestart
 HEALTHCHECK --interval=30s --timeout=60s --start-period=300s --retries=3 \
     CMD ["python", "-m", "safestart_worker.health"]

@@ -11,6 +11,7 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
+from benchmarks.asked import parser
 from benchmarks.curves.works import CURVES
 
 ENOUGH_S = 1.0
@@ -60,4 +61,8 @@ def _kib(field: str) -> float:
 
 
 if __name__ == "__main__":
-    print(json.dumps(measure(sys.argv[1], int(sys.argv[2]))))
+    asked = parser(__doc__)
+    asked.add_argument("name")
+    asked.add_argument("parameter", type=int)
+    given = asked.parse_args()
+    print(json.dumps(measure(given.name, given.parameter)))

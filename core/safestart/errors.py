@@ -104,6 +104,13 @@ class UnfitResult(SafestartError):
     title = "The result does not fit its description"
 
 
+class Misregistered(SafestartError):
+    """An entry of a registry that cannot work: whoever added the part must mend it."""
+
+    slug = "misregistered"
+    title = "A part of safestart is registered wrongly"
+
+
 class Altered(SafestartError):
     """A stored result whose SHA-256 differs from the one stored with it; the service does not return it."""
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, cast
 import typer
 
 from safestart.errors import Away, InvalidInput, SafestartError, Unavailable
-from safestart.runtime.logs import configure
+from safestart.runtime.logs import configure, legible
 from safestart_service.http.open_files import make_room
 from safestart_service.http.places import Places
 
@@ -46,7 +46,7 @@ def serve(
     try:
         _serve({name: value for name, value in given.items() if value is not None})
     except SafestartError as error:
-        typer.echo(f"safestart serve: {error.detail}", err=True)
+        typer.echo(f"safestart serve: {legible(error.detail)}", err=True)
         raise typer.Exit(2) from None
 
 
@@ -61,7 +61,7 @@ def _serve(overrides: dict[str, object]) -> None:
             require_keys(chosen)
             break
         except Away as error:
-            typer.echo(f"safestart: waits for the database: {error.detail}", err=True)
+            typer.echo(f"safestart: waits for the database: {legible(error.detail)}", err=True)
             sleep(AWAY_S)
     make_room(chosen.max_connections)
     # Helper processes compute one answer each; a pool of threads in every one of them would only take memory.

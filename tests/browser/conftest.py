@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 import shutil
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 from playwright.sync_api import Browser, BrowserContext, Page, expect, sync_playwright
 
-from tests.acceptance.running import Running
+from tests.acceptance.running import Running, serving
 from tests.waiting import PATIENCE_S
 
 CHROMIUM = os.environ.get("SAFESTART_CHROMIUM") or shutil.which("chromium") or shutil.which("google-chrome")
@@ -71,11 +72,25 @@ class Visit:
         self.page.screenshot(path=SHOTS / f"{name}.png", full_page=True)
 
 
-@pytest.fixture
-def visit(browser: Browser, up: Running) -> Iterator[Visit]:
+@contextmanager
+def visiting(browser: Browser, url: str) -> Iterator[Visit]:
     """A fresh visit at 1280 px; ends with no console error, no exception, no breach of the content policy."""
     context = browser.new_context(viewport={"width": 1280, "height": 900}, accept_downloads=True)
-    found = Visit(context, up.url)
+    found = Visit(context, url)
     yield found
     context.close()
     assert found.faults() == []
+
+
+@pytest.fixture
+def visit(browser: Browser, up: Running) -> Iterator[Visit]:
+    """A visit of the service with its worker."""
+    with visiting(browser, up.url) as found:
+        yield found
+
+
+@pytest.fixture(scope="module")
+def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """A service for one module, with an empty store and no worker."""
+    with serving(f"sqlite:///{tmp_path_factory.mktemp('alone') / 'alone.sqlite3'}") as found:
+        yield found

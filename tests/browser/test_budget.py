@@ -13,21 +13,24 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, BrowserContext, Page, Response, expect
 
-from tests.acceptance.running import serving
 from tests.browser.conftest import Visit
 
 MOST_SCRIPT = 4 * 1024**2
 """Bytes, compressed: Plotly has 1.47 MB, ours 0.06 MB (docs/pages.md)."""
 FIRST_PAINT_MS = 1000.0
 DEAF_MS = 50.0
+FIXED_MS = 20.0
+"""What the work of a fixed size takes on a quiet machine (of 2.8 GHz)."""
 TRIES = 10
 _PAINTED = "performance.getEntriesByName('first-contentful-paint')[0]?.startTime ?? null"
-
-
-@pytest.fixture(scope="module")
-def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    with serving(f"sqlite:///{tmp_path_factory.mktemp('budget') / 'budget.sqlite3'}") as found:
-        yield found
+_FIXED_WORK = """() => {
+    const seen = new Map();
+    for (let k = 0; k < 25000; k++) {
+        const name = `M${(k * 0.37).toFixed(2)},${k}`;
+        seen.set(name, { x: Math.sin(k), name });
+    }
+    return [...seen.values()].sort((a, b) => a.x - b.x).length;
+}"""
 
 
 @pytest.fixture
@@ -69,19 +72,21 @@ def test_explore_is_painted_within_a_second(context: BrowserContext, url: str) -
 def test_nobody_types_into_a_deaf_page(browser: Browser, context: BrowserContext, url: str) -> None:
     """Each key changes the question, marks the answers as old, asks anew and draws the map again.
 
-    Counted is the time of the processor in the longest task of the page's main thread, which is what a user waits for
-    unless others take the processor.
+    Counted is the time of the processor in the longest task of the page's main thread, at the pace of a quiet machine:
+    beside other processes the same work takes twice as long, and work of a fixed size tells by how much.
     """
     page = Visit(context, url).go("/dashboard?omega_t_deg_s=3&x_m=5&y_m=40")
     expect(page.locator("#play")).to_be_enabled()
-    longest = []
+    longest, fixed = [], []
     for k in range(TRIES):
         browser.start_tracing(page=page, categories=["toplevel"])
         _type(page, ("1.25", "2.5", "3.75", "4.5")[k % 4])
-        longest.append(_longest_task(json.loads(browser.stop_tracing())["traceEvents"]))
-        if longest[-1] <= DEAF_MS:
-            return
-    raise AssertionError(longest)
+        longest.append(_longest_task(json.loads(browser.stop_tracing())["traceEvents"], 50))
+        browser.start_tracing(page=page, categories=["toplevel"])
+        assert page.evaluate(_FIXED_WORK) == 25_000
+        fixed.append(_longest_task(json.loads(browser.stop_tracing())["traceEvents"], 1))
+    pace = max(1.0, min(fixed) / FIXED_MS)
+    assert min(longest) <= DEAF_MS * pace, (longest, fixed)
 
 
 def _type(page: Page, text: str) -> None:
@@ -94,13 +99,13 @@ def _type(page: Page, text: str) -> None:
     expect(page.locator("#play")).to_be_enabled()
 
 
-def _longest_task(events: list[dict[str, Any]]) -> float:
-    """Milliseconds of the processor in the longest task of a page's main thread."""
+def _longest_task(events: list[dict[str, Any]], least: int) -> float:
+    """Milliseconds of the processor in the longest of at least so many tasks of a page's main thread."""
     mains = {
         (one["pid"], one["tid"])
         for one in events
         if one.get("name") == "thread_name" and one["args"]["name"] == "CrRendererMain"
     }
     tasks = [one["tdur"] for one in events if "tdur" in one and (one["pid"], one["tid"]) in mains]
-    assert len(tasks) > 50, "the trace holds the page's tasks"
+    assert len(tasks) >= least, "the trace holds the page's tasks"
     return float(max(tasks)) / 1000.0

@@ -3,6 +3,8 @@
 In CI the quick processes; by hand all of them, some of which take minutes:
 
     ALL_FORMS=1 pytest tests/browser/test_default_forms.py
+
+Each result page is kept as a picture to look at (SAFESTART_SCREENSHOTS, else test-artifacts).
 """
 
 from __future__ import annotations
@@ -30,3 +32,4 @@ def test_a_form_as_it_opens_leads_to_a_result(visit: Visit, name: str) -> None:
     check_first_screen(page)
     if not process(name).light:
         expect(page.locator("h1 .status")).to_have_text("successful")
+    visit.shot(f"result-{name}")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -13,15 +12,7 @@ from playwright.sync_api import Browser, Route, expect
 
 from safestart.processes.registry import PROCESS_IDS, process
 from safestart.processes.tracking_mpc.targets import TARGETS
-from tests.acceptance.running import serving
 from tests.browser.conftest import Visit
-
-
-@pytest.fixture(scope="module")
-def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    folder: Path = tmp_path_factory.mktemp("forms")
-    with serving(f"sqlite:///{folder / 'forms.sqlite3'}") as found:
-        yield found
 
 
 @pytest.mark.parametrize("name", PROCESS_IDS)

@@ -10,6 +10,8 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
+from safestart.processes.execute import execute
+from safestart.processes.registry import process
 from safestart.proofs.single import check
 from safestart.runtime.access import LOCAL, Role
 from safestart.store.access.keys import KeyRepository
@@ -17,6 +19,8 @@ from safestart.store.database import Database
 from safestart.store.jobs.repository import JobRepository
 from tests.acceptance.running import serving
 from tests.browser.conftest import Visit
+from tests.browser.first_screen import check_first_screen
+from tests.waiting import until
 
 
 @pytest.fixture(scope="module")
@@ -101,6 +105,44 @@ def test_map_and_clock_on_one_screen_in_both_frames(
         assert seen["place"]["bottom"] <= seen["clock"]["top"] + 1, f"{frame}: the map covers the clock"
         assert page.evaluate("document.documentElement.scrollWidth") <= width
     visit.shot(f"flight-{width}")
+    close(visit)
+
+
+def test_on_a_phone_the_map_has_the_width_and_shares_the_screen(browser: Browser, url: str) -> None:
+    """Fields, map and clock without scrolling; seen: a map of 260 px below the fields."""
+    visit = opened(browser, url, 390, 844)
+    page = visit.go("/dashboard?omega_t_deg_s=3&x_m=5&y_m=40")
+    expect(page.locator("#play")).to_be_enabled()
+    until(lambda: page.evaluate("document.getElementById('map').dataset.proved"), "the region")
+    plot, line = page.locator("#map .nsewdrag").first.bounding_box(), page.locator("#play").bounding_box()
+    title = page.locator("#map .gtitle").bounding_box()
+    assert plot is not None
+    assert line is not None
+    assert title is not None
+    assert plot["width"] > 0.8 * 390
+    assert line["y"] + line["height"] <= 844
+    assert title["y"] + title["height"] <= plot["y"], "a title of two lines stands above the picture"
+    visit.shot("explore-390")
+    close(visit)
+
+
+def test_a_wide_picture_takes_the_width_of_the_first_screen(
+    browser: Browser, url: str, database: Database
+) -> None:
+    """Seen: three maps side by side in a picture as wide as a finger."""
+    jobs, inputs = JobRepository(database), process("coverage").example
+    done = execute("coverage", inputs)
+    job = jobs.submit("coverage", done.document["inputs"], timeout_s=60.0).id
+    claim = jobs.claim("worker", 60.0)
+    assert claim is not None
+    jobs.succeed(claim, done.document, done.artifacts, {}, None)
+    visit = opened(browser, url)
+    page = visit.go(f"/dashboard/jobs/{job}")
+    expect(page.locator(".first.panorama figure img")).to_be_visible()
+    box = page.locator(".first figure img").bounding_box()
+    assert box is not None
+    assert box["width"] > 1000
+    check_first_screen(page)
     close(visit)
 
 

@@ -24,11 +24,11 @@ SLIVER = "omega_t_deg_s=2&a_max_m_s2=0.05&x_m=9.364&y_m=81.044"
 SMALL = {"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "grid": {"nx": 21, "ny": 21, "y_max_m": 150}}
 QUICK = ["analytical", "exact", "backward", "monte_carlo"]
 SLOW = SMALL | {
-    "horizon_s": 180,
+    "horizon_s": 600,
     "engines": ["hamilton_jacobi"],
     "hamilton_jacobi": {"frame": "body", "accuracy": "very_high"},
 }
-"""Ten seconds on a quiet machine: long enough to be looked at and killed in the middle."""
+"""Half a minute on a quiet machine: long enough to be looked at and killed in the middle."""
 LONG = {
     "omega_t_deg_s": [0.1 * i for i in range(1, 51)],
     "a_max_m_s2": [0.01 * i for i in range(1, 11)],

@@ -7,23 +7,13 @@ from collections.abc import Iterator
 import pytest
 from playwright.sync_api import Browser, expect
 
-from tests.acceptance.running import serving
-from tests.browser.conftest import Visit
-
-
-@pytest.fixture(scope="module")
-def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    with serving(f"sqlite:///{tmp_path_factory.mktemp('pins') / 'pins.sqlite3'}") as found:
-        yield found
+from tests.browser.conftest import Visit, visiting
 
 
 @pytest.fixture
 def visit(browser: Browser, url: str) -> Iterator[Visit]:
-    context = browser.new_context(viewport={"width": 1280, "height": 900})
-    found = Visit(context, url)
-    yield found
-    context.close()
-    assert found.faults() == []
+    with visiting(browser, url) as found:
+        yield found
 
 
 def test_pinned_starts_keep_their_question(visit: Visit) -> None:
@@ -36,8 +26,18 @@ def test_pinned_starts_keep_their_question(visit: Visit) -> None:
     expect(rows).to_have_count(3)
     assert page.locator("#pinned .word").all_inner_texts() == ["NO GO", "GO", "GO"]
     expect(page.locator("#map .legendtext", has_text="pinned starts")).to_have_count(1)
+    said, elsewhere = page.locator("#pinned .note").first, page.locator("#pinned .elsewhere")
+    expect(said).to_contain_text("All asked: tumble rate 3 deg/s · thrust acceleration 0.1 m/s² · stay 60 s")
     page.fill("#omega_t_deg_s", "5")
     expect(page.locator("#map .legendtext", has_text="pinned starts")).to_have_count(0)
+    assert [one.is_visible() for one in elsewhere.all()] == [True] * 3, (
+        "a GO of 3 deg/s beside a field that says 5 tells so"
+    )
+    page.fill("#omega_t_deg_s", "")
+    assert [one.is_visible() for one in elsewhere.all()] == [True] * 3
+    page.fill("#omega_t_deg_s", "3")
+    assert [one.is_visible() for one in elsewhere.all()] == [False] * 3
+    page.fill("#omega_t_deg_s", "5")
     assert page.locator("#pinned .word").all_inner_texts() == ["NO GO", "GO", "GO"], (
         "they answer their own question"
     )

@@ -3,20 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 
-import pytest
 from playwright.sync_api import Browser, expect
 
 from safestart.processes.costs import region_s
-from tests.acceptance.running import serving
 from tests.browser.conftest import Visit
-
-
-@pytest.fixture(scope="module")
-def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    with serving(f"sqlite:///{tmp_path_factory.mktemp('slow') / 'slow.sqlite3'}") as found:
-        yield found
 
 
 def test_an_estimate_stands_beside_the_button(browser: Browser, url: str) -> None:

@@ -9,9 +9,26 @@ import argparse
 import json
 import sys
 import time
+from collections.abc import Iterable, Iterator
+from functools import partial
+from typing import Any
 
 from tests.fuzzing.documents import KINDS, run
 from tests.fuzzing.files import FILES
+
+_EVERY_S = 30.0
+
+
+def _told(kind: str, number: int, made: Iterable[Any]) -> Iterator[Any]:
+    """The mutants, with a line on stderr now and then: how many there were, and how long the rest takes."""
+    begun = last = time.monotonic()
+    for k, mutant in enumerate(made):
+        yield mutant
+        now = time.monotonic()
+        if now - last > _EVERY_S:
+            last = now
+            left = (now - begun) / (k + 1) * (number - k - 1)
+            sys.stderr.write(f"{kind}: {k + 1} of {number}, {left / 60:.0f} min left\n")
 
 
 def main() -> int:
@@ -25,7 +42,11 @@ def main() -> int:
     for kind in asked.kinds:
         begun = time.monotonic()
         found = (
-            FILES[kind](asked.number, asked.seed) if kind in FILES else run(kind, asked.number, asked.seed)
+            FILES[kind](asked.number, asked.seed)
+            if kind in FILES
+            else run(
+                kind, asked.number, asked.seed, remembering=True, watched=partial(_told, kind, asked.number)
+            )
         )
         sys.stdout.write(f"{kind}: {asked.number} mutants in {time.monotonic() - begun:.0f} s\n")
         for outcome, count in sorted(found.outcomes.items()):

@@ -32,12 +32,13 @@ from safestart.runtime.plain_json import loads
 from tests.fuzzing.abort.decided import truth_of_drifts
 from tests.fuzzing.abort.made import MADE as OF_BURNS
 from tests.fuzzing.abort.printed import printed as printed_drifts
-from tests.fuzzing.arrived import truth_after
-from tests.fuzzing.decided import Truth, truth
-from tests.fuzzing.disturbed import truth_against
-from tests.fuzzing.held import truth_held
 from tests.fuzzing.mutants import known_fields, mutants, paths
-from tests.fuzzing.printed import Printed, printed
+from tests.fuzzing.plane.arrived import truth_after
+from tests.fuzzing.plane.decided import Truth, truth
+from tests.fuzzing.plane.disturbed import truth_against
+from tests.fuzzing.plane.held import truth_held
+from tests.fuzzing.plane.printed import Printed, printed
+from tests.fuzzing.remembered import remembered
 from tests.fuzzing.space.decided import truth_in_space
 from tests.fuzzing.space.made import MADE as IN_SPACE
 from tests.fuzzing.space.printed import printed as printed_in_space
@@ -133,8 +134,24 @@ class Run:
     open: list[tuple[str, Document]]
 
 
-def run(kind: str, number: int, seed: int) -> Run:
-    """Check mutants of one kind; each accepted one is printed, read back and decided anew."""
+def run(
+    kind: str,
+    number: int,
+    seed: int,
+    *,
+    remembering: bool = False,
+    watched: Callable[[Iterable[Any]], Iterable[Any]] = iter,
+) -> Run:
+    """Check mutants of one kind; each accepted one is printed, read back and decided anew.
+
+    ``remembering``: equal parts of documents are checked once, where most of a long run's time would go. ``watched``
+    passes the mutants on, and may tell how many.
+    """
+    with remembered() if remembering else contextlib.nullcontext():
+        return _run(kind, number, seed, watched)
+
+
+def _run(kind: str, number: int, seed: int, watched: Callable[[Iterable[Any]], Iterable[Any]]) -> Run:
     rng = Random(f"{kind} {seed}")
     document = json.loads(original(kind))
     fields = known_fields(*(json.loads(original(other)) for other in KINDS))
@@ -143,7 +160,7 @@ def run(kind: str, number: int, seed: int) -> Run:
     told = {(first.verdict, first.statement): _question(document)}
     made = _sealed(mutants(document, fields, rng, number), rng)
     seen: dict[str, str] = {}
-    return tally((done, mutant, _once(mutant, seen, known, told, rng)) for done, mutant in made)
+    return tally((done, mutant, _once(mutant, seen, known, told, rng)) for done, mutant in watched(made))
 
 
 def tally(outcomes: Iterable[tuple[str, Any, str]]) -> Run:
@@ -186,7 +203,7 @@ def _once(
     except (TypeError, ValueError):
         return "no JSON"
     if text not in seen:
-        outcome = _outcome(mutant, known, told, rng)
+        outcome = _outcome(text, known, told, rng)
         if not outcome.startswith("accepted"):
             return outcome
         seen[text] = outcome
@@ -249,10 +266,10 @@ def _floats(value: Any) -> Any:
     return float(value) + 0.0 if whole else value
 
 
-def _outcome(mutant: Any, known: dict[Claim, float], told: dict[Claim, str], rng: Random) -> str:
+def _outcome(text: str, known: dict[Claim, float], told: dict[Claim, str], rng: Random) -> str:
     try:
         # As a file would give it, where it can be one.
-        mutant = loads(json.dumps(mutant))
+        mutant = loads(text)
     except (TypeError, ValueError):
         return "no JSON"
     try:

@@ -28,10 +28,10 @@ from safestart.records.artifact import Artifact
 from safestart.records.bundle import unpack as open_bundle
 from safestart.records.comparable import TIMING_KEYS, digest
 from safestart.records.replay import replay
-from tests.fuzzing.decided import Member, best
 from tests.fuzzing.documents import Run, names, tally
 from tests.fuzzing.mutants import known_fields, mutants
-from tests.fuzzing.printed import Printed
+from tests.fuzzing.plane.decided import Member, best
+from tests.fuzzing.plane.printed import Printed
 
 TIME = "2026-01-01T00:00:00+00:00"
 FILE = Artifact("cells.json", "application/json", b'{"a": [1.0]}')

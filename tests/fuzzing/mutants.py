@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import copy
 import math
+import pickle
 from collections.abc import Iterator
 from random import Random
 from typing import Any
@@ -64,22 +65,27 @@ def mutants(
     places = list(paths(document))
     turns = [(operation, path) for path in places for operation in OPERATIONS]
     rng.shuffle(turns)
+    # Much quicker than a deep copy, which is what most of a long run was.
+    packed = pickle.dumps(document)
     for k in range(number):
-        made = copy.deepcopy(document)
+        made = pickle.loads(packed)
         operation, path = turns[k % len(turns)]
         done = [f"{operation} {'.'.join(map(str, path))}"]
-        _apply(operation, made, path, fields, rng)
+        _apply(operation, made, path, fields, rng, places)
         while rng.random() < 0.2:
             left = list(paths(made))
             if not left:
                 break
             operation, path = rng.choice(OPERATIONS), rng.choice(left)
             done.append(f"{operation} {'.'.join(map(str, path))}")
-            _apply(operation, made, path, fields, rng)
+            _apply(operation, made, path, fields, rng, left)
         yield ", ".join(done), made
 
 
-def _apply(operation: str, made: Any, path: Path, fields: dict[str, list[Any]], rng: Random) -> None:
+def _apply(
+    operation: str, made: Any, path: Path, fields: dict[str, list[Any]], rng: Random, everywhere: list[Path]
+) -> None:
+    """``everywhere``: the places in ``made`` as it is; walking it takes longer than all else."""
     inside, key = at(made, path[:-1]), path[-1]
     if operation == "add":
         _add(at(made, path), fields, rng) if isinstance(at(made, path), dict) else _add(inside, fields, rng)
@@ -88,14 +94,14 @@ def _apply(operation: str, made: Any, path: Path, fields: dict[str, list[Any]], 
     elif operation == "retype":
         inside[key] = _retyped(inside[key], rng)
     elif operation == "swap":
-        other = rng.choice(list(paths(made)))
+        other = rng.choice(everywhere)
         # What holds the other cannot change places with it.
         if other[: len(path)] != path and path[: len(other)] != other:
             there, last = at(made, other[:-1]), other[-1]
             inside[key], there[last] = there[last], inside[key]
     elif operation == "move":
         places = [
-            p for p in [(), *paths(made)] if isinstance(at(made, p), dict | list) and p[: len(path)] != path
+            p for p in [(), *everywhere] if isinstance(at(made, p), dict | list) and p[: len(path)] != path
         ]
         there = at(made, rng.choice(places))
         value = inside.pop(key)
@@ -147,5 +153,6 @@ def _other(value: Any, donors: list[Any], rng: Random) -> Any:
     elif isinstance(value, str):
         out += [value.lower(), value.upper(), value + " ", *[v for v in donors if isinstance(v, str)]]
     elif isinstance(value, list):
-        out += [value[::-1], value[1:], value[:-1], value + value]
+        # Copies: a place that two paths lead to could later be moved into itself.
+        out += [value[::-1], value[1:], value[:-1], value + copy.deepcopy(value)]
     return rng.choice(out)

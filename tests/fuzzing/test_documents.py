@@ -16,13 +16,13 @@ from safestart.proofs.single import Witness
 from tests.fuzzing.abort.decided import truth_of_drifts
 from tests.fuzzing.abort.made import MADE as OF_BURNS
 from tests.fuzzing.abort.printed import printed as printed_drifts
-from tests.fuzzing.arrived import truth_after
-from tests.fuzzing.decided import truth
-from tests.fuzzing.disturbed import truth_against
 from tests.fuzzing.documents import KINDS, original, run
 from tests.fuzzing.files import FILES
-from tests.fuzzing.held import truth_held
-from tests.fuzzing.printed import Printed, printed
+from tests.fuzzing.plane.arrived import truth_after
+from tests.fuzzing.plane.decided import truth
+from tests.fuzzing.plane.disturbed import truth_against
+from tests.fuzzing.plane.held import truth_held
+from tests.fuzzing.plane.printed import Printed, printed
 from tests.fuzzing.space.decided import truth_in_space
 from tests.fuzzing.space.made import MADE as IN_SPACE
 from tests.fuzzing.space.printed import printed as printed_in_space
@@ -42,6 +42,15 @@ def test_no_mutant_is_accepted_with_a_false_statement(kind: str) -> None:
     assert not found.false, found.false[0]
     assert number < 40 or found.outcomes["accepted: the same statement"] > 0
     assert found.outcomes["rejected"] >= number // 2
+
+
+@pytest.mark.parametrize(
+    "kind", ["abort-linear", "abort-nonlinear", "disturbed-go", "space-go", "space-no-go"]
+)
+def test_what_is_remembered_is_what_a_check_finds(kind: str) -> None:
+    anew, remembered = run(kind, 150, 2), run(kind, 150, 2, remembering=True)
+    assert anew == remembered
+    assert len(anew.outcomes) > 1
 
 
 @pytest.mark.parametrize("kind", sorted(FILES))

@@ -7,14 +7,14 @@ import { test } from "node:test";
 import { arc, closed, corridor, turned } from "../../service/safestart_service/static/logic/geometry.js";
 import { layerTitle } from "../../service/safestart_service/static/logic/layers.js";
 import { agreement, wilson } from "../../service/safestart_service/static/logic/statistics.js";
-import { HELD, csv, duration, figure, lines, moment, rounding, sentence } from "../../service/safestart_service/static/logic/words.js";
+import { HELD, barAxis, csv, duration, figure, lines, moment, rounding, sentence } from "../../service/safestart_service/static/logic/words.js";
 
 const SHAPE = { c_x: 1.5, x0_m: 2.5, r_h_m: 0.5 };
 const near = (one, two) => assert.ok(Math.abs(one - two) < 1e-9, `${one} is not ${two}`);
 
 test("figures for people", () => {
   assert.deepEqual([null, undefined, true, false, "x", 3, 1234567, 0.000123456, -12.94214].map((value) => figure(value)), ["–", "–", "yes", "no", "x", "3", "1235000", "0.0001235", "-12.94"]);
-  assert.deepEqual([null, 1.26, 61.2, 600, 7200].map(duration), ["–", "1.3 s", "61 s", "10 min", "2.0 h"]);
+  assert.deepEqual([null, 0, 0.0312, 1.26, 61.2, 600, 7200].map(duration), ["–", "0 s", "0.03 s", "1.3 s", "61 s", "10 min", "2.0 h"]);
   assert.equal(moment("2026-01-02T03:04:05.678+00:00"), "2026-01-02 03:04:05 UTC");
   assert.equal(moment(null), "–");
   assert.deepEqual(["", "it stays", "It is so."].map(sentence), ["", "It stays.", "It is so."]);
@@ -86,4 +86,14 @@ test("what is 0 but for rounding is known by its column", () => {
 test("the steps that the pages name are those of the service", () => {
   const wire = readFileSync(new URL("../../core/safestart/processes/wire.py", import.meta.url), "utf8");
   assert.equal(HELD, `held over steps of ${Number(/^DT_S = ([\d.]+)$/m.exec(wire)[1])} s`);
+});
+
+test("a logarithmic axis of bars has ticks that people read as they are, and begins below every bar", () => {
+  const ticks = (values) => barAxis(values).ticktext;
+  assert.deepEqual(ticks([0.25, null, 0]), ["0.2", "0.5"], "what is 0 or missing has no bar");
+  assert.deepEqual(ticks([0.1, 0.1]), ["0.05", "0.1"]);
+  assert.deepEqual(ticks([3, 7]), ["2", "5", "10"]);
+  assert.deepEqual(ticks([0.001, 30]), ["0.001", "0.01", "0.1", "1", "10"], "many decades have one tick each");
+  near(barAxis([0.1, 0.1]).range[0], Math.log10(0.05));
+  assert.deepEqual(barAxis([null]), { type: "log" });
 });

@@ -9,6 +9,7 @@ import typer
 
 from safestart.errors import invalid
 from safestart.runtime.logs import configure
+from safestart_worker.cluster.own_files import import_dask
 
 
 def register(app: typer.Typer) -> None:
@@ -27,11 +28,13 @@ def register(app: typer.Typer) -> None:
         from safestart.runtime.settings import settings
 
         configured = settings()
+        address = scheduler or configured.scheduler
         try:
+            if not address:  # what the user says about connections holds for the user's scheduler only
+                import_dask()
             from safestart_worker.loop import Options, work
         except ValueError as error:  # Dask reads its files when it is imported
             raise invalid("dask", "configuration files in YAML", " ".join(str(error).split())) from None
-        address = scheduler or configured.scheduler
         configure(configured.log_format)
         options = Options(
             database_url=database_url or configured.url(),

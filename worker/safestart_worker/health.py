@@ -6,6 +6,7 @@ import socket
 import sys
 
 from safestart.errors import SafestartError
+from safestart.runtime.logs import legible
 from safestart.runtime.settings import settings
 from safestart.store.database import Database
 from safestart.store.jobs.repository import JobRepository
@@ -16,7 +17,7 @@ def main() -> int:
     try:
         owners = JobRepository(Database(settings().url())).owners_alive()
     except SafestartError as error:
-        sys.stderr.write(f"{error.detail}\n")
+        sys.stderr.write(f"{legible(error.detail)}\n")
         return 1
     return 0 if any(owner.startswith(f"{socket.gethostname()}-") for owner in owners) else 1
 

@@ -16,7 +16,7 @@ from distributed.client import FutureCancelledError
 
 from safestart.errors import NotFound
 from safestart.processes.registry import process
-from safestart.runtime.warmup import PARTS
+from safestart.runtime.kernels.warmup import PARTS
 from safestart_worker.cluster.cluster import Cluster
 
 log = logging.getLogger("safestart.worker")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from safestart.attitude import body_frame
-from safestart.runtime.kernels import compiled
+from safestart.runtime.kernels.compiled import compiled
 
 into_body = compiled(error_model="numpy")(body_frame.into_body)
 """R_z(-theta) (x, y) from (cos, sin, x, y): LVLH coordinates to body coordinates."""

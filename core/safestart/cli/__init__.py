@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from importlib import import_module
 
 import typer
 
+from safestart.cli.once import each_once
 from safestart.cli.streams import patient_streams
 from safestart.runtime.own_process import exit_code, own_configuration
+from safestart.runtime.variables import require_known
 
 COMMAND_GROUP = "safestart.commands"
 # The modules of our commands in the order of the help, each with the commands that it adds.
@@ -44,6 +47,7 @@ def build(asked: str = "") -> typer.Typer:
     @app.callback()
     def safestart() -> None:
         """May this chaser start its approach to that tumbling target?"""
+        require_known(os.environ)
 
     wanted = [name for name, commands in COMMANDS.items() if asked in commands]
     for name in wanted or COMMANDS:
@@ -53,6 +57,7 @@ def build(asked: str = "") -> typer.Typer:
 
         for point in sorted(entry_points(group=COMMAND_GROUP), key=lambda p: p.name):
             point.load()(app)
+    each_once(app)
     return app
 
 

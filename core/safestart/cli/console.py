@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import AbstractContextManager
 from typing import Annotated, Any, Literal
 
 import typer
 from rich.box import SIMPLE_HEAD
-from rich.console import Console
+from rich.console import Console, ConsoleOptions, RenderableType
+from rich.segment import Segment
 from rich.table import Table
 
-from safestart.runtime.progress import Context
-from safestart.runtime.reporting import reporting_on
+from safestart.runtime.logs import legible
+from safestart.runtime.reporting import Reporting, reporting_on
 
 Justify = Literal["left", "right"]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout and nothing else.")]
@@ -24,8 +25,17 @@ Json = Annotated[bool, typer.Option("--json", help="Print one JSON document on s
 _LEAST_WIDTH = 112
 
 
+class LegibleConsole(Console):
+    """A console whose texts cannot act on the terminal, whoever wrote them; its own colours and bars do."""
+
+    def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterable[Segment]:
+        """The parts of what is printed, of every cell of a table too."""
+        for part in super().render(renderable, options):
+            yield part if part.control else part._replace(text=legible(part.text, keep="\n"))
+
+
 def _console(*, stderr: bool) -> Console:
-    console = Console(stderr=stderr, highlight=False)
+    console = LegibleConsole(stderr=stderr, highlight=False)
     console.width = max(console.width, _LEAST_WIDTH)
     return console
 
@@ -61,6 +71,6 @@ def seconds(value: float | None) -> str:
     return f"{value * 1e3:.1f} ms" if value < 1.0 else f"{value:.1f} s"
 
 
-def reporting(title: str) -> AbstractContextManager[Context]:
+def reporting(title: str) -> AbstractContextManager[Reporting]:
     """Context that shows its progress on stderr while the work runs."""
     return reporting_on(err, title)

@@ -29,8 +29,8 @@ def register(app: typer.Typer) -> None:
             str,
             typer.Option(
                 "--input",
-                help="JSON file with these inputs, or with those of a POST (states, starts); '-' reads stdin. Options "
-                "stand over it.",
+                help="JSON file with these inputs, or with those of a POST (states, starts); '-' reads stdin. An "
+                "option replaces the file's value.",
             ),
         ] = "",
         proof: Annotated[
@@ -40,8 +40,8 @@ def register(app: typer.Typer) -> None:
         as_json: Json = False,
         **asked: Any,
     ) -> None:
-        """May a chaser that is at rest here, or arrives like this, start its approach? No GO without a proof, but by
-        method paper."""
+        """May a chaser that is at rest here, or arrives like this, start its approach? Every GO has a proof, except
+        those of method paper."""
         given = {name: value for name, value in asked.items() if value is not None}
         if input_file:
             given = _read(input_file) | given

@@ -8,6 +8,8 @@ from inspect import Parameter, Signature, signature
 from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin
 
 import typer
+from pydantic import BaseModel
+from pydantic_core import to_json
 
 from safestart.processes import flat
 
@@ -39,13 +41,11 @@ def _option(name: str, parameter: flat.Parameter) -> Parameter:
     kinds = [kind for kind in get_args(field.annotation) or (field.annotation,) if kind is not type(None)]
     kind = kinds[0] if len(kinds) == 1 and kinds[0] in (bool, int, float) else str
     words = _words(field.annotation)
-    default = None if field.is_required() else field.default
-    if isinstance(default, Enum):
-        default = default.value
+    default = None if field.is_required() else _shown(field.get_default(call_default_factory=True))
     told = typer.Option(
         help=parameter.text,
         metavar=f"[{'|'.join(words)}]" if words else None,
-        show_default=False if default is None else str(default),
+        show_default=default or False,
     )
     return Parameter(
         name,
@@ -53,6 +53,15 @@ def _option(name: str, parameter: flat.Parameter) -> Parameter:
         default=Parameter.empty if parameter.required else None,
         annotation=Annotated[kind if parameter.required else kind | None, told],
     )
+
+
+def _shown(default: Any) -> str | None:
+    """A default as one writes it on the command line; None where there is nothing to write."""
+    if isinstance(default, Enum):
+        default = default.value
+    if isinstance(default, (BaseModel, list, tuple, dict)):
+        return to_json(default).decode() if default else None
+    return None if default is None else str(default)
 
 
 def _words(annotation: Any) -> list[str]:

@@ -17,7 +17,8 @@ from safestart.cli.console import err, out, print_json, reporting
 from safestart.cli.reproduce.command import DIFFERENCES, show_table2, table2_inputs, table2_rows
 from safestart.errors import Unavailable
 from safestart.papers import safe_start as published
-from safestart.runtime.progress import Context
+from safestart.public.following import tell
+from safestart.runtime.reporting import Reporting
 from safestart.runtime.settings import settings
 
 _START_LIMIT_S = 300.0
@@ -122,7 +123,7 @@ def _submit(client: httpx.Client, rate: float) -> str:
     return job
 
 
-def _follow(client: httpx.Client, job: str, context: Context) -> None:
+def _follow(client: httpx.Client, job: str, context: Reporting) -> None:
     while True:
         status = _json(client.get(f"/jobs/{job}"))
         if status["status"] == "successful":
@@ -130,5 +131,5 @@ def _follow(client: httpx.Client, job: str, context: Context) -> None:
         if status["status"] in ("failed", "dismissed"):
             reason = (status.get("problem") or {}).get("detail", status.get("message"))
             raise Unavailable(f"demo: job {job} {status['status']}: {reason}")
-        context.step(status.get("progress", 0), 100, status.get("message") or status["status"])
+        tell(context, status)
         time.sleep(0.3)

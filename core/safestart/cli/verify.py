@@ -10,6 +10,7 @@ import typer
 from rich.markup import escape
 
 from safestart.cli.console import Json, out, print_json
+from safestart.runtime.logs import legible
 from safestart.runtime.plain_json import loads
 
 _MOST_BYTES = 16 * 1024 * 1024
@@ -69,5 +70,5 @@ def _load(path: Path) -> Any:
             raise ValueError(f"required at most {_MOST_BYTES} bytes")
         return loads(data)
     except (OSError, ValueError, RecursionError) as error:
-        sys.stderr.write(f"safestart: {path}: unreadable: {error}\n")
+        sys.stderr.write(legible(f"safestart: {path}: unreadable: {error}") + "\n")
         raise typer.Exit(2) from None

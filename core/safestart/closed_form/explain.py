@@ -1,4 +1,4 @@
-"""A certificate in words: the binding constraint, the violated faces, and one sentence."""
+"""The paper's conditions in words: the binding constraint, the violated faces, and one sentence."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ def binding_of(
 
 
 def sentence(binding: str, violated: Sequence[str], range_margin: float, margin: float) -> str:
-    """Why a start of this smallest margin (m) is certified or not."""
+    """Why the paper's conditions hold or not at a start of this smallest margin (m)."""
     if violated:
         return f"outside the corridor: violates {', '.join(violated)}"
     if margin > 0.0:
-        return f"certified with {margin:.2f} m to spare at {binding}"
+        return f"the paper's conditions hold with {margin:.2f} m to spare at {binding}"
     if binding == "range":
         return f"{-range_margin:.2f} m beyond the range within which the rotation can be matched"
     return (

@@ -74,9 +74,9 @@ def offers(rates: Rates, faces: Faces, place: Floats, start: Floats) -> list[Off
     height = place[2] * place[2]
     sway = np.sqrt(height) * rates.sway
     # The rest of the thrust disk after n^2 z of it holds z; without a rest nothing can be flown.
-    left = np.sqrt(np.maximum(1.0 - sway * sway, 1e-300))
+    left = np.sqrt(np.maximum(1.0 - sway * sway, 1e-200))
     held = np.sqrt(square) * rates.scale / left
-    drawn = np.sqrt(square + height) * rates.scale / np.maximum(1.0 - sway, 1e-300)
+    drawn = np.sqrt(square + height) * rates.scale / np.maximum(1.0 - sway, 1e-200)
     return [
         _brake(rates, faces, start, place, held),
         _turn_in(rates, faces, start, place, held),

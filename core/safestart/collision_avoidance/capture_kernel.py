@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from safestart.model.scenario import Floats
-from safestart.runtime.kernels import compiled
+from safestart.runtime.kernels.compiled import compiled
 
 
 @compiled(error_model="numpy")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from safestart.runtime.kernels import compiled
+from safestart.runtime.kernels.compiled import compiled
 
 MAX_PIVOTS = 200
 BLAND_AFTER = 60

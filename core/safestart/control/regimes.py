@@ -8,7 +8,7 @@ from typing import NamedTuple
 from safestart.attitude.turn_kernel import into_body, out_of_body
 from safestart.control.gains import Gains
 from safestart.model.scenario import Scenario
-from safestart.runtime.kernels import compiled
+from safestart.runtime.kernels.compiled import compiled
 
 FAR, CLOSE, HOLD = 0, 1, 2
 REGIMES = ("far", "close", "hold")

@@ -25,7 +25,7 @@ from safestart.control.forecast import Plan
 from safestart.model.scenario import Floats
 from safestart.optim import projection as _projection
 from safestart.optim.projection import FEASIBLE
-from safestart.runtime.kernels import compiled
+from safestart.runtime.kernels.compiled import compiled
 
 TIE = 1e-8
 """Widening of the fallback's rows (scaled command) so that the set of minimisers keeps an interior."""

@@ -19,24 +19,27 @@ from safestart.model.scenario import Floats
 class ThreeRegimes:
     """One flight after another with the tables of ``plan``; commands are labelled with their regime.
 
-    A command is feasible if (7) was; otherwise it is the fallback's. In a planar plan the thrust has no z part.
+    A command is feasible if (7) was; otherwise it is the fallback's. In a planar plan the thrust has no z part. A
+    flight that goes on from another one begins in interval ``first`` of the plan, after the command ``before`` (d,),
+    m/s^2.
     """
 
-    def __init__(self, plan: Plan) -> None:
-        self._plan = plan
+    def __init__(self, plan: Plan, *, first: int = 0, before: Floats | None = None) -> None:
+        self._plan, self._first = plan, first
         self._dimensions = plan.normals.shape[1]
-        self._previous, self._range, self._fastest = np.zeros(self._dimensions), 0.0, 0.0
+        self._before = np.zeros(self._dimensions) if before is None else before
+        self._previous, self._range, self._fastest = self._before, 0.0, 0.0
 
     def begin(self, state: Floats) -> None:
         """Reset the previous command; set the speed cap from the range."""
         plan = self._plan
-        self._previous = np.zeros(self._dimensions)
+        self._previous = self._before
         self._range = math.sqrt(float(state[:3] @ state[:3]))
         self._fastest = plan.closing_factor * math.sqrt(plan.law.max_acceleration * self._range)
 
     def command(self, k: int, state: Floats) -> Command:
         """See :class:`safestart.control.controller.Controller`."""
-        plan = self._plan
+        plan, k = self._plan, k + self._first
         cos, sin = plan.rotation[k].tolist()
         x, y, z, vx, vy, vz = state.tolist()
         time, law = k * plan.dt, plan.law

@@ -13,7 +13,7 @@ import numpy as np
 
 from safestart.dynamics.motion import SteadyMotion
 from safestart.errors import invalid
-from safestart.model.scenario import MAX_MEAN_MOTION, Floats, number
+from safestart.model.scenario import MAX_MEAN_MOTION, Floats, Target, number
 
 
 def phase_functions(phase: float) -> tuple[float, float, float]:
@@ -152,6 +152,11 @@ class Cwh(SteadyMotion):
     def positions(self, tau: Floats, dimensions: int) -> tuple[Floats, Floats]:
         """Position rows of Phi(tau) and B_d(tau)."""
         return position_matrices(self.mean_motion, tau, dimensions)
+
+
+def cwh_of(target: Target) -> Cwh:
+    """The motion near a scenario's target."""
+    return Cwh(target.mean_motion)
 
 
 _PLANE = np.array([0, 1, 3, 4])

@@ -15,7 +15,7 @@ from scipy.integrate import DOP853
 
 from safestart.errors import invalid
 from safestart.model.orbit import EARTH_RADIUS, MU
-from safestart.model.scenario import Floats
+from safestart.model.scenario import Floats, Target
 
 J2 = 1.08262668e-3
 
@@ -80,6 +80,11 @@ class TwoBody:
     def start(self, state: Floats) -> TwoBodyFlight:
         """A chaser at the LVLH state (6,) at t = 0."""
         return TwoBodyFlight(self.orbit, state)
+
+
+def two_body_of(target: Target) -> TwoBody:
+    """The motion near a scenario's target, on a circular orbit of its mean motion."""
+    return TwoBody(Orbit.of(target.mean_motion))
 
 
 class TwoBodyFlight:

@@ -15,7 +15,7 @@ from safestart.dynamics.two_body import J2
 from safestart.model.orbit import EARTH_RADIUS as RADIUS
 from safestart.model.orbit import MU
 from safestart.model.scenario import Floats
-from safestart.runtime.kernels import compiled
+from safestart.runtime.kernels.compiled import compiled
 
 STAGES = np.ascontiguousarray(DOP853.A)
 WEIGHTS = np.ascontiguousarray(DOP853.B)

@@ -7,8 +7,10 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any, Protocol
 
+import numpy as np
+
 from safestart.constraints.corridor import corridor_of
-from safestart.errors import invalid
+from safestart.errors import UnfitResult, invalid
 from safestart.model.scenario import Bools, Floats, Grid, Rest, Scenario, SetKind, number
 from safestart.runtime.progress import Context
 
@@ -77,6 +79,38 @@ class EngineResult:
     message: str = ""
     detail: Mapping[str, Any] = field(default_factory=dict)
     arrays: Mapping[str, Floats] = field(default_factory=dict)
+
+    def fit(self, engine: str, inside: Bools) -> EngineResult:
+        """This result, as the answer of ``engine`` on the cells ``inside`` (ny, nx) the corridor.
+
+        Raises ``UnfitResult`` where it is no answer: a code of no kind, a region of a failure, none of a success,
+        another shape or type, or cells outside the corridor.
+        """
+        wrong = self._unfit(inside)
+        if wrong:
+            raise UnfitResult(f"engine {engine}: {wrong}")
+        return self
+
+    def _unfit(self, inside: Bools) -> str:
+        if not isinstance(self.code, ResultCode):
+            return f"code: required a ResultCode, received {self.code!r}"
+        if self.code is not ResultCode.OK:
+            return "" if self.mask is None else f"mask: required none with {self.code.value}, received one"
+        wrong = _unlike(inside, "mask", self.mask, np.bool_)
+        if self.margin is not None:
+            wrong = wrong or _unlike(inside, "margin", self.margin, np.floating)
+        if wrong or self.mask is None:
+            return wrong
+        stray = int(np.count_nonzero(self.mask & ~inside))
+        return f"mask: required cells inside the corridor, received {stray} outside" if stray else ""
+
+
+def _unlike(inside: Bools, name: str, found: object, kind: type[np.generic]) -> str:
+    """What is wrong about an array that should have a value of this kind for each cell."""
+    if isinstance(found, np.ndarray) and found.shape == inside.shape and np.issubdtype(found.dtype, kind):
+        return ""
+    came = f"{found.dtype}, {found.shape}" if isinstance(found, np.ndarray) else type(found).__name__
+    return f"{name}: required {kind.__name__}, {inside.shape}, received {came}"
 
 
 class Engine(Protocol):

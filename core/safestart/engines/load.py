@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from importlib import import_module
 
 from safestart.engines.base import Engine
 from safestart.engines.registry import engine_spec
 from safestart.errors import invalid
 from safestart.model.wire_model import WireModel
+from safestart.runtime.named import load
 
 
 def engine(name: str, options: WireModel | None = None) -> Engine:
@@ -17,8 +17,7 @@ def engine(name: str, options: WireModel | None = None) -> Engine:
     Raises ``InvalidInput`` for an unknown name, and for another engine's options.
     """
     spec = engine_spec(name)
-    module, kind = spec.engine.split(":")
-    make: Callable[..., Engine] = getattr(import_module(module), kind)
+    make: Callable[..., Engine] = load(spec.engine, f"engine of {name}")
     if options is None:
         return make()
     if spec.options is None or not isinstance(options, spec.options):

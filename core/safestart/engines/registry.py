@@ -9,6 +9,7 @@ from safestart.engines.backward_options import BackwardInput
 from safestart.engines.hj.options import HamiltonJacobiInput
 from safestart.engines.spec import EngineSpec
 from safestart.errors import invalid
+from safestart.model.registry import by_name
 
 _SPECS = (
     EngineSpec(
@@ -90,7 +91,7 @@ _SPECS = (
     ),
 )
 
-ENGINES: dict[str, EngineSpec] = {spec.name: spec for spec in _SPECS}
+ENGINES: dict[str, EngineSpec] = by_name("engines", _SPECS, lambda spec: spec.name)
 """By name, in the order in which a benchmark runs them."""
 
 

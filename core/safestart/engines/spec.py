@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import Literal
 
 from safestart.model.wire_model import WireModel
+from safestart.runtime.named import misregistered
 
+_NAME, _COLOUR = re.compile(r"[a-z][a-z0-9_]*"), re.compile(r"#[0-9A-Fa-f]{6}")
 LineStyle = Literal["-", "--", ":", "-."]
 
 
@@ -35,6 +38,14 @@ class EngineSpec:
     screen_colour: str | None = None
     in_space: str = ""
     not_in_space: str = "planar"
+
+    def __post_init__(self) -> None:
+        """Raise ``Misregistered`` for a name that is none in Python and JSON, and for a colour of another form."""
+        if not _NAME.fullmatch(self.name):
+            raise misregistered("name of an engine", "small letters, digits and _", self.name)
+        for colour in (self.colour, self.screen_colour):
+            if colour is not None and not _COLOUR.fullmatch(colour):
+                raise misregistered(f"colour of engine {self.name}", "#RRGGBB", colour)
 
     def document(self) -> dict[str, str]:
         """The facts that pages show, JSON-able."""

@@ -71,7 +71,7 @@ def _held(question: Question, point: Floats, state: Floats, angle: float) -> Hel
     error = state - hold.reference.at(angle)[0]
     rooms = rooms_of(hold, question.speed_limit)
     most, _ = largest(hold, rooms)
-    least = float(error @ hold.design.cost @ error) * (1.0 + _SHARE) + 1e-12 * most
+    least = float(error @ hold.cost @ error) * (1.0 + _SHARE) + 1e-12 * most
     if least > most * (1.0 - _SHARE):
         return None
     low, high = least, most * (1.0 - _SHARE)
@@ -82,14 +82,14 @@ def _held(question: Question, point: Floats, state: Floats, angle: float) -> Hel
     margin = distance_left(hold, rooms, low)
     if margin <= GUARD:
         return None
-    return Held(point, -hold.design.gain, hold.design.cost, low, margin)
+    return Held(point, -hold.design.gain, hold.cost, low, margin)
 
 
 def _loop(question: Question, x: float, y: float) -> Hold:
     scenario = question.scenario
     most, target = scenario.chaser.max_acceleration, scenario.target
     reference = TurningReference.of(np.array([x, y]), target.tumble_rate, target.mean_motion, question.dt)
-    return Hold(
+    return Hold.of(
         _design(target.mean_motion, question.dt, most), reference, corridor_of(scenario.corridor), most
     )
 

@@ -38,6 +38,7 @@ class Search:
         self.lower, self.upper, self.rounds = -math.inf, math.inf, 0
         self.thrust: Floats | None = None
         question = watch.question
+        self.flown: Floats = np.zeros((question.steps, question.channels))
         self.rounding = rounding_of(watch, state)
         self.dips: dict[int, tuple[float, float]] = {}
         self.evidence: Evidence | None = None
@@ -99,6 +100,14 @@ class Search:
             if self.upper - self.lower <= goal or (decided and verdict_only) or not self.cut(goal):
                 break
         return BETWEEN
+
+    def look_closer(self, watch: Watched) -> None:
+        """Raise ``lower`` by what ``watch``, which sees more, says of the best flight and of the last one."""
+        for thrust in (self.thrust, self.flown):
+            if thrust is not None:
+                lowest = watch.minima(self.state, thrust).lowest - self.rounding
+                if lowest > self.lower:
+                    self.lower, self.thrust = lowest, thrust
 
     def round(self, fine: bool = True) -> str:
         """Solve with the rows so far and watch the flight; the reason if the solver failed, else empty."""

@@ -13,7 +13,7 @@ from safestart.hopping.hop_constraints import Flags
 from safestart.hopping.hop_program import HopProgram, Solved, Weights
 from safestart.hopping.hop_solver import solved
 from safestart.model.scenario import Floats
-from safestart.runtime.kernels import compiled
+from safestart.runtime.kernels.compiled import compiled
 
 _NO_ROWS = np.zeros((0, 3)), np.zeros(0)
 _NO_BOX = np.zeros(3), math.inf

@@ -18,7 +18,7 @@ import numpy as np
 
 from safestart.hopping.hop_constraints import Flags, factored, linear_parts, pulled_back, substituted
 from safestart.model.scenario import Floats
-from safestart.runtime.kernels import compiled
+from safestart.runtime.kernels.compiled import compiled
 
 _STEPS = 60
 _GAP = 1e-9

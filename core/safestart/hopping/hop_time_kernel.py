@@ -12,7 +12,7 @@ import numpy as np
 from safestart.hopping.fold import fold_of
 from safestart.hopping.hop_time import NEAR, PHASES, SAMPLED, checked
 from safestart.model.scenario import Floats
-from safestart.runtime.kernels import compiled
+from safestart.runtime.kernels.compiled import compiled
 
 _STEPS, _HALVINGS = 8, 60
 _SETTLED = 1e-9

@@ -17,16 +17,16 @@ _POINTS = 8
 
 
 def states_at(ephemeris: Ephemeris, epochs: Nanoseconds) -> tuple[Floats, Bools]:
-    """GCRF states (K, 6) at TAI ``epochs`` (K,), and where they are known: NaN and False in gaps and outside.
+    """GCRF states (K, 6) at TAI ``epochs`` (K,), and whether each is known.
 
-    Hermite interpolation through positions and velocities of up to eight neighbours, of one piece and without a gap
-    between them; at an epoch of the file the state of the file, where two segments meet that of the later one. Outside
-    of what a segment calls useable nothing is known.
+    Hermite polynomials interpolate the positions and velocities of up to eight neighbours, which belong to one piece
+    and have no gap between them. An epoch of the file gets the state of the file; where two segments meet, it gets that
+    of the later one. In gaps, outside the file and outside a segment's useable span the state is NaN and not known.
     """
     known = to_gcrf(ephemeris.frame, ephemeris.epochs, ephemeris.states)
     out = np.full((len(epochs), 6), np.nan)
     place = np.searchsorted(ephemeris.epochs, epochs)
-    # Where two segments meet, the later one's state: the chaser that leaves its course has burnt.
+    # Where two segments meet, the later one holds: the chaser fired there, and its velocity changed.
     place_in = np.maximum(np.searchsorted(ephemeris.epochs, epochs, side="right") - 1, 0)
     exact = ephemeris.epochs[place_in] == epochs
     out[exact] = known[place_in[exact]]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
@@ -26,8 +25,6 @@ _BOUNDARY_NUMBER = {
     Boundary.EXTRAPOLATE: numbers.EXTRAPOLATE,
     Boundary.AWAY_FROM_ZERO: numbers.AWAY,
 }
-
-Clamp = Callable[[float], Floats]
 
 
 class Stage:

@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ValidationError
 
 from safestart.errors import InvalidInput, SafestartError
+from safestart.model.doubles import BELOW, is_beyond
 from safestart.model.places import placed
 
 _LONGEST = 120
@@ -57,6 +58,8 @@ _REQUIRED = {
 
 def required(report: Any) -> str:
     """What one pydantic report required."""
+    if report["type"] == "finite_number" and is_beyond(report.get("input")):
+        return BELOW
     template = _REQUIRED.get(report["type"])
     if template is None:
         return str(report["msg"])

@@ -7,8 +7,9 @@ z_j of the rows and y_k of the balls, written h_k = 1 - |w_k|^2 >= 0, satisfy at
 
 Each round takes a Newton step for these equations with their last two relaxed to a falling target, first towards 0,
 then with the second-order terms of that trial (Mehrotra, SIAM J. Optim. 2, 1992). The blocks 2 y_k I + 4 y_k / h_k
-w_k w_k^T of the balls have closed-form square roots, which leaves a J x J system: J is some twenty, N d may be a
-thousand. All iterates are strictly feasible, and any z > 0 proves a bound, so the method stops when the two are close.
+w_k w_k^T of the balls have closed-form square roots, which leaves a J x J system: J is some twenty, over
+long horizons hundreds, N d may be a thousand. All iterates are strictly feasible, and any z > 0 proves a bound, so the
+method stops when the two are close.
 """
 
 from __future__ import annotations
@@ -18,8 +19,8 @@ from typing import Any
 
 import numpy as np
 
-from safestart.optim.dense_kernel import back, dot, factor
-from safestart.runtime.kernels import compiled
+from safestart.optim.dense_kernel import MANY, back, dot, factor, gram
+from safestart.runtime.kernels.compiled import compiled
 
 SOLVED, SINGULAR, SLOW, CLOSE = 0, 1, 2, 3
 """Status: within the tolerance; the system of a step was not positive definite; too many iterations; one of these two,
@@ -34,8 +35,10 @@ _LEAST_CENTERING = 1e-6
 # After a step shorter than this the next one goes for the middle first.
 _SHORT, _RECENTERING = 0.1, 0.5
 # A ball that does not bind has y near 0: its block is taken no flatter than this share of the mean row, or the system's
-# rounding would hide the slacks. It changes the path, not the optimum.
-_LEAST_CURVATURE = 1e-6
+# rounding would hide the slacks. It changes the path, not the optimum, but the path comes no closer than about the
+# floor itself: many balls, whose rows reach kilometres, and the last digits need a lower one.
+_LEAST_CURVATURE, _LESS_CURVATURE = 1e-6, 1e-8
+_MANY_BALLS, _FINE_M = 64, 1e-6
 
 
 @compiled(error_model="numpy")
@@ -124,6 +127,7 @@ def largest_margin(constant: Any, rows: Any, d: int, tolerance: float) -> Any:
     w, pull, q, step = np.zeros(size), np.zeros(size), np.zeros(size), np.zeros(size)
     trial, along = np.zeros(size), np.zeros(size)
     scaled, system = np.zeros((count, size)), np.zeros((count, count))
+    turned = np.zeros((size, count if count > MANY else 0))
     s, ds, dz = np.zeros(count), np.zeros(count), np.zeros(count)
     ds_trial, dz_trial = np.zeros(count), np.zeros(count)
     ones, z, best = np.zeros(count), np.zeros(count), np.zeros(count)
@@ -139,7 +143,8 @@ def largest_margin(constant: Any, rows: Any, d: int, tolerance: float) -> Any:
     margin -= _BELOW * reach
     for k in range(balls):
         h[k], y[k] = 1.0, 0.5 * reach / balls
-    least = _LEAST_CURVATURE * reach / balls
+    wide = balls <= _MANY_BALLS and tolerance > _FINE_M
+    least = (_LEAST_CURVATURE if wide else _LESS_CURVATURE) * reach / balls
     bound, gap, stuck = np.inf, np.inf, False
     for iteration in range(MOST_ITERATIONS):
         # Slacks anew from the point, so that no rounding gathers; then the bound, the margin and the mean product.
@@ -161,15 +166,19 @@ def largest_margin(constant: Any, rows: Any, d: int, tolerance: float) -> Any:
             return w, best, SOLVED, iteration
         for k in range(balls):
             product += y[k] * h[k]
-            wide = h[k] + 2.0 * (1.0 - h[k])
+            longer = h[k] + 2.0 * (1.0 - h[k])
             root[k] = 1.0 / math.sqrt(2.0 * max(y[k], least))
-            gamma[k] = 2.0 / (wide * (1.0 + math.sqrt(h[k] / wide)))
+            gamma[k] = 2.0 / (longer * (1.0 + math.sqrt(h[k] / longer)))
         product /= count + balls
         for j in range(count):
             row = scaled[j]
             _through_root(rows[j], w, gamma, root, ends[j] // d, d, row)
-            for i in range(j + 1):
-                system[j, i] = dot(row, scaled[i], min(ends[i], ends[j]))
+            if count <= MANY:
+                for i in range(j + 1):
+                    system[j, i] = dot(row, scaled[i], min(ends[i], ends[j]))
+        if count > MANY:
+            gram(scaled, ends, turned, system)
+        for j in range(count):
             system[j, j] += s[j] / z[j]
             ones[j] = 1.0
         if not (lowest > 0.0 and factor(system)):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from safestart.runtime.kernels import compiled
+from safestart.runtime.kernels.compiled import compiled
 
 FEASIBLE, INFEASIBLE, STALLED = 0, 1, 2
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
@@ -13,12 +14,15 @@ from safestart.errors import UnfitResult
 from safestart.model.validation import error_of, validation_error
 from safestart.model.wire_model import WireModel as WireModel
 from safestart.processes.output import ProcessOutput as ProcessOutput
-from safestart.processes.sharding import Sharding, load
+from safestart.processes.sharding import Sharding
 from safestart.processes.views import View
+from safestart.processes.views.fitting import Shown
 from safestart.records.artifact import Artifact as Artifact
+from safestart.runtime.named import load, misregistered
 from safestart.runtime.progress import Context
 
 Runner = Callable[[Any, Context], ProcessOutput]
+_ID = re.compile(r"[a-z][a-z0-9]*(-[a-z0-9]+)*")
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,8 +50,10 @@ class ProcessSpec:
     service's answer at submission. ``possible`` names a function (inputs) that raises ``InvalidInput`` for what no
     model can have: it is called before a job is queued, so that nobody waits for a refusal, and before a run.
     ``states`` names the input list, if any, that a service may limit further (``max_states``). ``kernels`` names the
-    parts of :mod:`safestart.runtime.warmup` that its jobs need: a worker that
-    has just started compiles those of waiting jobs first. ``tables`` declares tables over plain lists among the
+    parts of :mod:`safestart.runtime.kernels.warmup` that its jobs need: a worker that
+    has just started compiles those of waiting jobs first. ``at_once`` names a function (inputs, context) ->
+    ``ProcessOutput`` or None: the output where a dear question turns out to be cheap, as the service can tell without
+    the libraries that the process needs. ``tables`` declares tables over plain lists among the
     outputs; lists of objects are tables without a declaration. ``views`` say how a page shows the outputs, the most
     important first. ``courses`` names a function (inputs, outputs) -> ``FlightCourses`` or None where the outputs are a
     flight: the service then offers it as CCSDS messages and CZML. ``extensions`` are further members of its
@@ -65,6 +71,7 @@ class ProcessSpec:
     cost: Callable[[Any], float] = lambda _: 0.0
     instant: str | None = None
     possible: str | None = None
+    at_once: str | None = None
     courses: str | None = None
     version: str = "1.0.0"
     replay_tolerance: float = 1e-9
@@ -75,6 +82,15 @@ class ProcessSpec:
     views: tuple[View, ...] = ()
     extensions: dict[str, Any] = field(default_factory=dict)
     example: dict[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Raise ``Misregistered`` for a process that could not run, or that could not be shown."""
+        if not _ID.fullmatch(self.id):
+            raise misregistered("id of a process", "small letters, digits and single hyphens", self.id)
+        if not self.run and self.sharding is None:
+            raise misregistered(f"process {self.id}", "run or sharding", self.run)
+        engines = tuple(one["name"] for one in self.extensions.get("safestart:engines", ()))
+        Shown(self.inputs, self.outputs, self.tables, engines).require(self.id, self.views)
 
     def parse(self, inputs: Any) -> WireModel:
         """Validate raw inputs; raises ``InvalidInput`` naming the first field, what it requires, what came."""
@@ -100,15 +116,27 @@ class ProcessSpec:
     def runner(self) -> Runner:
         """Import and return the function that executes this process."""
         if self.sharding is None:
-            return load(self.run)
-        load(self.sharding.shard), load(self.sharding.merge)
+            runner: Runner = load(self.run, f"run of process {self.id}")
+            return runner
+        load(self.sharding.shard, f"shard of process {self.id}")
+        load(self.sharding.merge, f"merge of process {self.id}")
         return self.sharding.run
 
     def require_possible(self, inputs: WireModel) -> None:
         """Raise ``InvalidInput`` where ``possible`` does."""
         if self.possible is not None:
-            load(self.possible)(inputs)
+            load(self.possible, f"possible of process {self.id}")(inputs)
+
+    def output_at_once(self, inputs: WireModel, context: Context) -> dict[str, Any] | None:
+        """The output document of a question that turns out to be cheap, else None."""
+        if self.at_once is None:
+            return None
+        found: ProcessOutput | None = load(self.at_once, f"at_once of process {self.id}")(inputs, context)
+        return None if found is None else found.document
 
     def instant_answer(self, inputs: WireModel) -> dict[str, Any] | None:
         """The document that is known before any engine has run, or None."""
-        return None if self.instant is None else load(self.instant)(inputs)
+        if self.instant is None:
+            return None
+        found: dict[str, Any] = load(self.instant, f"instant of process {self.id}")(inputs)
+        return found

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Any
 
+from safestart.errors import UnfitResult
 from safestart.processes.base import Artifact, ProcessOutput, ProcessSpec, WireModel
 from safestart.processes.registry import process
 from safestart.processes.sharding import Part
@@ -49,6 +50,12 @@ def merge(
 
 
 def _finished(spec: ProcessSpec, parsed: WireModel, started: datetime, output: ProcessOutput) -> Execution:
+    if not isinstance(output, ProcessOutput):
+        raise UnfitResult(
+            f"process {spec.id}: required a ProcessOutput from its function, received {type(output).__name__}",
+            required="a ProcessOutput",
+            received=type(output).__name__,
+        )
     spec.check(output.document)
     dumped = parsed.model_dump(mode="json")
     document = {

@@ -14,7 +14,7 @@ from safestart.errors import invalid
 from safestart.model.places import placed
 from safestart.model.validation import refusal
 from safestart.processes.base import WireModel
-from safestart.runtime.plain_json import loads
+from safestart.runtime.plain_json import NameTwice, NoNumber, loads
 
 M = TypeVar("M", bound=WireModel)
 
@@ -136,5 +136,9 @@ def _holds_objects(annotation: Any) -> bool:
 def _from_json(name: str, text: str) -> Any:
     try:
         return loads(text)
+    except NameTwice as error:
+        raise invalid(name, f"every name once in an object, and {error.name} comes twice", text) from None
+    except NoNumber as error:
+        raise invalid(name, error.required, f"{error.text} in {text}") from None
     except (ValueError, RecursionError):
         raise invalid(name, "JSON", text) from None

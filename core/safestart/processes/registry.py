@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from functools import cache
-from importlib import import_module
 
 from safestart.errors import NotFound
 from safestart.processes.base import ProcessSpec
+from safestart.runtime.named import misregistered, module_of
 
 _SPECS = {
     "go-no-go": "safestart.processes.go_no_go.spec",
@@ -55,5 +55,10 @@ def process(process_id: str) -> ProcessSpec:
             required=f"one of {', '.join(PROCESS_IDS)}",
             received=process_id,
         )
-    spec: ProcessSpec = import_module(_SPECS[process_id]).SPEC
+    entry = f"process {process_id}"
+    spec = getattr(module_of(_SPECS[process_id], entry), "SPEC", None)
+    if not isinstance(spec, ProcessSpec):
+        raise misregistered(entry, f"a ProcessSpec named SPEC in {_SPECS[process_id]}", spec)
+    if spec.id != process_id:
+        raise misregistered(entry, f"its id in {_SPECS[process_id]}", spec.id)
     return spec

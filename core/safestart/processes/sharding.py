@@ -6,16 +6,16 @@ after a worker was killed. The runner may store each shard's result and skip it 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
-from importlib import import_module
 from typing import Any
 
 from safestart.campaign.part import Part as Part
 from safestart.model.wire_model import WireModel
 from safestart.processes.output import ProcessOutput
 from safestart.records.comparable import canonical
+from safestart.runtime.named import load
 from safestart.runtime.progress import Context
 
 MAX_SHARDS = 10_000
@@ -47,24 +47,24 @@ class Sharding:
 
     def parts(self, inputs: WireModel) -> list[dict[str, Any]]:
         """The parts of a job, 1 to ``MAX_SHARDS``."""
-        parts: list[dict[str, Any]] = load(self.split)(inputs)
+        parts: list[dict[str, Any]] = load(self.split, "split of a process")(inputs)
         if not 1 <= len(parts) <= MAX_SHARDS:
             raise ValueError(f"split: required 1 to {MAX_SHARDS} parts, received {len(parts)}")
         return parts
 
     def run_part(self, part: dict[str, Any], context: Context) -> Part:
         """Run one shard."""
-        done: Part = load(self.shard)(part, context)
+        done: Part = load(self.shard, "shard of a process")(part, context)
         return done
 
     def merged(self, inputs: WireModel, parts: Sequence[Part], context: Context) -> ProcessOutput:
         """The result of a job from all its parts."""
-        output: ProcessOutput = load(self.merge)(inputs, parts, context)
+        output: ProcessOutput = load(self.merge, "merge of a process")(inputs, parts, context)
         return output
 
     def so_far(self, inputs: WireModel, documents: Iterable[dict[str, Any]]) -> dict[str, Any]:
         """The partial result from the finished shards."""
-        document: dict[str, Any] = load(self.summary)(inputs, documents)
+        document: dict[str, Any] = load(self.summary, "summary of a process")(inputs, documents)
         return document
 
     def run(self, inputs: WireModel, context: Context) -> ProcessOutput:
@@ -84,10 +84,3 @@ def content(process_id: str, part: dict[str, Any], by: str) -> str:
     """SHA-256 of all that a shard's result depends on: process, part, and the source ``by`` which it is computed."""
     text = canonical([process_id, part, by])
     return sha256(text.encode()).hexdigest()
-
-
-def load(target: str) -> Callable[..., Any]:
-    """Import ``module:function``."""
-    module, name = target.split(":")
-    function: Callable[..., Any] = getattr(import_module(module), name)
-    return function

@@ -15,7 +15,7 @@ from safestart.closed_form.manoeuvre import Manoeuvre, manoeuvre_of
 from safestart.errors import invalid
 from safestart.model.scenario import Bools, Floats, Rest, Scenario
 from safestart.public.shown import COLOURS, Shown
-from safestart.public.starts import points_of
+from safestart.public.starts import points_of, rest_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -86,7 +86,7 @@ def certify(scenario: Scenario, points: ArrayLike, rest: Rest | str = Rest.LVLH)
     ``rest`` is the frame in which they are at rest, ``lvlh`` or ``body``. Raises ``InvalidInput`` for points of another
     shape, not finite or beyond 10 km.
     """
-    given, rest = points_of(points), Rest(rest)
+    given, rest = points_of(points), rest_of(rest)
     found = certify_starts(scenario, given, rest)
     # A start on a face, within rounding, does not count as outside.
     outside = (found.binding < len(found.names) - 1) & (found.margin < -2.0 * ROUNDING)

@@ -19,7 +19,7 @@ from safestart.public.following import followed
 from safestart.public.proofs import verify
 from safestart.public.regions import Region
 from safestart.public.results import Result
-from safestart.public.starts import point_of, points_of, seconds, state_of, wire_of
+from safestart.public.starts import point_of, points_of, rest_of, seconds, state_of, wire_of
 from safestart.public.wire import TIMEOUT_S, Wire, artifact_of
 from safestart.records.labels import labels_of
 
@@ -67,7 +67,7 @@ class Client:
 
     def certify(self, scenario: Scenario, points: ArrayLike, rest: Rest | str = Rest.LVLH) -> Certificates:
         """As `safestart.certify`, for planar or for spatial points."""
-        given, rest = points_of(points), Rest(rest)
+        given, rest = points_of(points), rest_of(rest)
         flat = given.reshape(-1, given.shape[-1])
         verdicts: list[str] = []
         margins: list[float] = []
@@ -98,7 +98,7 @@ class Client:
         after_arrival: AfterArrival = "stay",
     ) -> Decision:
         """As `safestart.decide`."""
-        point, rest = point_of(start), Rest(rest)
+        point, rest = point_of(start), rest_of(rest)
         asked_of(question, horizon_s, within_s)
         asked = {
             **wire_of(scenario),
@@ -139,7 +139,7 @@ class Client:
         asked = {
             **wire_of(scenario),
             "start": state_of(point_of(start)),
-            "rest": Rest(rest).value,
+            "rest": rest_of(rest).value,
             "question": question,
             "horizon_s": horizon_s,
             "within_s": within_s,

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
-from typing import TYPE_CHECKING, Literal, Protocol
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from safestart.control.controller import Command, Controller
 from safestart.errors import invalid
 from safestart.exact.question import MAX_STEPS, Question
-from safestart.model.scenario import Floats, Scenario
+from safestart.model.scenario import Floats, Scenario, number
 from safestart.simulation.starts import steps_of
 
 if TYPE_CHECKING:
@@ -19,36 +18,8 @@ if TYPE_CHECKING:
 
 Name = Literal["filter", "sequence"]
 NODES = 6
-
-
-class Steering(Protocol):
-    """A user's controller: returns LVLH thrust (3,), m/s², or our command, for interval ``k`` and state (6,)."""
-
-    def command(self, k: int, state: Floats, /) -> Command | ArrayLike:
-        """Thrust to hold over the interval."""
-        ...
-
-
-class Steered:
-    """A user's controller in our loop; thrust beyond the chaser's limit is cut to the limit."""
-
-    def __init__(self, inner: Steering, a_max: float) -> None:
-        self._inner, self._a_max = inner, a_max
-
-    def begin(self, state: Floats) -> None:
-        """Pass the start to a controller with a ``begin`` method."""
-        begin = getattr(self._inner, "begin", None)
-        if begin is not None:
-            begin(state)
-
-    def command(self, k: int, state: Floats) -> Command:
-        """See :class:`safestart.control.controller.Controller`."""
-        found = self._inner.command(k, state)
-        given = found if isinstance(found, Command) else Command(np.array(found, dtype=np.float64))
-        if given.thrust.shape != (3,) or not np.isfinite(given.thrust).all():
-            raise invalid("thrust", "shape (3,), finite, m/s²", given.thrust.tolist())
-        size = float(np.sqrt(given.thrust @ given.thrust))
-        return replace(given, thrust=given.thrust * (self._a_max / size)) if size > self._a_max else given
+LONGEST = 1e6
+"""Longest flight, s."""
 
 
 class Pilot:
@@ -91,6 +62,8 @@ def controller(
     model predictive control over the whole thrust sequence, in the plane; if the exact answer is GO it keeps the
     corridor at all times. Raises ``InvalidInput`` for another name or a duration out of range.
     """
+    duration_s = number("duration_s", duration_s, 0.0, LONGEST, open_low=True)
+    dt_s = number("dt_s", dt_s, 0.0, LONGEST, open_low=True)
     steps = steps_of(duration_s, dt_s)
     if name == "sequence":
         if spatial:

@@ -22,7 +22,7 @@ from safestart.processes.go_no_go.question_fields import AfterArrival
 from safestart.processes.wire import DT_S
 from safestart.public.controllers import Pilot
 from safestart.public.shown import COLOURS, Shown
-from safestart.public.starts import point_of, seconds
+from safestart.public.starts import point_of, rest_of, seconds
 from safestart.simulation.starts import steps_of
 
 if TYPE_CHECKING:
@@ -144,7 +144,7 @@ def decide(
     ``any``: nothing is asked. Thrust is held over intervals of 2 s. Raises ``InvalidInput`` for other inputs; a failure
     of the solver is UNDECIDED.
     """
-    point, rest = point_of(start), Rest(rest)
+    point, rest = point_of(start), rest_of(rest)
     goal, span = asked_of(question, horizon_s, within_s)
     asked = Question(scenario, DT_S, round(span / DT_S), len(point), goal)
     state = state_at_rest(scenario, point, rest)

@@ -10,17 +10,19 @@ import numpy as np
 
 from safestart.control.controller import Controller
 from safestart.errors import invalid
-from safestart.model.scenario import Floats, Rest, Scenario
+from safestart.model.scenario import Floats, Rest, Scenario, number
 from safestart.processes.wire import DT_S
 from safestart.public.decisions import Asked, asked_of, state_at_rest
 from safestart.public.shown import COLOURS, Shown
-from safestart.public.starts import point_of
+from safestart.public.starts import point_of, rest_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import ArrayLike
 
-    from safestart.public.controllers import Pilot, Steering
+    from safestart.attitude.attitude import Attitude
+    from safestart.control.limited import Steering
+    from safestart.public.controllers import Pilot
     from safestart.simulation.record import Record
 
 
@@ -110,24 +112,30 @@ def fly(
     horizon_s: float = 60.0,
     within_s: float = 200.0,
     motion: str = "cwh",
+    attitude: str = "spin",
     dt_s: float | None = None,
 ) -> Flight:
     """Fly from rest at ``start`` (2,) or (3,), body frame, metres.
 
     Without a ``controller``: the thrust history of the largest margin, as in `decide`. With one, ours by name or
     anything with ``command(k, state)``, which returns thrust (3,), LVLH, m/s²: a closed loop of ``horizon_s`` seconds
-    with a command every ``dt_s`` (2 s, or the pilot's own), to its first violation, watched at all times; ``motion`` is
-    ``cwh`` or ``two_body_j2``. Raises ``InvalidInput`` for other inputs.
+    with a command every ``dt_s`` (2 s, or the pilot's own), to its first violation, watched at all times. ``motion`` is
+    a name in ``safestart.dynamics.registry`` (such as ``two_body_j2``), ``attitude`` one of ``ATTITUDES`` in
+    ``safestart.simulation.plant``; with another attitude than ``spin`` the start has three coordinates and the
+    controller is not one of ours. Raises ``InvalidInput`` for other inputs.
     """
     from safestart.processes.flight.run import best_flight
 
-    point, rest = point_of(start), Rest(rest)
+    point, rest = point_of(start), rest_of(rest)
     if controller is None:
+        for name, value, only in (("motion", motion, "cwh"), ("attitude", attitude, "spin")):
+            if value != only:
+                raise invalid(name, f"{only}, without a controller", value)
         asked_of(question, horizon_s, within_s)
         return Flight.of(scenario, best_flight(scenario, point.tolist(), rest, question, horizon_s, within_s))
     if question != "stay":
         raise invalid("question", "stay, with a controller", question)
-    return _closed_loop(scenario, point, controller, rest, horizon_s, motion, dt_s)
+    return _closed_loop(scenario, point, controller, rest, horizon_s, motion, attitude, dt_s)
 
 
 def _closed_loop(
@@ -137,46 +145,60 @@ def _closed_loop(
     rest: Rest,
     horizon_s: float,
     motion: str,
+    attitude: str,
     dt_s: float | None,
 ) -> Flight:
+    from safestart.attitude.attitude import to_lvlh
     from safestart.constraints.corridor import corridor_of
-    from safestart.public.controllers import Pilot, Steered
+    from safestart.control.limited import Limited
+    from safestart.public.controllers import LONGEST, Pilot
     from safestart.public.controllers import controller as named
     from safestart.simulation.loop import fly as fly_loop
     from safestart.simulation.plant import plant_of
     from safestart.simulation.starts import steps_of
 
     d = len(point)
-    dt = float(getattr(controller, "dt_s", DT_S) if dt_s is None else dt_s)
-    steps = steps_of(horizon_s, dt)
+    plant = plant_of(scenario, motion, attitude)
+    if not isinstance(controller, str) and not callable(getattr(controller, "command", None)):
+        raise invalid("controller", "filter, sequence or an object with command(k, state)", controller)
+    if attitude != "spin" and isinstance(controller, str | Pilot):
+        raise invalid("attitude", "spin, which our controllers count on", attitude)
+    if attitude != "spin" and d == 2:
+        raise invalid("start", "shape (3,), as the attitude may leave the plane", point.shape)
+    dt = number(
+        "dt_s", getattr(controller, "dt_s", DT_S) if dt_s is None else dt_s, 0.0, LONGEST, open_low=True
+    )
+    steps = steps_of(number("horizon_s", horizon_s, 0.0, LONGEST, open_low=True), dt)
     pilot: Controller
     if isinstance(controller, str):
         pilot = named(controller, scenario, duration_s=horizon_s, dt_s=dt, spatial=d == 3)
     elif isinstance(controller, Pilot):
         pilot = controller
     else:
-        pilot = Steered(controller, scenario.chaser.max_acceleration)
+        pilot = Limited(controller, scenario.chaser.max_acceleration)
     made_for = getattr(pilot, "steps", steps), getattr(pilot, "dt_s", dt)
     if made_for[0] < steps or made_for[1] != dt:
         asked = f"one for {steps} intervals of {dt:g} s"
         raise invalid("controller", asked, f"{made_for[0]} of {made_for[1]:g} s")
-    flat, start = state_at_rest(scenario, point, rest), np.zeros(6)
-    start[:d], start[3 : 3 + d] = flat[:d], flat[d:]
+    start = np.zeros(6)
+    if attitude == "spin":
+        flat = state_at_rest(scenario, point, rest)
+        start[:d], start[3 : 3 + d] = flat[:d], flat[d:]
+    else:
+        start[:3] = point
+        start = to_lvlh(plant.attitude, np.zeros(1), start[None])[0]
+        start[3:] *= rest is Rest.BODY
     corridor = corridor_of(scenario.corridor, d)
-    plant = plant_of(scenario, motion)
-    return _measured(
-        scenario,
-        d,
-        fly_loop(plant, [corridor], pilot, start, steps, dt),
-        corridor.names,
-    )
+    record = fly_loop(plant, [corridor], pilot, start, steps, dt)
+    return _measured(scenario, d, plant.attitude, record, corridor.names)
 
 
-def _measured(scenario: Scenario, d: int, record: Record, faces: tuple[str, ...]) -> Flight:
+def _measured(
+    scenario: Scenario, d: int, attitude: Attitude, record: Record, faces: tuple[str, ...]
+) -> Flight:
     from safestart.constraints.corridor import corridor_of
-    from safestart.simulation.plant import plant_of
 
-    path, attitude = record.paths[0], plant_of(scenario).attitude
+    path = record.paths[0]
     body = path.seen_from(attitude)[:, :d]
     corridor = corridor_of(scenario.corridor, d)
     distance: Floats = corridor.slack(body) / corridor.lengths

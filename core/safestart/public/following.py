@@ -8,7 +8,7 @@ from typing import Any
 
 from safestart.errors import JobFailed, Unavailable
 from safestart.public.wire import Wire
-from safestart.runtime.progress import Context
+from safestart.runtime.reporting import Reporting, reporting_on
 
 _WAIT_S = 10
 _LEAST_S = 0.2
@@ -23,7 +23,7 @@ def followed(wire: Wire, place: str, *, progress: bool, limit_s: float | None) -
     status = wire.get(place)
     with _shown(status["processID"], progress=progress) as context:
         while status["status"] not in ("successful", "failed", "dismissed"):
-            context.step(status.get("progress") or 0, 100, _said(status))
+            tell(context, status)
             left = float("inf") if limit_s is None else limit_s - (time.monotonic() - start)
             if left <= 0.0:
                 raise Unavailable(
@@ -38,15 +38,21 @@ def followed(wire: Wire, place: str, *, progress: bool, limit_s: float | None) -
     return str(status["processID"])
 
 
+def tell(context: Reporting, status: dict[str, Any]) -> None:
+    """Report a job's status document: its progress, or why it waits."""
+    if status["status"] == "accepted":
+        context.waits(_said(status))
+    else:
+        context.step(status.get("progress") or 0, 100, _said(status))
+
+
 def _said(status: dict[str, Any]) -> str:
     return str(status.get("reason") or status.get("message") or status["status"])
 
 
-def _shown(title: str, *, progress: bool) -> AbstractContextManager[Context]:
+def _shown(title: str, *, progress: bool) -> AbstractContextManager[Reporting]:
     if not progress:
-        return nullcontext(Context())
+        return nullcontext(Reporting())
     from rich.console import Console
-
-    from safestart.runtime.reporting import reporting_on
 
     return reporting_on(Console(stderr=True, highlight=False), title)

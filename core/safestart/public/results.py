@@ -94,6 +94,8 @@ def run(process_id: str, inputs: Mapping[str, Any] | None = None, *, progress: b
     from safestart.processes.execute import execute
     from safestart.runtime.progress import Context
 
+    if not isinstance(inputs, Mapping | None):
+        raise invalid("inputs", "an object of names and values", inputs)
     given = dict(inputs or {})
     process(process_id).parse(given)
     if not progress:

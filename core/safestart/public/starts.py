@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from safestart.errors import invalid
-from safestart.model.scenario import MAX_RANGE, Floats, Scenario
+from safestart.model.scenario import MAX_RANGE, Floats, Rest, Scenario
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -33,6 +33,14 @@ def point_of(start: ArrayLike) -> Floats:
     if found.ndim != 1:
         raise invalid("start", "shape (2,) or (3,): x, y and perhaps z in metres", found.shape)
     return found
+
+
+def rest_of(rest: Rest | str) -> Rest:
+    """The frame in which a start is at rest; raises ``InvalidInput`` for anything else."""
+    try:
+        return Rest(rest)
+    except ValueError:
+        raise invalid("rest", " or ".join(Rest), rest) from None
 
 
 def seconds(name: str, value: float) -> float:

@@ -173,7 +173,8 @@ def _differences(manifest: Any, files: Mapping[str, bytes]) -> list[str]:
         there, size = sha256(files[name]).hexdigest(), len(files[name])
         if (there, size) != listed[name]:
             wrong.append(
-                f"{name} was altered: SHA-256 {there}, {size} bytes; the manifest says {listed[name]}"
+                f"{name} was altered: SHA-256 {there}, {size} bytes; the manifest says "
+                f"SHA-256 {listed[name][0]}, {listed[name][1]} bytes"
             )
     return wrong
 

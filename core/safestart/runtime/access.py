@@ -7,14 +7,12 @@ bits, and the slow hash would delay every request.
 
 from __future__ import annotations
 
-import re
 import secrets
 from dataclasses import dataclass
 from enum import StrEnum
 from hashlib import sha256
 
 PREFIX = "sst"
-KEY_PATTERN = re.compile(r"sst_([0-9a-f]{12})_[A-Za-z0-9_-]{43}")
 
 
 class Role(StrEnum):

@@ -9,9 +9,11 @@ import json
 import logging
 from datetime import UTC, datetime
 from typing import Any, Literal
+from unicodedata import category
 
 LogFormat = Literal["text", "json"]
 _SUBJECTS = ("job", "request")
+_LINES = frozenset({"Zl", "Zp"})
 
 
 def about(**subjects: str) -> dict[str, Any]:
@@ -41,7 +43,7 @@ class TextLines(logging.Formatter):
         when = datetime.fromtimestamp(record.created, UTC).isoformat(sep=" ", timespec="milliseconds")
         parts = [when, record.levelname, record.name]
         parts += [f"{name}={value}" for name, value in _subjects(record).items()]
-        parts.append(_line(record.getMessage()))
+        parts.append(legible(record.getMessage()))
         trace = _trace(record)
         return " ".join(parts) + (f"\n{trace}" if trace else "")
 
@@ -66,11 +68,20 @@ def _subjects(record: logging.LogRecord) -> dict[str, str]:
     return {name: str(getattr(record, name)) for name in _SUBJECTS if getattr(record, name, None) is not None}
 
 
-def _line(text: str) -> str:
-    """Escape foreign text (a path, a name): it must not start a new line or send control codes to a terminal."""
+def legible(text: str, keep: str = "") -> str:
+    r"""The text with ``\x1b`` for an escape, and so on; ``keep`` names those that stay.
+
+    It can start no new line, send no control codes to a terminal, and reverse nothing that follows (bidirectional
+    marks); halves of a surrogate pair would end the write.
+    """
     if text.isprintable():
         return text
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+    return "".join(c if c in keep or not _hidden(c) else c.encode("unicode_escape").decode() for c in text)
+
+
+def _hidden(c: str) -> bool:
+    kind = category(c)
+    return kind[0] == "C" or kind in _LINES
 
 
 def _trace(record: logging.LogRecord) -> str:

@@ -13,6 +13,7 @@ import sys
 from collections.abc import Callable, MutableMapping
 
 from safestart.errors import InvalidInput, SafestartError
+from safestart.runtime.logs import legible
 
 _READ_BY_LIBRARIES = ("MPL", "MATPLOTLIB", "NUMBA_", "JAX_", "XLA_")
 # Where caches are kept. A place that cannot be used is bypassed.
@@ -51,7 +52,7 @@ def exit_code(run: Callable[[], object]) -> int:
         refusal = place_fault(error) if isinstance(error, OSError) else error
         if refusal is None:
             raise
-        sys.stderr.write(f"safestart: {refusal.detail}\n")
+        sys.stderr.write(f"safestart: {legible(refusal.detail)}\n")
         return 2
     except SystemExit as ended:
         return ended.code if isinstance(ended.code, int) else int(ended.code is not None)

@@ -12,6 +12,8 @@ from collections.abc import Container
 from itertools import islice
 from typing import Any
 
+from safestart.model.doubles import BELOW, is_beyond
+
 
 class NameTwice(ValueError):
     """An object contains ``name`` twice."""
@@ -22,8 +24,17 @@ class NameTwice(ValueError):
 
 
 def loads(text: str | bytes) -> Any:
-    """Parse a document; raises ``NameTwice``, or ``ValueError`` and ``RecursionError`` as :func:`json.loads`."""
+    """Parse a document; raises ``NameTwice`` and ``NoNumber``, or the errors of :func:`json.loads`."""
     return json.loads(text, object_pairs_hook=_unique, parse_constant=_finite, parse_float=_finite)
+
+
+class NoNumber(ValueError):
+    """A document contains what is no number of JSON, or one beyond those of a double."""
+
+    def __init__(self, text: str) -> None:
+        self.required = BELOW if is_beyond(text) else "finite numbers (JSON has no NaN and no Infinity)"
+        super().__init__(f"required {self.required}, received {text[:40]}")
+        self.text = text[:40]
 
 
 class TooManyNames(ValueError):
@@ -57,7 +68,7 @@ def require_unique_names(
 def _finite(text: str) -> float:
     value = float(text)
     if not math.isfinite(value):
-        raise ValueError(f"required finite numbers, received {text[:40]}")
+        raise NoNumber(text)
     return value
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ipaddress
 import os
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from difflib import get_close_matches
 from errno import ENOENT
 from functools import cache
@@ -24,6 +24,7 @@ from pydantic_settings import (
 from safestart.errors import InvalidInput, invalid
 from safestart.model.validation import refusal
 from safestart.runtime.secret_file import with_password
+from safestart.runtime.variables import PREFIX, require_known
 
 Network = ipaddress.IPv4Network | ipaddress.IPv6Network
 
@@ -32,10 +33,6 @@ PATH_RULE = (
     f"empty, or /name/name of letters, digits, '-', '_', '.' and '~', at most {LONGEST_PATH} characters"
 )
 _PATH = re.compile(r"(?:/[A-Za-z0-9._~-]+)+")
-
-_PREFIX = "SAFESTART_"
-_OTHERS = ("SAFESTART_TEST_POSTGRESQL", "SAFESTART_CHROMIUM", "SAFESTART_SCREENSHOTS")
-"""Variables of the test suite; the processes it starts inherit them."""
 
 
 def path_below(text: str) -> str:
@@ -64,7 +61,7 @@ def networks(text: str) -> tuple[Network, ...]:
 class Settings(BaseSettings):
     """All settings, with their defaults; each is read from ``SAFESTART_<NAME>`` or the file."""
 
-    model_config = SettingsConfigDict(env_prefix=_PREFIX, extra="forbid", frozen=True)
+    model_config = SettingsConfigDict(env_prefix=PREFIX, extra="forbid", frozen=True)
 
     database_url: str = Field("", description="SQLAlchemy URL; empty: one SQLite file in the data directory.")
     database_password_file: str = Field(
@@ -81,8 +78,8 @@ class Settings(BaseSettings):
     )
     warm_up: Literal["all", "needed"] = Field(
         "all",
-        description="What a worker compiles or loads after its start: all kernels, so that no later job waits for "
-        "them, or those that the next job needs, which spares a small machine some 20 s of processor time.",
+        description="What a worker compiles or loads after its start; all: all kernels, so that no later job waits for "
+        "them; needed: those that the next job needs, which spares a small machine some 20 s of processor time.",
     )
     lease_s: float = Field(20.0, ge=1, le=600, description="How long a claim holds without renewal, s.")
     poll_s: float = Field(0.2, ge=0.02, le=60, description="How often the worker looks for work, s.")
@@ -218,23 +215,11 @@ def _place(of_user: Callable[[str], Path]) -> Path | None:
 @cache
 def settings() -> Settings:
     """The process-wide settings; raises ``InvalidInput`` and names the wrong setting."""
-    _require_known(os.environ)
+    require_known(os.environ)
     try:
         return Settings()  # type: ignore[call-arg, unused-ignore]
     except ValidationError as error:
         raise refusal([_fit(report) for report in error.errors(include_url=False)], "settings.") from None
-
-
-def _require_known(variables: Iterable[str]) -> None:
-    """Raise ``InvalidInput`` for a ``SAFESTART_`` variable that names no setting: a misspelt one would be ignored."""
-    known = [_PREFIX + name.upper() for name in (*Settings.model_fields, "config")]
-    for name in sorted(variables):
-        if name.upper().startswith(_PREFIX) and name.upper() not in known and name not in _OTHERS:
-            near = get_close_matches(name.upper(), known, n=1)
-            like = f", such as {near[0]}" if near else ""
-            required = f"the name of a setting{like} (docs/settings.md)"
-            # Its value may be a password.
-            raise InvalidInput(f"{name}: required {required}", field=name, required=required, received=name)
 
 
 def _fit(report: Any) -> dict[str, Any]:

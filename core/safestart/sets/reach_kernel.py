@@ -17,7 +17,7 @@ import numpy as np
 
 from safestart.attitude.turn_kernel import into_body
 from safestart.model.scenario import Floats
-from safestart.runtime.kernels import compiled
+from safestart.runtime.kernels.compiled import compiled
 
 FINE = 1e-8
 """Accuracy (m) sought for margins near zero, so that the sign is right."""

@@ -13,7 +13,7 @@ from safestart.control.forecast import Plan
 from safestart.control.regimes import REGIMES
 from safestart.errors import invalid
 from safestart.model.scenario import Floats
-from safestart.runtime.kernels import compiled
+from safestart.runtime.kernels.compiled import compiled
 from safestart.simulation import noise as _noise
 from safestart.simulation import passage as _passage
 from safestart.simulation.noise import CONTINUOUS, DRAWS, NO_DRAWS, Truth

@@ -10,7 +10,7 @@ import numpy as np
 from safestart.attitude.turn_kernel import out_of_body
 from safestart.dynamics.burn import scattered
 from safestart.model.scenario import Floats, number
-from safestart.runtime.kernels import compiled
+from safestart.runtime.kernels.compiled import compiled
 
 AT_NODES, AT_SUBSTEPS, CONTINUOUS = 0, 1, 2
 CHECKS = {"nodes": AT_NODES, "substeps": AT_SUBSTEPS, "continuous": CONTINUOUS}

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from safestart.constraints.dip import dip
-from safestart.runtime.kernels import compiled
+from safestart.runtime.kernels.compiled import compiled
 from safestart.simulation.noise import AT_NODES, CONTINUOUS
 
 _AT_NODES, _CONTINUOUS = AT_NODES, CONTINUOUS

@@ -7,17 +7,10 @@ from dataclasses import dataclass
 
 from safestart.attitude.attitude import Attitude
 from safestart.attitude.spin import spin_of
-from safestart.dynamics.cwh import Cwh
 from safestart.dynamics.motion import Motion
-from safestart.dynamics.two_body import Orbit, TwoBody
+from safestart.dynamics.registry import CWH, MOTIONS
 from safestart.errors import invalid
 from safestart.model.scenario import Scenario, Target
-
-MOTIONS: dict[str, Callable[[Target], Motion]] = {
-    "cwh": lambda target: Cwh(target.mean_motion),
-    "two_body_j2": lambda target: TwoBody(Orbit.of(target.mean_motion)),
-}
-"""The motions of a scenario, by name."""
 
 ATTITUDES: dict[str, Callable[[Target], Attitude]] = {"spin": spin_of}
 """The attitudes of a scenario's target, by name."""
@@ -31,10 +24,10 @@ class Plant:
     attitude: Attitude
 
 
-def plant_of(scenario: Scenario, motion: str = "cwh", attitude: str = "spin") -> Plant:
+def plant_of(scenario: Scenario, motion: str = CWH, attitude: str = "spin") -> Plant:
     """The plant of a scenario; raises ``InvalidInput`` for an unknown motion or attitude."""
-    if motion not in MOTIONS:
+    if not isinstance(motion, str) or motion not in MOTIONS:
         raise invalid("motion", f"one of {', '.join(MOTIONS)}", motion)
-    if attitude not in ATTITUDES:
+    if not isinstance(attitude, str) or attitude not in ATTITUDES:
         raise invalid("attitude", f"one of {', '.join(ATTITUDES)}", attitude)
-    return Plant(MOTIONS[motion](scenario.target), ATTITUDES[attitude](scenario.target))
+    return Plant(MOTIONS[motion].of(scenario.target), ATTITUDES[attitude](scenario.target))

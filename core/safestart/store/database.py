@@ -17,6 +17,7 @@ from sqlalchemy.orm import Session
 from safestart.errors import Away, Unavailable
 from safestart.store import schema
 from safestart.store.dialect import BUSY_TIMEOUT_S, prepare
+from safestart.store.same_file import SameFile
 from safestart.store.url import REQUIRED, parse, refused, shown, without_secrets
 
 # Keepalives detect a server that vanished; without them libpq waits for ever.
@@ -47,6 +48,7 @@ class Database:
         self.shown = shown(self._url)
         self._engine = _engine(self._url)
         prepare(self._engine)
+        self._watched = None if self.file is None else SameFile(self._engine, self.file, self.shown)
         # Same pool; with this option SQLite takes the write lock at the start of the transaction.
         self._writer = self._engine.execution_options(safestart_write=True)
         self._writing = Lock()
@@ -86,9 +88,16 @@ class Database:
                 yield connection
 
     def migrate(self) -> None:
-        """Migrate the schema to this version's; safe when several processes do it at once."""
+        """Migrate the schema to this version's; safe when several processes do it at once.
+
+        Nothing else makes the file of a SQLite database.
+        """
+        if self._watched is not None:
+            self._watched.make()
         with self._translated():
             schema.migrate(self._writer)
+            if self._watched is not None:
+                self._watched.learn(self._engine)
 
     def close(self) -> None:
         """Close every pooled connection."""

@@ -6,6 +6,7 @@ if their own clocks differ.
 
 from __future__ import annotations
 
+import secrets
 import select
 import sqlite3
 import time
@@ -206,6 +207,12 @@ def lock_schema(connection: Connection) -> None:
         connection.execute(text("SET LOCAL statement_timeout = 0"))
         cast(Any, connection.connection.driver_connection).patience_s = MIGRATION_S
     _wait_for(connection, _SCHEMA_LOCK)
+
+
+def name_database(connection: Connection) -> None:
+    """Give a new SQLite database a number of its own, which its copies keep: see ``same_file``."""
+    if connection.dialect.name == "sqlite":
+        connection.exec_driver_sql(f"PRAGMA user_version = {1 + secrets.randbelow(2**31 - 1)}")
 
 
 def lock_queue(connection: Connection) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 from sqlalchemy import Connection, Engine, inspect, text
 
 from safestart.errors import Unavailable
-from safestart.store.dialect import lock_schema
+from safestart.store.dialect import lock_schema, name_database
 
 HEAD = "0007"
 _MIGRATIONS = Path(__file__).parent / "migrations"
@@ -20,7 +20,10 @@ def migrate(writer: Engine) -> None:
     """
     with writer.begin() as connection:
         lock_schema(connection)
-        if version(connection) != HEAD:
+        found = version(connection)
+        if found is None:
+            name_database(connection)
+        if found != HEAD:
             upgrade(connection)
 
 

@@ -37,6 +37,8 @@ def parse(url: str) -> URL:
     parsed = parsed.set(drivername=_DRIVERS[parsed.drivername])
     if parsed.get_backend_name() == "sqlite" and parsed.database in (None, "", ":memory:"):
         raise refused("a SQLite database in memory, which service and worker could not share")
+    if parsed.get_backend_name() == "sqlite" and "uri" in parsed.query:
+        raise refused("a SQLite database by a URI")  # its file would be watched and backed up by a wrong path
     return parsed
 
 

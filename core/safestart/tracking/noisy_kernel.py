@@ -9,7 +9,7 @@ import numpy as np
 from safestart.attitude.turn_kernel import into_body
 from safestart.control.tracking_mpc.assemble import assemble
 from safestart.control.tracking_mpc.step_kernel import INFEASIBLE, SOLVED, soften, solve_from
-from safestart.runtime.kernels import compiled
+from safestart.runtime.kernels.compiled import compiled
 
 HARD, SOFT, TUBE = 0, 1, 2
 _FIXED = 1e-6

@@ -19,10 +19,23 @@ SPEAKS_FOR = frozenset(
         b"true-client-ip",
         b"fastly-client-ip",
         b"fly-client-ip",
+        b"forwarded-for",
+        b"x-forwarded-client-ip",
+        b"client-ip",
+        b"x-remote-ip",
+        b"x-remote-addr",
+        b"x-originating-ip",
+        b"x-azure-clientip",
+        b"x-envoy-external-address",
+        b"x-appengine-user-ip",
+        b"cf-connecting-ipv6",
+        b"cf-pseudo-ipv4",
     }
 )
 """Header fields in which proxies name their clients, as a list of addresses."""
-FORWARDED = b"forwarded"
+FORWARDED = frozenset({b"forwarded", b"x-forwarded"})
+PASSED_ON = frozenset({b"via", b"cdn-loop"})
+"""Header fields that say that a proxy passed the request on, for nobody knows whom."""
 _FOR = re.compile(r'\s*for\s*=\s*(?:"([^"\\]*)"|([^\s",;=]*))\s*', re.IGNORECASE)
 _ELEMENTS = re.compile(r'((?:[^,;"]|"[^"]*")*)([,;]|$)')
 _HOST_PORT = re.compile(r"\[([^\]]*)\](?::\d{1,5})?|([^:]*):\d{1,5}")
@@ -55,7 +68,9 @@ def is_local(address: str) -> bool:
 def _only_local(name: bytes, value: bytes) -> bool:
     if name in SPEAKS_FOR:
         return all(is_local(without_port(part)) for part in value.decode("latin-1").split(","))
-    if name == FORWARDED:
+    if name in PASSED_ON:
+        return False
+    if name in FORWARDED:
         return all(is_local(without_port(node)) for node in _nodes(value.decode("latin-1")))
     return True
 

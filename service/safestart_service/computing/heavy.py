@@ -58,7 +58,8 @@ class Helpers:
         """``function(store, context, *arguments)`` in a helper process.
 
         Raises ``RateLimited`` where too much is in line, ``AnswerTimeout`` for an answer that takes too long or would,
-        ``ClientDisconnect`` when the client has left, and what the function raises.
+        ``Unavailable`` when no process is ready after a minute, ``ClientDisconnect`` when the client has left, and what
+        the function raises.
         """
         limit_s = self._settings.answer_timeout_s
         if cost_s > limit_s:
@@ -66,11 +67,18 @@ class Helpers:
         with self.callers.place(request):
             left = asyncio.ensure_future(leaves(request))
             try:
-                # On a busy machine a process takes longer to start than an answer may take. An answer that paid for
-                # that would be ended with its process, and the next one would begin anew.
-                await asyncio.wait({self.warm(), left}, timeout=START_S, return_when=asyncio.FIRST_COMPLETED)
+                # A process starts for seconds, and for minutes where no kernels are kept. An answer that paid for that
+                # with its own time would be ended with its process, and the next one would begin anew.
+                warm = self.warm()
+                await asyncio.wait({warm, left}, timeout=START_S, return_when=asyncio.FIRST_COMPLETED)
                 if left.done():
                     raise ClientDisconnect
+                if not warm.done():
+                    raise Unavailable(
+                        "the process that computes such answers still starts: it loads and compiles its kernels; "
+                        "required patience, or a job",
+                        required="the same request later, or a job",
+                    )
                 return await self._in_time(request, left, cost_s, function, arguments)
             finally:
                 left.cancel()

@@ -17,7 +17,7 @@ from typing import Any
 from safestart.errors import SafestartError, Unavailable
 from safestart.processes.go_no_go.method_registry import METHODS
 from safestart.processes.registry import PROCESS_IDS, process
-from safestart.processes.sharding import load
+from safestart.runtime.named import load
 from safestart.runtime.progress import Context
 from safestart.runtime.settings import Settings
 from safestart_service.computing.store import Store

@@ -83,7 +83,11 @@ def at_once(store: Store, context: Context, asked: Asked) -> Made | float:
     if asked.queued:
         return _submitted(store, spec, request, asked)
     cost = spec.cost(request.inputs)
-    return cost if cost > LIGHT_S else _answer(spec, request, context, asked)
+    if cost <= LIGHT_S:
+        return _answer(spec, request, context, asked)
+    # A helper process loads for seconds, and compiles for a minute where no kernels are kept.
+    document = spec.output_at_once(request.inputs, context)
+    return cost if document is None else _made(document, request, asked)
 
 
 def in_full(store: Store, context: Context, asked: Asked, place: Path | None = None) -> Made:
@@ -123,7 +127,10 @@ def _parsed(store: Store, asked: Asked) -> ExecuteRequest:
 
 
 def _answer(spec: ProcessSpec, request: ExecuteRequest, context: Context, asked: Asked) -> Made:
-    document = run_now(spec, request.inputs, context)
+    return _made(run_now(spec, request.inputs, context), request, asked)
+
+
+def _made(document: dict[str, Any], request: ExecuteRequest, asked: Asked) -> Made:
     body = orjson.dumps(document if asked.bare else selected(document, request))
     return Made(body, headers=asked.announced(request.inputs))
 

@@ -16,7 +16,7 @@ from safestart.records.labels import NAME_TEXT, NOTE_TEXT, TAGS_TEXT, Labels, Na
 from safestart.runtime.progress import Context
 from safestart_service.documents.describe import output_ids
 from safestart_service.documents.formats.ogc import ogc_values
-from safestart_service.http.body import MOST_PARTS, parse_body, require_once
+from safestart_service.http.body import MOST_PARTS, parse_body, require_bounded, require_once
 
 _QUALIFIED = {"value", "mediaType", "encoding", "schema"}
 
@@ -78,6 +78,8 @@ def parse_request(process_id: str, body: bytes, most_parts: int = MOST_PARTS) ->
     when the body is otherwise invalid.
     """
     model = execute_model(process_id)
+    # Here, too: what is refused for its size is not read again to look for qualified values.
+    require_bounded(body, most_parts)
     try:
         return parse_body(model, body, most_parts)
     except InvalidInput:

@@ -97,9 +97,9 @@ def content(media_type: str, schema: dict[str, Any], text: str, **headers: str) 
 
 
 def refusals(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    """Problem responses of a route; every route can refuse a long query and can fail."""
+    """Problem responses of a route; every route can refuse a query, or one that is too long, and can fail."""
     found: dict[int | str, dict[str, Any]] = {}
-    for status in sorted({*statuses, 414, 500}):
+    for status in sorted({*statuses, 414, 422, 500}):
         if status == 304:
             found[status] = {"description": _WHY[status]}
         else:

@@ -7,11 +7,11 @@ from collections.abc import Container, Sequence
 from functools import cache
 from typing import Any, TypeVar
 
-import orjson
 from fastapi import Request
 from pydantic import BaseModel, ValidationError
 
 from safestart.errors import InvalidInput, invalid
+from safestart.model import doubles
 from safestart.model.places import placed
 from safestart.model.validation import refusal
 from safestart.runtime.plain_json import NameTwice, TooManyNames, require_unique_names
@@ -59,18 +59,21 @@ def parse_body(model: type[Model], body: bytes, most_parts: int = MOST_PARTS) ->
         return model.model_validate_json(body, strict=True)
     except ValidationError as error:
         reports = error.errors(include_url=False, include_input=False)
-        if len(reports) == 1 and reports[0]["type"] == "json_invalid":
-            raise _malformed(body, reports[0]["msg"]) from None
-        document = json.loads(body)  # it is JSON: pydantic has read it
-        whole = _with_whole_numbers(document, body, reports)
-        if whole is not None:
-            return parse_body(model, whole, most_parts)
-        # The reports name places in the document. pydantic's own copies of the inputs would be one per report.
-        shown = placed(model, reports[:MOST_REPORTS])
-        raise refusal(
-            [{**report, "input": value_at(document, report["loc"])} for report in shown],
-            others=max(0, len(reports) - MOST_REPORTS),
-        ) from None
+    if len(reports) == 1 and reports[0]["type"] == "json_invalid":
+        raise _malformed(body, reports[0]["msg"])
+    document = json.loads(body, parse_float=doubles.read)  # it is JSON: pydantic has read it
+    if _made_whole(document, reports):
+        # Once: what is still no integer after this is none.
+        try:
+            return model.model_validate_json(json.dumps(document), strict=True)
+        except ValidationError as error:
+            reports = error.errors(include_url=False, include_input=False)
+    # The reports name places in the document. pydantic's own copies of the inputs would be one per report.
+    shown = placed(model, reports[:MOST_REPORTS])
+    raise refusal(
+        [{**report, "input": value_at(document, report["loc"])} for report in shown],
+        others=max(0, len(reports) - MOST_REPORTS),
+    )
 
 
 def require_bounded(body: bytes, most_parts: int) -> None:
@@ -93,26 +96,34 @@ def require_bounded(body: bytes, most_parts: int) -> None:
 def value_at(document: Any, place: Sequence[Any]) -> Any:
     """The value at a place of a report; parts of the place that name a member of a union are left out."""
     for part in place:
-        there = isinstance(document, dict) and part in document
-        if there or (isinstance(document, list) and isinstance(part, int) and part < len(document)):
+        if _holds(document, part):
             document = document[part]
     return document
 
 
-def _with_whole_numbers(document: Any, body: bytes, reports: Sequence[Any]) -> bytes | None:
-    """The body with 31 for 31.0, where a report misses an integer there; None where that would not help.
+def _holds(document: Any, part: Any) -> bool:
+    there = isinstance(document, dict) and part in document
+    return there or (isinstance(document, list) and isinstance(part, int) and part < len(document))
+
+
+def _made_whole(document: Any, reports: Sequence[Any]) -> bool:
+    """Put 31 where the document has 31.0 and a report misses an integer; whether there was such a place.
 
     To JSON Schema 31.0 is an integer; to pydantic in strict mode it is not.
     """
-    missed = (value_at(document, report["loc"]) for report in reports if report["type"] == "int_type")
-    if not any(isinstance(value, float) and value.is_integer() for value in missed):
-        return None
-    return orjson.dumps(json.loads(body, parse_float=_whole))
-
-
-def _whole(text: str) -> float | int:
-    value = float(text)
-    return int(value) if value.is_integer() and abs(value) < 2**53 and text[:2] != "-0" else value
+    found = False
+    for report in reports:
+        if report["type"] != "int_type":
+            continue
+        inside, key = None, None
+        value = document
+        for part in report["loc"]:
+            if _holds(value, part):
+                inside, key, value = value, part, value[part]
+        if inside is not None and isinstance(value, float) and value.is_integer():
+            inside[key] = int(value)
+            found = True
+    return found
 
 
 def _malformed(body: bytes, why: str) -> MalformedBody:

@@ -6,8 +6,7 @@ answer. This route splits the query string once and validates it in one call.
 
 from __future__ import annotations
 
-import re
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Container
 from typing import Any, TypeVar
 from urllib.parse import parse_qsl
 
@@ -18,22 +17,24 @@ from starlette.types import Receive, Scope, Send
 
 from safestart.errors import invalid
 from safestart_service.http.answers import send_json
+from safestart_service.http.strict import GROUPED, require_plain
 
 Query = TypeVar("Query")
 
-_GROUPED = re.compile(r"\d_\d")
 
-
-def query_values(raw: bytes) -> dict[str, str]:
+def query_values(raw: bytes, numbers: Container[str] = ()) -> dict[str, str]:
     """Parameters of a query string.
 
-    Raises ``InvalidInput`` for a repeated parameter, which is ambiguous, and for ``1_0``, which pydantic reads as
-    10 but is more likely a slip for 1.0.
+    Raises ``InvalidInput`` for a repeated parameter, which is ambiguous, for ``1_0``, which pydantic reads as 10 but is
+    more likely a slip for 1.0, and for ``numbers`` that are not written as such.
     """
     text = raw.decode("latin-1")
     if "%" in text or "+" in text:
         pairs = parse_qsl(text, keep_blank_values=True)
         text = "&".join(value for _, value in pairs)
+        for name, value in pairs:  # only escapes can make a plus sign or a space
+            if name in numbers:
+                require_plain(name, value)
     else:  # nothing to unescape, the usual case
         pairs = [part.partition("=")[::2] for part in text.split("&") if part]
     values = dict(pairs)
@@ -43,10 +44,10 @@ def query_values(raw: bytes) -> dict[str, str]:
             if name in seen:
                 raise invalid(name, "one value", f"another one, {value}")
             seen.add(name)
-    if _GROUPED.search(text):
+    if GROUPED.search(text):
         for name, value in pairs:
-            if _GROUPED.search(value):
-                raise invalid(name, "a number without _ between its digits", value)
+            if GROUPED.search(value):
+                require_plain(name, value)
     return values
 
 
@@ -54,11 +55,12 @@ def query_route(
     parse: Callable[[dict[str, str]], Query],
     answer: Callable[[Request, Query], Awaitable[Response]],
     instant: Callable[[Query, Scope], Any] = lambda _, __: None,
+    numbers: Container[str] = (),
 ) -> type[APIRoute]:
     """An ``APIRoute`` class that serves ``answer(request, parse(parameters))``; the endpoint is only documentation.
 
     ``instant`` gives the document of a query that takes microseconds, sent at once, or None. Its second argument is
-    the request's scope.
+    the request's scope. ``numbers`` are the parameters that are numbers.
     """
 
     class QueryRoute(APIRoute):
@@ -69,7 +71,7 @@ def query_route(
             if scope["method"] != "GET":
                 await super().handle(scope, receive, send)  # refuses it
                 return
-            query = parse(query_values(scope["query_string"]))
+            query = parse(query_values(scope["query_string"], numbers))
             document = instant(query, scope)
             if document is None:
                 response = await answer(Request(scope, receive, send), query)

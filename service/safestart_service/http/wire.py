@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ipaddress
 import logging
+import re
 import secrets
 from asyncio import TimerHandle, Transport
 from collections.abc import Callable
@@ -101,6 +102,12 @@ class Protocol(Read):
     def on_headers_complete(self) -> None:
         """The head is whole."""
         self._wait_no_longer()
+        named = named_host(self.url)
+        if named is not None and named not in [
+            _plain(value) for name, value in self.headers if name == b"host"
+        ]:
+            # uvicorn drops the host of the target: as another Host field it is checked, and refused beside one.
+            self.headers.append((b"host", named))
         super().on_headers_complete()
         self._message = Message.BODY
         self.headers = []  # drop trailers: they do not belong to the head, which is checked already
@@ -208,6 +215,19 @@ class Protocol(Read):
         if self._message is Message.BODY:
             return not (cycle.response_started or self.pipeline)
         return cycle is None or bool(cycle.response_complete)
+
+
+def named_host(target: bytes) -> bytes | None:
+    """The host in a request's target of the absolute form (http://host/path), None in every other form."""
+    scheme, mark, rest = target.partition(b"://")
+    if not mark or not scheme.isalpha():
+        return None
+    return _plain(re.split(rb"[/?#]", rest, maxsplit=1)[0])
+
+
+def _plain(host: bytes) -> bytes:
+    """A host as it is compared: without case, and without the port of plain HTTP."""
+    return host.strip().lower().removesuffix(b":80")
 
 
 def holder(address: str) -> str | None:

@@ -23,10 +23,10 @@ from safestart_service.documents.openapi import answer, json_body, refusals
 from safestart_service.http.answers import Json
 from safestart_service.http.body import parse_body, read_body
 from safestart_service.http.intervals import without_nul
-from safestart_service.http.once import OnceRoute
+from safestart_service.http.strict import StrictRoute
 from safestart_service.state import services
 
-router = APIRouter(tags=["administration"], route_class=OnceRoute)
+router = APIRouter(tags=["administration"], route_class=StrictRoute)
 KeyId = Annotated[str, Path(description="Id of a key: the part after the first underscore.")]
 _NO_STORE = {"Cache-Control": "no-store"}
 

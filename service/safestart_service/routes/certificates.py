@@ -8,8 +8,9 @@ from fastapi.responses import Response
 from safestart.processes.certificate.spec import SPEC, CertificateInputs, CertificateOutputs
 from safestart_service.computing.dispatch import posted
 from safestart_service.documents.openapi import answer, json_body, refusals
+from safestart_service.http.strict import StrictRoute
 
-router = APIRouter(tags=["instant answers"])
+router = APIRouter(tags=["instant answers"], route_class=StrictRoute)
 
 
 @router.post(

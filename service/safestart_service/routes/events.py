@@ -11,12 +11,12 @@ from starlette.concurrency import run_in_threadpool
 from safestart_service.documents.jobs_view import known_job
 from safestart_service.documents.openapi import content, refusals
 from safestart_service.http.following import Followed
-from safestart_service.http.once import OnceRoute
 from safestart_service.http.sse import resume_point, stream
+from safestart_service.http.strict import StrictRoute
 from safestart_service.routes.jobs import JobId
 from safestart_service.state import services
 
-router = APIRouter(tags=["jobs"], route_class=OnceRoute)
+router = APIRouter(tags=["jobs"], route_class=StrictRoute)
 
 
 @router.get(

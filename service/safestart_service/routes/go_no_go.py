@@ -27,12 +27,16 @@ from safestart_service.documents.openapi import REF, content, json_body, refusal
 from safestart_service.http.answers import Json, root_path
 from safestart_service.http.body import read_body
 from safestart_service.http.lean import query_route
+from safestart_service.http.strict import StrictRoute, is_number
 
 if TYPE_CHECKING:
     from pydantic import BaseModel as GoNoGoQuery
 else:
     GoNoGoQuery = described(door.PARAMETERS, "GoNoGoQuery", "One operating point and one start, flat.")
 _SILENT = Context()
+_NUMBERS = frozenset(
+    name for name, one in door.PARAMETERS.items() if not one.json_text and is_number(one.field.annotation)
+)
 
 
 def _instant(asked: OneStart, scope: Scope) -> dict[str, Any] | None:
@@ -71,9 +75,11 @@ def in_space(body: bytes) -> bool:
     return b'"starts"' in body
 
 
-one = APIRouter(tags=["instant answers"], route_class=query_route(door.parse, _answer, _instant))
-proof = APIRouter(tags=["instant answers"], route_class=query_route(door.parse, _proof))
-many = APIRouter(tags=["instant answers"])
+one = APIRouter(
+    tags=["instant answers"], route_class=query_route(door.parse, _answer, _instant, numbers=_NUMBERS)
+)
+proof = APIRouter(tags=["instant answers"], route_class=query_route(door.parse, _proof, numbers=_NUMBERS))
+many = APIRouter(tags=["instant answers"], route_class=StrictRoute)
 
 
 @one.get(

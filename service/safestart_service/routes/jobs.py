@@ -23,10 +23,10 @@ from safestart_service.documents.schemas import JobDetail, JobLabels, JobList, P
 from safestart_service.http.answers import Json, base_url, link, tagged, this_url
 from safestart_service.http.body import parse_body, read_body
 from safestart_service.http.intervals import interval, without_nul
-from safestart_service.http.once import OnceRoute
+from safestart_service.http.strict import StrictRoute
 from safestart_service.state import services
 
-router = APIRouter(tags=["jobs"], route_class=OnceRoute)
+router = APIRouter(tags=["jobs"], route_class=StrictRoute)
 MAX_WAIT_S = 30.0
 MAX_OFFSET = 10_000_000
 SORTS = tuple(sign + by.value for by in Order for sign in ("", "-"))

@@ -9,9 +9,10 @@ from safestart_service.documents.openapi import TAG, answer, at, content, refusa
 from safestart_service.documents.openapi30 import older
 from safestart_service.documents.schemas import Conformance, Landing
 from safestart_service.http.answers import Json, base_url, link, root_path, tagged
+from safestart_service.http.strict import StrictRoute
 from safestart_service.pages import render as pages
 
-router = APIRouter(tags=["service"])
+router = APIRouter(tags=["service"], route_class=StrictRoute)
 
 OPENAPI_TYPE = "application/vnd.oai.openapi+json;version={}"
 CONFORMANCE_REL = "http://www.opengis.net/def/rel/ogc/1.0/conformance"

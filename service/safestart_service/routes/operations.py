@@ -14,9 +14,10 @@ from safestart_service.documents.access_schemas import CallerDocument
 from safestart_service.documents.openapi import answer, content, refusals
 from safestart_service.documents.schemas import Health, Readiness
 from safestart_service.http.answers import Json
+from safestart_service.http.strict import StrictRoute
 from safestart_service.state import services
 
-router = APIRouter(tags=["operations"])
+router = APIRouter(tags=["operations"], route_class=StrictRoute)
 log = logging.getLogger("safestart.service")
 
 

@@ -22,10 +22,10 @@ from safestart_service.documents.openapi import TAG, answer, content, json_body,
 from safestart_service.documents.schemas import ProcessDescription, ProcessList, Submitted
 from safestart_service.http.answers import Json, base_url, link, tagged, this_url
 from safestart_service.http.body import MOST_PARTS, PARTS_PER_STATE, read_body
-from safestart_service.http.once import OnceRoute
+from safestart_service.http.strict import StrictRoute
 from safestart_service.state import services
 
-router = APIRouter(tags=["processes"], route_class=OnceRoute)
+router = APIRouter(tags=["processes"], route_class=StrictRoute)
 _REQUEST = json_body(
     {name: execute_model(name) for name in PROCESS_IDS},
     {name: {"inputs": process(name).example} for name in PROCESS_IDS},

@@ -13,11 +13,11 @@ from safestart_service.documents.openapi import TAG, answer, content, refusals
 from safestart_service.documents.prov import provenance
 from safestart_service.documents.schemas import JobInputs
 from safestart_service.http.answers import base_url, tagged
-from safestart_service.http.once import OnceRoute
+from safestart_service.http.strict import StrictRoute
 from safestart_service.routes.jobs import JobId
 from safestart_service.state import services
 
-router = APIRouter(tags=["provenance"], route_class=OnceRoute)
+router = APIRouter(tags=["provenance"], route_class=StrictRoute)
 
 
 @router.get(

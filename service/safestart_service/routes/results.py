@@ -16,11 +16,11 @@ from safestart_service.documents.jobs_view import known_job, result_document
 from safestart_service.documents.openapi import REF, content, refusals
 from safestart_service.http.answers import Json, base_url, entity_tag, not_modified
 from safestart_service.http.negotiation import chosen
-from safestart_service.http.once import OnceRoute
+from safestart_service.http.strict import StrictRoute
 from safestart_service.routes.jobs import JobId
 from safestart_service.state import services
 
-router = APIRouter(tags=["results"], route_class=OnceRoute)
+router = APIRouter(tags=["results"], route_class=StrictRoute)
 
 
 def _body(form: Format) -> dict[str, Any]:

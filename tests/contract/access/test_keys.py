@@ -13,12 +13,12 @@ from typer.testing import CliRunner
 
 from safestart.cli import build
 from safestart.errors import InvalidInput, NotFound
-from safestart.runtime.access import KEY_PATTERN, Caller, Role, key_digest
+from safestart.runtime.access import Caller, Role, key_digest
 from safestart.store.access.audit import AuditLog
 from safestart.store.access.keys import KeyRepository
 from safestart.store.database import Database
 from safestart_service.access.keyring import Keyring
-from tests.contract.access.key_holders import BY
+from tests.contract.access.key_holders import BY, KEY_FORM
 from tests.contract.api.service_client import jobs_of, url_of
 from tests.contract.store.store_backends import pass_time
 
@@ -28,7 +28,7 @@ def test_keys_are_random_and_only_digests_are_kept(keys):
     secrets = {key.rpartition("_")[2] if key.count("_") == 2 else key for _, key in made}
     assert len(secrets) == 50
     for record, key in made:
-        match = KEY_PATTERN.fullmatch(key)
+        match = KEY_FORM.fullmatch(key)
         assert match is not None
         assert match[1] == record.id
         assert len(base64.urlsafe_b64decode(key.split("_", 2)[2] + "=")) == 32, "256 bits"

@@ -45,6 +45,15 @@ STRANGERS = [
     ("Forwarded", 'for="127.0.0.1'),
     ("Forwarded", 'by="a,for=127.0.0.1"'),
     ("Forwarded", ""),
+    ("X-Forwarded", "for=203.0.113.5"),
+    ("Forwarded-For", "203.0.113.5"),
+    ("Client-IP", "203.0.113.5"),
+    ("X-Azure-ClientIP", "203.0.113.5"),
+    ("CF-Connecting-IPv6", "2001:db8::1"),
+    ("Via", "1.1 proxy"),
+    ("Via", "1.1 localhost"),
+    ("Via", ""),
+    ("CDN-Loop", "cloudflare"),
 ]
 NEIGHBOURS = [
     ("X-Forwarded-For", "127.0.0.1"),
@@ -54,6 +63,8 @@ NEIGHBOURS = [
     ("Forwarded", "for=127.0.0.1"),
     ("Forwarded", 'proto=http;for="[::1]:4711";by="a,b;c", FOR = 127.0.0.1'),
     ("X-Forwarded-Proto", "https"),
+    ("X-Forwarded", "for=127.0.0.1"),
+    ("Forwarded-For", "127.0.0.1"),
 ]
 
 

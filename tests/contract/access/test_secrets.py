@@ -8,10 +8,10 @@ import sys
 
 import httpx
 
-from safestart.runtime.access import KEY_PATTERN, Role
+from safestart.runtime.access import Role
 from safestart.store.access.keys import KeyRepository
 from safestart.store.database import Database
-from tests.contract.access.key_holders import BY, bearer
+from tests.contract.access.key_holders import BY, KEY_FORM, bearer
 from tests.contract.api.service_client import HEAVY, url_of
 from tests.waiting import PATIENCE_S, free_port, until
 
@@ -94,7 +94,7 @@ def test_beyond_loopback_with_a_key(tmp_path):
         timeout=PATIENCE_S,
     )
     key = made.stdout.strip()
-    assert KEY_PATTERN.fullmatch(key), made.stderr
+    assert KEY_FORM.fullmatch(key), made.stderr
     command = [
         sys.executable,
         "-m",

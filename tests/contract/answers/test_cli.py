@@ -12,6 +12,7 @@ import pytest
 from typer.testing import CliRunner
 
 from safestart.cli import build, main
+from safestart.errors import InvalidInput
 
 POINT = ["--omega-t-deg-s", "3", "--a-max-m-s2", "0.1"]
 
@@ -76,6 +77,24 @@ def test_bad_input_is_named_in_one_line(
     arguments: list[str], named: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert named in refusal(arguments, "", monkeypatch, capsys)
+
+
+@pytest.mark.parametrize(
+    ("command", "twice"),
+    [
+        (["go-no-go", *POINT, "--x-m", "5", "--y-m", "40", "--omega-t-deg-s", "4"], "--omega-t-deg-s"),
+        (["keys", "create", "--name", "a", "--name", "b"], "--name"),
+    ],
+)
+def test_an_option_that_is_given_twice(command: list[str], twice: str) -> None:
+    """The last one would win silently: at 3 deg/s it is GO, at 4 NO_GO."""
+    with pytest.raises(InvalidInput, match=f"{twice}: required one value"):
+        build()(command)
+
+
+def test_what_may_be_given_twice() -> None:
+    assert json.loads(printed("go-no-go", *POINT, "--x-m", "5", "--y-m", "40", "--json", "--json"))
+    assert "Undefined" not in printed("go-no-go", "--help")
 
 
 def test_bad_input_ends_the_process_with_code_two() -> None:

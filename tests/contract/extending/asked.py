@@ -76,6 +76,31 @@ def controller(client: TestClient, folder: Path) -> dict[str, Any]:
     }
 
 
+def motion(client: TestClient, folder: Path) -> dict[str, Any]:
+    """The motion `straight` flown by a sweep of four starts and by `fly`, and in the description."""
+    world = {"truth": {"model": "straight"}, "mean_motion_rad_s": 0}
+    written = folder / "straight.json"
+    few = {"omega_t_deg_s": [1], "a_max_m_s2": [0.1], "r0_m": [50], "cases_per_cell": 4, "horizon_s": 10}
+    written.write_text(json.dumps(few | world | {"controllers": ["damper"], "certificates": ["paper"]}))
+    schema = client.get("/processes/sweep").json()["inputs"]["truth"]["schema"]["properties"]["model"]
+    scenario = safestart.Scenario.of(0.0, 0.1)
+    flown = safestart.fly(scenario, (5.0, 40.0, 0.0), Coasting(), motion="straight", horizon_s=10.0)
+    return {
+        "offered": schema["enum"],
+        "description": schema["description"],
+        "notes": _command("run", "sweep", "--input", str(written), "--json")["outputs"]["notes"],
+        "coasted": flown.lvlh_m.tolist(),
+    }
+
+
+class Coasting:
+    """No thrust."""
+
+    def command(self, k: int, state: object) -> list[float]:
+        """Nothing."""
+        return [0.0, 0.0, 0.0]
+
+
 def form(client: TestClient, folder: Path) -> dict[str, Any]:
     """The form `jsonl` by its name and by its media type, and in the description."""
     inputs = POINT | {"states": [START, {"x_m": 90, "y_m": 20}]}
@@ -114,10 +139,12 @@ def _command(*arguments: str) -> Any:
     return json.loads(done.stdout)
 
 
+PARTS = (process, method, controller, form, motion)
+
 if __name__ == "__main__":
     where = Path(sys.argv[1])
     for package in (safestart, safestart_service):
         assert Path(str(package.__file__)).is_relative_to(where), "the copy is asked"
     # The copy's kernels are compiled anew, which takes long on a busy machine.
     with service(where, answer_timeout_s=300) as asked:
-        print(json.dumps({part.__name__: part(asked, where) for part in (process, method, controller, form)}))
+        print(json.dumps({part.__name__: part(asked, where) for part in PARTS}))

@@ -1,4 +1,4 @@
-"""One folder or file and one line, as docs/extending.md says: a process, a method, a controller, a form of results."""
+"""One folder or file and one line, as docs/extending.md says, for the parts that a person adds."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from tests.contract.extending.house import House
 
 PROCESSES = "core/safestart/processes"
 METHODS = f"{PROCESSES}/go_no_go"
+DYNAMICS = "core/safestart/dynamics"
 CONTROL = "core/safestart/control"
 FORMS = "service/safestart_service/documents/formats"
 PROCESS = '    "drift": "safestart.processes.drift.spec",'
@@ -21,6 +22,7 @@ CONTROLLER = (
     '    Offered("damper", "damper", "brakes", "safestart.control.damper:for_sweep", note="It only brakes."),'
 )
 FORM = '    "json_lines",'
+MOTION = '    NamedMotion("straight", "no gravity", "safestart.dynamics.straight:straight_of"),'
 
 Touched = tuple[list[str], list[str]]
 
@@ -42,6 +44,9 @@ def extended(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[Touched], d
     house.add("json_lines.py", f"{FORMS}/json_lines.py")
     house.add_line(f"{FORMS}/registry.py", '"parquet"', FORM)
     touched.append(house.touched())
+    house.add("straight.py", f"{DYNAMICS}/straight.py")
+    house.add_line(f"{DYNAMICS}/registry.py", "_ALL = (", MOTION)
+    touched.append(house.touched())
     return touched, house.ask()
 
 
@@ -51,10 +56,11 @@ def test_each_is_a_folder_or_a_file_and_a_line(extended: tuple[list[Touched], di
         f"{METHODS}/methods/reserve.py",
         f"{CONTROL}/damper.py",
         f"{FORMS}/json_lines.py",
+        f"{DYNAMICS}/straight.py",
     ]
-    lines = [f"+{PROCESS}", f"+{METHOD}", f"+{CONTROLLER}", f"+{FORM}"]
+    lines = [f"+{PROCESS}", f"+{METHOD}", f"+{CONTROLLER}", f"+{FORM}", f"+{MOTION}"]
     found = [(sorted(files), sorted(changed)) for files, changed in extended[0]]
-    assert found == [(sorted(new[:parts]), sorted(lines[:parts])) for parts in range(5)]
+    assert found == [(sorted(new[:parts]), sorted(lines[:parts])) for parts in range(6)]
 
 
 def test_a_process(extended: tuple[list[Touched], dict[str, Any]]) -> None:
@@ -125,3 +131,14 @@ def test_a_form_of_results(extended: tuple[list[Touched], dict[str, Any]]) -> No
     assert found["negotiated"] == ["application/jsonl", True]
     assert "application/jsonl" in found["offered"]
     assert "jsonl" in found["parameter"]["description"]
+
+
+def test_a_motion(extended: tuple[list[Touched], dict[str, Any]]) -> None:
+    found = extended[1]["motion"]
+    assert found["offered"] == ["straight", "cwh", "two_body_j2"]
+    assert "straight: no gravity" in found["description"]
+    assert [note for note in found["notes"] if "CWH;" in note or "two_body" in note] == [], (
+        "not of this motion"
+    )
+    assert "straight: the certificates speak of CWH." in found["notes"]
+    assert found["coasted"] == [[5.0, 40.0, 0.0]] * 6, "at rest without gravity"

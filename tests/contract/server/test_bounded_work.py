@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import threading
 import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -14,7 +15,10 @@ import httpx
 import psutil
 import pytest
 
+from safestart.errors import InvalidInput
+from safestart_service.computing import heavy
 from safestart_service.computing.heavy import Helpers
+from safestart_service.documents import execution
 from tests.acceptance.running import serving
 from tests.contract.api.service_client import POINT, assert_problem, service
 from tests.waiting import PATIENCE_S, until
@@ -82,6 +86,13 @@ def test_a_body_of_many_parts(server: httpx.Client, name: str) -> None:
     assert memory_mb(server) < MOST_MB
 
 
+def test_what_is_refused_for_its_size_is_not_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    """2.6 million empty objects took 240 MB: once refused, they were looked through for qualified values."""
+    monkeypatch.setattr(execution, "_unqualified", lambda _: pytest.fail("read after all"))
+    with pytest.raises(InvalidInput, match="values and names"):
+        execution.parse_request("sweep", compact({"inputs": [{}] * 200_000}))
+
+
 @pytest.mark.parametrize("body", [b"[" * 1_000_000, b'{"a":' * 200_000, b'{"a":' * 300 + b"1" + b"}" * 300])
 def test_a_body_of_many_levels(server: httpx.Client, body: bytes) -> None:
     assert server.post("/certificates", content=body, headers=JSON).status_code in (400, 422)
@@ -132,6 +143,36 @@ def test_a_process_that_starts_slowly_costs_no_answer(
         assert client.get("/go-no-go", params=quick).status_code == 200
 
 
+def test_what_is_answered_while_no_process_is_ready(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where no kernels are kept a process compiles for minutes: the certificate answers, the rest is told why not."""
+    start, ready = Helpers._start, threading.Event()
+
+    async def slowly(helpers: Helpers) -> None:
+        while not ready.is_set():
+            await asyncio.sleep(0.05)
+        await start(helpers)
+
+    monkeypatch.setattr(Helpers, "_start", slowly)
+    monkeypatch.setattr(heavy, "START_S", 0.5)
+    with service(tmp_path, answer_processes=1) as client:
+        sure = {**POINT, "states": [{"x_m": 0, "y_m": 20}, {"x_m": 0, "y_m": 30}]}
+        answer = client.post("/go-no-go", json=sure)
+        assert answer.status_code == 200
+        assert answer.json()["decided_by"] == ["certified", "certified"]
+        open_one = {**POINT, "states": [{"x_m": 0, "y_m": 20}, {"x_m": 40, "y_m": 60}]}
+        refused = client.post("/go-no-go", json=open_one)
+        assert "still starts" in assert_problem(refused, 503)["detail"]
+        assert int(refused.headers["retry-after"]) > 0
+        ready.set()
+        monkeypatch.undo()
+        later = client.post("/go-no-go", json={**open_one, "method": "exact"})
+        assert later.status_code == 200
+        mixed = client.post("/go-no-go", json=open_one).json()
+        assert [mixed[name][0] for name in ("verdict", "margin_m", "reason")] == [
+            answer.json()[name][0] for name in ("verdict", "margin_m", "reason")
+        ]
+
+
 def test_an_answer_that_takes_too_long(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """One that would take too long is refused at once; one that does is ended, and the next one is answered."""
     region = {"inputs": POINT | {"horizon_s": 600}}
@@ -169,3 +210,38 @@ def test_whole_numbers_however_they_are_written(server: httpx.Client, whole: str
     assert len(answer.json()["x_m"]) == 31
     wrong = server.post("/certificates", content=grid.replace(whole.encode(), b"31.5"), headers=JSON)
     assert "required an integer, received 31.5" in assert_problem(wrong, 422)["detail"]
+
+
+@pytest.mark.parametrize(
+    "number", ["1e18", "1e19", "-1e19", "1e300", "9007199254740993.0", "1" + "0" * 30, "-31.0"]
+)
+@pytest.mark.parametrize("beside", ["9", "31.0", "18446744073709551616"])
+def test_whole_numbers_out_of_range(server: httpx.Client, number: str, beside: str) -> None:
+    body = b'{"omega_t_deg_s":3,"a_max_m_s2":0.1,"grid":{"nx":%s,"ny":%s}}' % (
+        number.encode(),
+        beside.encode(),
+    )
+    begun = time.monotonic()
+    problem = assert_problem(server.post("/certificates", content=body, headers=JSON), 422)
+    assert time.monotonic() - begun < 10.0
+    assert "grid.nx: required a number" in problem["detail"]
+
+
+def test_minus_zero_is_a_whole_number(server: httpx.Client) -> None:
+    asked = b'{"priority":-0.0,"inputs":{"omega_t_deg_s":3,"a_max_m_s2":0.1}}'
+    begun = time.monotonic()
+    answer = server.post(
+        "/processes/certificate/execution", content=asked, headers=JSON | {"Prefer": "respond-async"}
+    )
+    assert answer.status_code == 201, answer.text
+    assert time.monotonic() - begun < 10.0
+
+
+def test_wrong_whole_numbers_in_a_long_body_take_no_time(server: httpx.Client) -> None:
+    """A body was made whole again and again while one number in it could not be."""
+    starts = ",".join(['{"x_m":5,"y_m":40}'] * 5000)
+    body = f'{{"omega_t_deg_s":3,"a_max_m_s2":0.1,"method":"tracking","tracking":{{"n_c":1e19}},"states":[{starts}]}}'
+    begun = time.monotonic()
+    problem = assert_problem(server.post("/go-no-go", content=body.encode(), headers=JSON), 422)
+    assert time.monotonic() - begun < 10.0
+    assert "tracking.n_c" in problem["detail"]

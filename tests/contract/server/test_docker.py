@@ -113,7 +113,7 @@ def test_every_process_that_imports_the_engines_has_a_place_for_their_kernels(
     volume = next(arguments for name, arguments in instructions if name == "VOLUME")
     environment = " ".join(arguments for name, arguments in instructions if name == "ENV")
     assert f"NUMBA_CACHE_DIR={volume} " in environment
-    compiled = next(arguments for name, arguments in instructions if "runtime.warmup" in arguments)
+    compiled = next(arguments for name, arguments in instructions if "runtime.kernels.warmup" in arguments)
     # What is written after the volume's line is not in the image.
     assert instructions.index(("RUN", compiled)) < instructions.index(("VOLUME", volume))
     users = [service for service in compose["services"].values() if service["image"] == "safestart-worker"]

@@ -87,3 +87,33 @@ def test_without_host(address):
         told = said(address, b"GET /healthz HTTP/1.1\r\n" + host + b"Connection: close\r\n\r\n")
         problem = problem_in(told, 400)
         assert problem["field"] == "Host"
+
+
+ABSOLUTE = b"GET http://%s/healthz HTTP/1.1\r\nHost: %s\r\nConnection: close\r\n\r\n"
+
+
+@pytest.mark.parametrize(
+    ("target", "host"),
+    [
+        (b"evil.example", b"localhost"),
+        (b"localhost", b"127.0.0.1"),
+        (b"localhost:81", b"localhost"),
+        (b"user@localhost", b"localhost"),
+        (b"localhost", b"evil.example"),
+    ],
+)
+def test_a_target_and_a_host_that_differ_are_two_hosts(address, target, host):
+    """RFC 9112: a proxy reads the host of the target, the application the field."""
+    assert problem_in(said(address, ABSOLUTE % (target, host)), 400)["field"] == "Host"
+
+
+def test_a_target_that_names_the_host_again(address):
+    for target, host in (
+        (b"localhost", b"localhost"),
+        (b"LOCALHOST:80", b"localhost"),
+        (b"[::1]:99", b"[::1]:99"),
+    ):
+        assert said(address, ABSOLUTE % (target, host)).startswith(b"HTTP/1.1 200")
+    old = b"GET http://%s/healthz HTTP/1.0\r\n\r\n"
+    assert said(address, old % b"localhost").startswith(b"HTTP/1.1 200")
+    problem_in(said(address, old % b"evil.example"), 421)

@@ -11,6 +11,7 @@ import pytest
 from typer.main import get_command
 
 from safestart.cli import COMMAND_GROUP, COMMANDS, build
+from safestart.runtime.own_process import exit_code
 
 OURS = [name for names in COMMANDS.values() for name in names]
 # Modules loaded after a command, counted on the day the budget was made and rounded up. NumPy and pydantic are two
@@ -67,3 +68,27 @@ def test_modules_that_a_command_loads(command: list[str], most: int) -> None:
     if command is VERDICT:
         assert NOT_FOR_A_VERDICT.isdisjoint(loaded)
         assert '"verdict": "GO"' in done.stdout
+
+
+@pytest.mark.parametrize("command", [VERDICT, ["verify", "x.json"], ["keys", "list"], ["export-c", "--help"]])
+def test_every_command_refuses_a_variable_that_names_no_setting(
+    command: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("SAFESTART_DATABSE_URL", "hunter2")
+    monkeypatch.setattr(sys, "argv", ["safestart", *command])
+    assert exit_code(lambda: build(command[0])()) == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert "SAFESTART_DATABSE_URL: required the name of a setting, such as SAFESTART_DATABASE_URL" in said.err
+    assert "hunter2" not in said.err
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("SAFESTART_PORT", "99999"), ("SAFESTART_CONFIG", "/nonexistent/file.toml")]
+)
+def test_a_command_that_reads_no_setting_checks_no_value(
+    name: str, value: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(name, value)
+    monkeypatch.setattr(sys, "argv", ["safestart", *VERDICT])
+    assert exit_code(lambda: build(VERDICT[0])()) == 0

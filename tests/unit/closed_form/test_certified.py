@@ -172,6 +172,14 @@ def test_out_of_reach_says_so_in_metres() -> None:
     assert (found.margin < 0.0).all()
 
 
+@pytest.mark.filterwarnings("error")
+def test_a_height_that_takes_more_than_the_thrust_is_out_of_reach_without_a_warning() -> None:
+    scenario = Scenario(Target(math.radians(10.0)), Chaser(1e-6))
+    found = certify(scenario, np.array([[0.0, 5000.0, 4000.0], [0.0, 9000.0, 9000.0]]))
+    assert not found.go.any()
+    assert (found.margin < 0.0).all()
+
+
 def test_every_shape_of_array_and_none() -> None:
     scenario = Scenario.of(2.0, 0.1)
     assert certify(scenario, np.zeros((0, 2))).go.shape == (0,)

@@ -23,7 +23,7 @@ N, STEP = 1.1e-3, 2.0
 def hold_of(rate_deg: float, most: float, point: Floats, step: float = STEP) -> Hold:
     design = Design.of(N, step, 1.0, 0.1, most)
     reference = TurningReference.of(point, math.radians(rate_deg), N, step)
-    return Hold(design, reference, corridor_of(CorridorShape()), most)
+    return Hold.of(design, reference, corridor_of(CorridorShape()), most)
 
 
 def body(angle: float, place: Floats) -> Floats:
@@ -56,7 +56,7 @@ def test_the_reference_is_at_the_hold_point_at_every_node(rate_deg: float) -> No
 
 def test_the_ellipsoid_shrinks_and_touches_a_limit() -> None:
     hold = hold_of(3.0, 0.1, np.array([0.0, 2.0]))
-    cost, closed = hold.design.cost, hold.design.closed_loop
+    cost, closed = hold.cost, hold.closed
     assert np.linalg.eigvalsh(closed.T @ cost @ closed - cost)[-1] < 0.0
     found = ellipsoid(hold)
     assert found.limited_by == "thrust"
@@ -76,7 +76,7 @@ def test_the_polyhedron_holds_the_ellipsoid_and_no_more_than_it_may() -> None:
     inner = ellipsoid(hold)
     found = polyhedron(hold, inner, 0.4)
     assert found is not None
-    inverse = np.linalg.inv(hold.design.cost)
+    inverse = np.linalg.inv(hold.cost)
     reach = np.sqrt(inner.level * np.einsum("ki,ij,kj->k", found.rows, inverse, found.rows))
     assert (reach <= found.bounds * (1.0 + 1e-9)).all()
     assert found.volume > 50.0 * inner.volume

@@ -1,5 +1,6 @@
 """Exact answers: brackets, witnesses flown by another integrator, the linear program as an independent solver."""
 
+import json
 import math
 import subprocess
 import sys
@@ -14,10 +15,12 @@ from safestart.exact import search
 from safestart.exact.answer import Answer, Verdict
 from safestart.exact.decide import decide
 from safestart.exact.kernels import stay
+from safestart.exact.prove import proof_of
 from safestart.exact.question import Question
 from safestart.exact.watch import watch_of
-from safestart.model.scenario import Floats, Scenario
+from safestart.model.scenario import Chaser, CorridorShape, Floats, Scenario, Target
 from safestart.optim.largest_margin import Solved
+from safestart.proofs.checker import check
 from tests.unit.exact.linear_model import rows
 
 SWEEP = [(0.02, 1.0, 30.0), (0.05, 2.0, 50.0), (0.10, 3.0, 50.0), (0.10, 2.0, 100.0), (0.05, 5.0, 30.0)]
@@ -165,3 +168,48 @@ def test_the_solver_is_loaded_with_the_first_question(module: str) -> None:
     code = f"import sys, {module}; assert not {{'clarabel', 'scipy', 'flint'}} & set(sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+
+
+# The best margins of these starts are some 1e-7 m: less than the samples of a flight can miss between them.
+PLANE = CorridorShape(
+    1.7203236335675727, 2.5615604699279904, 0.4118317879587087, 0.5390083732169668, 4.007733165604491
+)
+SPACE = CorridorShape(
+    1.33290825511154, 0.7745810153290553, 1.4193906040434443, 1.0884285415470172, 4.074817666023508
+)
+
+
+@pytest.mark.parametrize(
+    ("rate_deg_s", "a_max", "shape", "steps", "state", "best_m"),
+    [
+        (
+            4.34121385508196,
+            0.8860379068144187,
+            PLANE,
+            5,
+            (5.794526062471715, 7.136617993012427, -0.5407306641603287, 0.4390424048649522),
+            1.2e-7,
+        ),
+        (
+            2.7426358020396373,
+            0.9264420940026529,
+            SPACE,
+            30,
+            (-65.28363368269486, 51.98827563152051, -10.22366476602657, 0.0, 0.0, 0.0),
+            3.4e-7,
+        ),
+    ],
+    ids=["plane", "space"],
+)
+def test_a_close_call_is_decided(
+    rate_deg_s: float, a_max: float, shape: CorridorShape, steps: int, state: tuple[float, ...], best_m: float
+) -> None:
+    """It was UNDECIDED, between -6e-7 and 3e-7 m; the checker, which bounds flights in its own way, says GO as well."""
+    scenario = Scenario(Target(math.radians(rate_deg_s), 1.1e-3), Chaser(a_max), shape)
+    question = Question(scenario, 2.0, steps, len(state) // 2)
+    answer = decide(question, np.array(state))
+    assert answer.verdict is Verdict.GO
+    assert answer.lower == pytest.approx(best_m, rel=0.1)
+    found = check(json.loads(json.dumps(proof_of(question, np.array(state), answer))))
+    assert found.verdict == "GO"
+    assert 0.0 < found.margin_m <= answer.lower

@@ -17,8 +17,8 @@ from safestart.missed_burn.earth.motion import Earth, drift_after, moved, target
 from safestart.missed_burn.plan import Errors, Failures, Plan, Question
 from safestart.missed_burn.prove import Verdict, greatest_scale, prove
 from safestart.missed_burn.question_document import question_document
-from safestart.proofs.abort import earth as checked
-from safestart.proofs.abort.course import Course
+from safestart.proofs.abort.earth import sets as checked
+from safestart.proofs.abort.earth.course import Course
 from safestart.proofs.checker import check
 from safestart.proofs.statement import digest_of
 from safestart.proofs.strict import ProofRejected

@@ -17,9 +17,9 @@ from safestart.missed_burn.plan import Burn, Errors, Failures, Plan, Question
 from safestart.missed_burn.prove import Proof, Verdict, prove
 from safestart.missed_burn.pushed import EarthPushed
 from safestart.missed_burn.zone import POINT, Zone
-from safestart.proofs.abort import earth as checked
+from safestart.proofs.abort.earth import sets as checked
+from safestart.proofs.abort.earth.pushes import LastingPushes
 from safestart.proofs.abort.finite import Rates
-from safestart.proofs.abort.pushes import LastingPushes
 from safestart.proofs.checker import check
 from safestart.proofs.statement import digest_of
 from safestart.proofs.strict import ProofRejected

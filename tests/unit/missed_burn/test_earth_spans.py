@@ -12,7 +12,7 @@ from safestart.missed_burn.earth.motion import Earth, moved
 from safestart.missed_burn.plan import Errors, Failures, Plan, Question
 from safestart.missed_burn.prove import Proof, Verdict, prove
 from safestart.missed_burn.zone import POINT, Zone
-from safestart.proofs.abort.course import Course
+from safestart.proofs.abort.earth.course import Course
 from safestart.proofs.checker import check
 from safestart.proofs.statement import digest_of
 from safestart.proofs.strict import ProofRejected

@@ -5,8 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from safestart.exact.answer import Verdict
+from safestart.exact.decide import decide
+from safestart.exact.question import Question
+from safestart.model.scenario import Scenario
 from safestart.optim.ball_margin import SOLVED, largest_margin
-from safestart.optim.largest_margin import solve_by_cones
+from safestart.optim.dense_kernel import MANY, factor, gram
+from safestart.optim.largest_margin import SOLVED_BY, solve_by_cones
 
 
 def drawn(rng: np.random.Generator, d: int) -> tuple[np.ndarray, np.ndarray]:
@@ -68,3 +73,31 @@ def test_what_is_not_finite_does_not_settle(value: float) -> None:
         place[0] = value
         assert largest_margin(constant, rows, 2, 1e-7)[2] != SOLVED
         place[0] = kept
+
+
+@pytest.mark.parametrize("count", [MANY + 1, 2 * MANY])
+def test_many_rows_make_the_same_system(count: int) -> None:
+    rng = np.random.default_rng(count)
+    rows, ends = rng.normal(size=(count, 90)), rng.integers(0, 91, count)
+    for row, end in zip(rows, ends, strict=True):
+        row[end:] = 0.0
+    system = np.empty((count, count))
+    gram(rows, ends, np.empty((90, count)), system)
+    np.testing.assert_allclose(np.tril(system), np.tril(rows @ rows.T), atol=1e-12)
+    whole = rows @ rows.T + np.eye(count)
+    factored = np.tril(whole)
+    assert factor(factored)
+    np.testing.assert_allclose(factored, np.linalg.cholesky(whole), atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("rate", "a_max", "x", "y"), [(3, 0.05, -14.9029, 26.0366), (4, 0.1, 0.9036, 29.9864)]
+)
+def test_long_horizons_are_settled(rate: float, a_max: float, x: float, y: float) -> None:
+    """Rows that reach kilometres: the method came no closer than 5e-5 m, did all its iterations and left it open."""
+    question = Question(Scenario.of(rate, a_max), 2.0, 300)
+    before = SOLVED_BY["open"]
+    answer = decide(question, np.array([x, y, 0.0, 0.0]))
+    assert SOLVED_BY["open"] == before
+    assert answer.verdict is Verdict.GO
+    assert answer.gap <= 1e-4

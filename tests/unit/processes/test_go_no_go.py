@@ -85,3 +85,13 @@ def test_defaults_that_are_given_ask_for_nothing() -> None:
     assert len(given) >= 11
     for method in METHODS:
         assert asked(states=PLANE, method=method, **given) == asked(states=PLANE, method=method)
+
+
+@pytest.mark.parametrize("rest", ["lvlh", "body"])
+def test_the_papers_conditions_certify_nothing(rest: str) -> None:
+    """They are not sound, so their sentence says that they hold, not that the start is certified."""
+    found = asked(states=PLANE, method="paper", rest=rest)
+    held = [reason for word, reason in zip(found["verdict"], found["reason"], strict=True) if word == "GO"]
+    assert held != []
+    assert all(reason.startswith("the paper's conditions hold with ") for reason in held)
+    assert [reason for reason in found["reason"] if "certif" in reason or "prove" in reason] == []

@@ -21,6 +21,10 @@ def test_flights_from_the_boundary_hold_and_from_beyond_do_not() -> None:
     rows = {row["set"]: row for row in outputs["flown"]}
     assert rows["ellipsoid"]["held"] == rows["polyhedron"]["held"] == 12
     assert rows["beyond_polyhedron"]["held"] == 0
+    assert rows["regime"]["held"] == rows["regime"]["starts"] == 12
+    assert outputs["regime"]["code"] == "ok"
+    assert outputs["regime"]["limited_by"] == "filter"
+    assert rows["regime"]["least_margin_m"] > 1.0
     # The boundary is one: some flight from it has next to no room left in thrust or corridor.
     assert rows["polyhedron"]["most_thrust_m_s2"] > 0.0997
     assert outputs["polyhedron"]["volume_ratio"] > 50.0
@@ -39,7 +43,17 @@ def test_a_hold_beyond_the_thrust_is_said_to_be_none() -> None:
     assert outputs["ellipsoid"] is None
     assert outputs["polyhedron"] is None
     assert outputs["flown"] == []
+    assert outputs["regime"]["code"] == "unstable"
     assert outputs["reference_thrust_m_s2"] > 0.05
+
+
+def test_the_papers_weights_keep_nothing_at_three_degrees_a_second() -> None:
+    asked = {"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "flights": 2, "preset": "paper"}
+    outputs = execute("hold-region", asked).document["outputs"]
+    assert outputs["code"] == "ok"
+    assert outputs["regime"]["code"] == "unstable"
+    assert outputs["regime"]["spectral_radius"] > 1.0
+    assert [row["set"] for row in outputs["flown"]] == ["ellipsoid", "polyhedron", "beyond_polyhedron"]
 
 
 def test_bad_input_is_named() -> None:

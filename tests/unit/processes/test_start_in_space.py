@@ -41,6 +41,7 @@ def test_the_short_form_is_go_no_go_s_answer() -> None:
     starts = [{"position_m": [s["x_m"], s["y_m"], s["z_m"]]} for s in states]
     new = execute(SPEC.id, point | {"starts": starts}, Context()).document["outputs"]
     assert new["verdict"] == old["verdict"] == ["GO", "NO_GO"]
+    assert new["decided_by"] == old["decided_by"] == ["exact", "exact"]
     np.testing.assert_allclose(new["margin_m"], old["margin_m"], atol=2e-4)
     assert new["faces"] == old["faces"]
 
@@ -235,6 +236,13 @@ def test_demands_are_named_with_the_part_that_answered_them() -> None:
     assert answered(horizon_s=40)["restriction"] is None
 
 
+def test_a_no_go_by_the_view_says_by_how_much_it_misses_a_limit_or_the_view() -> None:
+    view = {"axis": [0, -1, 0], "half_angle_deg": 30, "frame": "body"}
+    start = {"position_m": [5, 40, 0]}
+    (reason,) = answered(starts=[start], omega_t_deg_s=3, a_max_m_s2=0.1, field_of_view=view)["reason"]
+    assert "each history misses a limit or field_of_view by at least 4.64 m" in reason
+
+
 def test_what_else_is_not_known_counts_and_is_proved() -> None:
     free = {"kind": "torque_free", "inertia_kg_m2": BODY, "body_rate_deg_s": [0.2, -0.3, 1]}
     known = {
@@ -253,6 +261,8 @@ def test_what_else_is_not_known_counts_and_is_proved() -> None:
     }
     found = answered(**known, **half)
     assert found["verdict"] == sure["verdict"] == ["GO", "NO_GO"]
+    assert found["decided_by"] == ["families", "families"]
+    assert sure["decided_by"] == ["exact", "exact"]
     assert 0.0 < found["margin_m"][0] < sure["margin_m"][0] - 0.5
     assert "for every member of what is not known" in found["reason"][0]
     assert "even where all is as given" in found["reason"][1]

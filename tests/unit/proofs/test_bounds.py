@@ -15,9 +15,9 @@ from safestart.exact.decide import decide
 from safestart.exact.prove import proof_of
 from safestart.exact.question import Question
 from safestart.model.scenario import Scenario
-from safestart.proofs.abort.pushes import Pushes
+from safestart.proofs.abort.earth.pushes import Pushes
+from safestart.proofs.abort.earth.taylor import Field
 from safestart.proofs.abort.sets import Reached, column
-from safestart.proofs.abort.taylor import Field
 from safestart.proofs.family import _reach
 from safestart.proofs.single import Witness
 from safestart.proofs.space.series import folded, rest

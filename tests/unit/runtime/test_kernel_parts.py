@@ -6,8 +6,8 @@ import numba
 import pytest
 from numba import njit
 
-from safestart.runtime import kernel_parts
-from safestart.runtime.kernel_parts import KNOWN, part
+from safestart.runtime.kernels import parts as kernel_parts
+from safestart.runtime.kernels.parts import KNOWN, part
 
 
 def _grown(x: float, times: int) -> float:

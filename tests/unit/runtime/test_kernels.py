@@ -23,8 +23,9 @@ from numba import config
 from numba.core import event
 
 import safestart
-from safestart.runtime import kernels, warmup
-from safestart.runtime.kernels import KernelCache, compiled
+from safestart.runtime.kernels import compiled as kernels
+from safestart.runtime.kernels import warmup
+from safestart.runtime.kernels.compiled import KernelCache, compiled
 
 NOT_IMPORTED = ("migrations", "__main__", "orphan_guard", ".cli")
 
@@ -33,13 +34,13 @@ TOY = {
     "safestart_toy/__init__.py": "",
     "safestart_toy/numbers.py": "FACTOR = 2.0\n",
     "safestart_toy/callee.py": (
-        "from safestart.runtime.kernels import compiled\n@compiled()\ndef twice(x):\n    return 2.0 * x\n"
+        "from safestart.runtime.kernels.compiled import compiled\n@compiled()\ndef twice(x):\n    return 2.0 * x\n"
     ),
     "safestart_toy/record.py": (
         "from typing import NamedTuple\nclass Pair(NamedTuple):\n    first: float\n    second: float\n"
     ),
     "safestart_toy/kernel.py": (
-        "from safestart.runtime.kernels import compiled\n"
+        "from safestart.runtime.kernels.compiled import compiled\n"
         "from safestart_toy.callee import twice\nfrom safestart_toy.numbers import FACTOR\n"
         "@compiled()\ndef run(pair):\n    return FACTOR * twice(pair.first)\n"
     ),
@@ -148,11 +149,11 @@ INDIRECT = {
     "settings": "OPTION = 'python'\nDEFAULT = 2.0\nFACTOR = 2.0\n",
     "numbers": "from safestart_toy.settings import FACTOR\n",
     "callee": (
-        "from safestart.runtime.kernels import compiled\nfrom safestart_toy.settings import DEFAULT\n"
+        "from safestart.runtime.kernels.compiled import compiled\nfrom safestart_toy.settings import DEFAULT\n"
         "@compiled()\ndef twice(x, by=DEFAULT):\n    return by * x\n"
     ),
     "kernel": (
-        "from safestart.runtime.kernels import compiled\nimport safestart_toy.numbers as numbers\n"
+        "from safestart.runtime.kernels.compiled import compiled\nimport safestart_toy.numbers as numbers\n"
         "from safestart_toy.callee import twice\nfrom safestart_toy.settings import OPTION\n"
         "@compiled(error_model=OPTION)\n"
         "def run(pair):\n    return numbers.FACTOR * twice(pair.first)\n"

@@ -28,7 +28,7 @@ def test_what_has_every_name_once_is_read_as_ever(tree):
 
 @pytest.mark.parametrize("text", ["NaN", "[-Infinity]", '{"a": 1e999}'])
 def test_what_is_not_finite_is_refused(text):
-    with pytest.raises(ValueError, match="finite"):
+    with pytest.raises(ValueError, match="a double can hold" if "1e" in text else "finite"):
         loads(text)
 
 

@@ -12,6 +12,7 @@ import pytest
 
 from safestart.errors import InvalidInput
 from safestart.runtime.settings import Settings, settings
+from safestart.runtime.variables import NAMES
 from tests.waiting import PATIENCE_S
 
 
@@ -157,3 +158,7 @@ def test_a_misspelt_variable_stops_every_start(command: str) -> None:
     assert ended.returncode == 2
     assert "SAFESTART_PORT" in ended.stderr
     assert len(ended.stderr.strip().splitlines()) == 1
+
+
+def test_the_names_that_every_command_knows_are_those_of_the_settings() -> None:
+    assert tuple(Settings.model_fields) == NAMES

@@ -14,6 +14,7 @@ from safestart.control.gains import PAPER
 from safestart.control.sequence_mpc import SequenceMpc, SequencePlanner, start_verdict
 from safestart.control.three_regimes import ThreeRegimes
 from safestart.dynamics.cwh import input_matrix, transition_matrix
+from safestart.dynamics.registry import MOTIONS
 from safestart.dynamics.two_body import J2, Orbit, TwoBody, axes, gravity
 from safestart.errors import InvalidInput
 from safestart.exact.answer import Verdict
@@ -25,7 +26,7 @@ from safestart.model.scenario import Floats, Rest, Scenario
 from safestart.simulation.compiled_loop import fly
 from safestart.simulation.loop import fly as fly_slowly
 from safestart.simulation.noise import EXACT, Drawn, Errors, Truth, draws, truth_of
-from safestart.simulation.plant import MOTIONS, plant_of
+from safestart.simulation.plant import plant_of
 from safestart.simulation.record import Record
 from safestart.simulation.starts import start_states
 

@@ -5,7 +5,8 @@ import os
 import dask
 import pytest
 
-from safestart_worker.cluster.opening import _defaults, _forget_variables
+from safestart_worker.cluster.opening import _defaults
+from safestart_worker.cluster.own_files import forget_variables
 
 USERS = {
     "temporary-directory": "/nonexistent",
@@ -37,5 +38,5 @@ def test_the_users_dask_configuration_is_not_ours() -> None:
 def test_task_processes_do_not_see_dasks_variables(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("DASK_TEMPORARY_DIRECTORY", "/nonexistent")
     monkeypatch.setenv("DASK_CONFIG", "/nonexistent")
-    _forget_variables()
+    forget_variables()
     assert not [name for name in os.environ if name.startswith("DASK_")]

@@ -8,7 +8,7 @@ from distributed import KilledWorker
 from distributed.client import FutureCancelledError
 
 from safestart.processes.registry import PROCESS_IDS, process
-from safestart.runtime.warmup import PARTS
+from safestart.runtime.kernels.warmup import PARTS
 from safestart_worker.cluster.cluster import Cluster
 from safestart_worker.warming import Kernels
 

@@ -12,7 +12,7 @@ from typing import Any, TypeVar, cast
 import psutil
 from distributed import Client, Future, LocalCluster, Nanny
 
-from safestart.runtime.warmup import warm
+from safestart.runtime.kernels.warmup import warm
 from safestart_worker.cluster.task import load, request_stop
 
 Answer = TypeVar("Answer")
@@ -148,7 +148,7 @@ class Cluster:
                 await asyncio.wait_for(self.stop(job, futures, outcome), LEAVE_TIMEOUT_S)
 
     async def compile(self, part: str) -> None:
-        """Compile one part of :data:`safestart.runtime.warmup.PARTS` in one of the processes; jobs go first."""
+        """Compile one part of :data:`safestart.runtime.kernels.warmup.PARTS` in one of the processes; jobs go first."""
         await self._all([self._client.submit(warm, part, pure=False, priority=_LAST)])
 
     async def warm_all(self) -> None:

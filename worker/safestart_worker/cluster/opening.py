@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import os
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack, asynccontextmanager
 from copy import deepcopy
@@ -11,12 +10,14 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import dask
-from distributed import Client, LocalCluster, Security
+from distributed import Client, LocalCluster, Nanny, Security
 from distributed.system import MEMORY_LIMIT
 
 from safestart.errors import InvalidInput
 from safestart_worker.cluster.cluster import Cluster
 from safestart_worker.cluster.credentials import configured, refused, throwaway
+from safestart_worker.cluster.own_files import forget_variables, unreadable
+from safestart_worker.cluster.own_nanny import OwnNanny
 
 CONNECT_TIMEOUT_S = 10.0
 _MEMORY_SHARE = 0.9
@@ -33,7 +34,7 @@ async def open_cluster(
     async with AsyncExitStack() as stack:
         folder = stack.enter_context(_private_folder())
         if not scheduler:
-            _forget_variables()
+            forget_variables()
         with dask.config.set(
             {**_defaults(scheduler), **_config(max_attempts), "temporary-directory": folder}
         ):
@@ -68,12 +69,6 @@ def _private_folder() -> TemporaryDirectory[str]:
     return TemporaryDirectory(prefix="safestart-", ignore_cleanup_errors=True)
 
 
-def _forget_variables() -> None:
-    """Remove Dask's variables, which the task processes would read when they start."""
-    for name in [name for name in os.environ if name.startswith("DASK_")]:
-        del os.environ[name]
-
-
 def _defaults(scheduler: str) -> dict[str, Any]:
     """Dask's own defaults in place of the user's files and variables, which may set lifetimes, preloads and folders.
 
@@ -91,6 +86,7 @@ def _embedded(processes: int, security: Security) -> LocalCluster:
         n_workers=processes,
         threads_per_worker=1,
         processes=True,
+        worker_class=OwnNanny if unreadable() else Nanny,
         host="127.0.0.1",
         security=security,
         # Dask always opens a port for its dashboard: take a free one, without pages (_config).

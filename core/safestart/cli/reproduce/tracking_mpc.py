@@ -15,11 +15,13 @@ PUBLISHED = {"theta_max_m": 3.597, "y_max_m": 2.008, "n_c_with_theta_zero": 35}
 WEIGHTS = ((1.0, 1.0), (1.0, 100.0), (100.0, 100.0))
 LONGEST = 60
 NOTES = (
-    "The paper prints theta_max, y_max and the horizon; times and impulses are ours for its case, by weights.",
-    "With theta = 0 the paper needs N_c = 35 from Table I's start. The start itself needs fewer; 35 is what the region "
-    "needs to come close to the exact one.",
-    "The printed theta_max leaves out the centripetal term of (35): near spins about a principal axis it lets theta be "
-    "where the input cannot hold it. The flight that shows it is counter_example.npz of process tracking-mpc.",
+    "The paper prints theta_max, y_max and the horizon. We computed the times and impulses for its case, one row for "
+    "each pair of weights.",
+    "With theta = 0 the paper needs N_c = 35 for the start of Table I. This start needs fewer steps; the region needs "
+    "35 to come close to the exact one.",
+    "The printed theta_max leaves out the centripetal term of (35). For spins near a principal axis it therefore "
+    "allows values of theta that the input cannot hold. The file counter_example.npz of process tracking-mpc shows "
+    "such a flight.",
 )
 
 _FLIGHTS: tuple[tuple[str, Justify], ...] = (

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from safestart.model.scenario import Floats
-from safestart.runtime.kernels import compiled
+from safestart.runtime.kernels.compiled import compiled
 
 
 @compiled(error_model="numpy")

@@ -50,7 +50,7 @@ def polyhedron(hold: Hold, inner: Ellipsoid, phase: float) -> Polyhedron | None:
         if closed is None:
             return None
         found, scaled = closed
-        largest = _sizes(hold.design.closed_loop, found)
+        largest = _sizes(hold.closed, found)
         if (largest <= size).all():
             volume = _volume(hold, scaled)
             return None if volume is None else replace(found, volume=volume)
@@ -63,14 +63,14 @@ def _closed(
     hold: Hold, inner: Ellipsoid, phase: float, sag: float, steps: int
 ) -> tuple[Polyhedron, Floats] | None:
     """Rows of more and more ``steps``, until the vertices end in the ellipsoid; see :func:`_irredundant`."""
-    root: Floats = np.asarray(np.linalg.cholesky(hold.design.cost), dtype=np.float64)
+    root: Floats = np.asarray(np.linalg.cholesky(hold.cost), dtype=np.float64)
     while steps <= _LONGEST:
         rows, bounds = _rows(hold, phase, steps, sag)
         if (bounds <= 0.0).any():
             return None
         found = _irredundant(rows, bounds, root, steps)
         if found is not None:
-            last = found[0].vertices @ np.linalg.matrix_power(hold.design.closed_loop, steps + 1).T
+            last = found[0].vertices @ np.linalg.matrix_power(hold.closed, steps + 1).T
             if (((last @ root) ** 2).sum(axis=1) <= inner.level).all():
                 return found
         steps *= 2
@@ -96,7 +96,7 @@ def _rows(hold: Hold, phase: float, steps: int, sag: float) -> tuple[Floats, Flo
             bounds.append(offsets - face @ place - sag)
         rows.append(-disk @ hold.design.gain @ power)
         bounds.append(hold.usable - disk @ thrust)
-        power = hold.design.closed_loop @ power
+        power = hold.closed @ power
     return np.concatenate(rows), np.concatenate(bounds)
 
 
@@ -120,7 +120,7 @@ def _irredundant(rows: Floats, bounds: Floats, root: Floats, steps: int) -> tupl
 
 def _volume(hold: Hold, scaled: Floats) -> float | None:
     """Of a set with the vertices y = root' e (V, 4), m^4/s^2; None: Qhull fails."""
-    root = np.linalg.cholesky(hold.design.cost)
+    root = np.linalg.cholesky(hold.cost)
     solid = _hull(scaled)
     return None if solid is None else float(solid.volume / abs(np.linalg.det(root)))
 

@@ -23,7 +23,7 @@ from safestart.errors import invalid
 from safestart.model.scenario import Floats
 
 Complexes = NDArray[np.complex128]
-_FASTEST = 1.0
+FASTEST = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,8 +39,8 @@ class TurningReference:
     @classmethod
     def of(cls, point: Floats, rate: float, mean_motion: float, step: float) -> TurningReference:
         """For a body-frame ``point`` (2,), m. Raises ``InvalidInput`` when the target turns over 1 rad in a step."""
-        if not 0.0 < step * max(rate, 1e-9) <= _FASTEST:
-            raise invalid("dt_s", f"a step in which the target turns {_FASTEST:g} rad at most", step)
+        if not 0.0 < step * max(rate, 1e-9) <= FASTEST:
+            raise invalid("dt_s", f"a step in which the target turns {FASTEST:g} rad at most", step)
         a, b = planar_transition(mean_motion, step), planar_input(mean_motion, step)
         place = np.array([point[0] + 1j * point[1], point[1] - 1j * point[0]])
         moved = cmath.exp(1j * rate * step) * np.eye(4) - a
@@ -55,12 +55,12 @@ class TurningReference:
     @property
     def most_thrust(self) -> float:
         """Largest |u| over all angles: max |Re(e^(i theta) c)|^2 = (|c|^2 + |c . c|) / 2."""
-        return _largest(self.thrust)
+        return largest_of(self.thrust)
 
     def most_speed(self, tau: float) -> float:
         """Largest LVLH speed over all angles, m/s, ``tau`` s after a node."""
         a, b = planar_transition(self.mean_motion, tau), planar_input(self.mean_motion, tau)
-        return _largest(a[2:] @ self.state + b[2:] @ self.thrust)
+        return largest_of(a[2:] @ self.state + b[2:] @ self.thrust)
 
     def between(self, tau: float) -> tuple[Floats, float]:
         """Where the body sees the reference ``tau`` s after a node: within a radius, m, of a point (2,)."""
@@ -71,7 +71,7 @@ class TurningReference:
         return np.array([turning.real, turning.imag]), float(abs(x - 1j * y) / 2.0)
 
 
-def _largest(phasor: Complexes) -> float:
+def largest_of(phasor: Complexes) -> float:
     """Largest |Re(e^(i theta) phasor)| over all theta."""
     squared = float(np.vdot(phasor, phasor).real + abs(phasor @ phasor))
     return math.sqrt(0.5 * squared)

@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from safestart.runtime.kernels import compiled
+from safestart.runtime.kernels.compiled import compiled
 
 SOLVED, INFEASIBLE, STALLED = 0, 1, 2
 

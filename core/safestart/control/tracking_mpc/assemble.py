@@ -17,7 +17,7 @@ import numpy as np
 
 from safestart.control.tracking_mpc.active_set import add_scaled
 from safestart.model.scenario import Floats
-from safestart.runtime.kernels import compiled
+from safestart.runtime.kernels.compiled import compiled
 
 
 class Fixed(NamedTuple):

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from safestart.control.tracking_mpc.active_set import INFEASIBLE, SOLVED, inverse_factor, minimise
-from safestart.runtime.kernels import compiled
+from safestart.runtime.kernels.compiled import compiled
 
 NOT_CONVEX = 3
 _ROUNDS = 60

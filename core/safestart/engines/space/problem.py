@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from importlib import import_module
 from typing import Protocol
 
 import numpy as np
@@ -16,6 +15,7 @@ from safestart.exact.space.plane import Plane
 from safestart.exact.space.question import SpaceQuestion
 from safestart.exact.space.watch import space_watch_of
 from safestart.model.scenario import Bools, Floats
+from safestart.runtime.named import load
 from safestart.runtime.progress import Context
 
 
@@ -69,8 +69,7 @@ class PlaneEngine(Protocol):
 
 def engine_in_space(name: str) -> PlaneEngine:
     """Load an engine's form for a plane of starts."""
-    module, kind = engine_spec(name).in_space.split(":")
-    made: PlaneEngine = getattr(import_module(module), kind)()
+    made: PlaneEngine = load(engine_spec(name).in_space, f"in_space of engine {name}")()
     return made
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from safestart.attitude.turn_kernel import into_body
 from safestart.constraints.dip import dip
-from safestart.runtime.kernels import compiled
+from safestart.runtime.kernels.compiled import compiled
 
 
 @compiled()

@@ -28,7 +28,7 @@ from safestart.exact.search import (
 from safestart.optim.ball_margin import CLOSE, SOLVED, largest_margin
 from safestart.optim.largest_margin import COARSE_M, FINE_M, LEAST_WEIGHT
 from safestart.optim.thrust_ball import INSIDE
-from safestart.runtime.kernels import compiled
+from safestart.runtime.kernels.compiled import compiled
 
 
 class Tables(NamedTuple):
@@ -50,7 +50,7 @@ class Tables(NamedTuple):
     step: float
 
 
-_MOST_ROWS = 160
+_MOST_ROWS = 600
 """More rows than this are so alike that the method slows down: then Clarabel is quicker."""
 
 

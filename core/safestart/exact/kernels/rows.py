@@ -12,7 +12,7 @@ import numpy as np
 
 from safestart.attitude.turn_kernel import out_of_body
 from safestart.dynamics import cwh
-from safestart.runtime.kernels import compiled
+from safestart.runtime.kernels.compiled import compiled
 
 _phase_functions = compiled()(cwh.phase_functions)
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from safestart.runtime import kernel_parts
+from safestart.runtime.kernels import parts as kernel_parts
 
 Indices = NDArray[np.uint64]
 Whole = NDArray[np.int64]
@@ -24,7 +24,7 @@ FAST = {"contract", "nsz"}
 _BARE: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": FAST}
 
 
-# Parts are not cached; the entry point is, with everything that it calls (see :mod:`safestart.runtime.kernels`).
+# Parts are not cached; the entry point is, with everything that it calls (:mod:`safestart.runtime.kernels.compiled`).
 def part(function: Callable[..., Any]) -> Any:
     """Decorator for functions that entry points call."""
     return kernel_parts.part(function, **_BARE)

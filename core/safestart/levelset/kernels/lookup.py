@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from safestart.model.scenario import Floats
-from safestart.runtime.kernels import compiled
+from safestart.runtime.kernels.compiled import compiled
 
 Whole = NDArray[np.int64]
 

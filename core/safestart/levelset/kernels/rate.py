@@ -7,7 +7,7 @@ import numpy as np
 from safestart.levelset.kernels.jit_options import FAST, Whole
 from safestart.levelset.kernels.table import entry
 from safestart.model.scenario import Floats
-from safestart.runtime.kernels import compiled
+from safestart.runtime.kernels.compiled import compiled
 
 
 @compiled(error_model="numpy", fastmath=FAST)

@@ -22,7 +22,7 @@ from safestart.dynamics.two_body_kernel import frame_of
 from safestart.model.orbit import EARTH_RADIUS as RADIUS
 from safestart.model.orbit import MU
 from safestart.model.scenario import Floats
-from safestart.runtime.kernels import compiled
+from safestart.runtime.kernels.compiled import compiled
 
 BULGE = MU * J2 * RADIUS**2
 _LOOSE = 0.005

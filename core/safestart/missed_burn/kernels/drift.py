@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from safestart.missed_burn.kernels.nearest import nearest
 from safestart.model.scenario import Floats
-from safestart.runtime.kernels import compiled
+from safestart.runtime.kernels.compiled import compiled
 
 ROUNDING = 1e-12
 """Every bound is lowered by this share of the magnitude of all terms: a hundred times the possible rounding."""

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from safestart.model.scenario import Floats
-from safestart.runtime.kernels import compiled
+from safestart.runtime.kernels.compiled import compiled
 
 _STEPS = 40
 _SUBSETS = 15

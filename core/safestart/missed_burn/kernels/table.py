@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from safestart.missed_burn.kernels.drift import ROUNDING
 from safestart.missed_burn.kernels.nearest import nearest
 from safestart.model.scenario import Floats
-from safestart.runtime.kernels import compiled
+from safestart.runtime.kernels.compiled import compiled
 
 _FIRST = 48
 Ends = NDArray[np.int64]

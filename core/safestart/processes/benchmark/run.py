@@ -67,11 +67,13 @@ def certified_in(masks: Mapping[str, Bools]) -> Bools | None:
 def _solve(problem: Problem, inputs: BenchmarkQuestion, context: Context) -> dict[str, EngineResult]:
     total = sum(engine_spec(name).share for name in inputs.engines) + _FINISH
     done = 0.0
+    inside = problem.inside()
     results: dict[str, EngineResult] = {}
     for name in inputs.engines:
         share = engine_spec(name).share
         solver = engine(name, inputs.options(name))
-        results[name] = solver.solve(problem, context.part(done, share, total, name))
+        found = solver.solve(problem, context.part(done, share, total, name))
+        results[name] = found.fit(name, inside)
         done += share
         context.step(done, total, f"{name} done")
     return results

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, create_model, model_validator
@@ -11,6 +12,7 @@ from safestart.model.scenario import Rest, SetKind
 from safestart.processes.base import ProcessSpec, WireModel
 from safestart.processes.views import Column, Comparison, Facts, Matrices, Overlay, Rows
 from safestart.processes.wire import DISTINCT, Confusion, GridInput, Horizon, ScenarioInput, Seed
+from safestart.runtime.named import misregistered
 
 if TYPE_CHECKING:
     EngineName = str
@@ -45,10 +47,18 @@ class BenchmarkQuestion(ScenarioInput):
 
     def options(self, engine: str) -> WireModel | None:
         """The options of an engine; None when it has none."""
-        found: WireModel | None = getattr(self, engine, None)
+        found: WireModel | None = getattr(self, engine) if engine in _OPTIONS else None
         return found
 
 
+def _require_free(names: Iterable[str]) -> None:
+    """Raise ``Misregistered`` for an engine whose name is a field of the inputs, or anything else of their class."""
+    for name in names:
+        if name == "seed" or name in BenchmarkQuestion.model_fields or hasattr(BenchmarkQuestion, name):
+            raise misregistered("name of an engine", "no field of the benchmark's inputs", name)
+
+
+_require_free(ENGINES)
 _OPTIONS: dict[str, Any] = {
     spec.name: (spec.options, Field(default_factory=spec.options))
     for spec in ENGINES.values()

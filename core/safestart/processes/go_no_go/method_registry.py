@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any, Literal
 
-from safestart.processes.sharding import load
+from safestart.model.registry import by_name
+from safestart.runtime.named import load
 
 Decide = Callable[..., Any]
 """(GoNoGoInputs, Conditions, Context) -> Verdicts."""
@@ -70,7 +71,7 @@ _ALL = (
     ),
 )
 
-METHODS = {method.name: method for method in _ALL}
+METHODS = by_name("methods", _ALL, lambda method: method.name)
 RENAMED = {"closed_form": "paper"}
 """Deprecated names, still accepted."""
 DEFAULT, PROVING = "auto", "exact"
@@ -92,11 +93,12 @@ def method_of(name: str) -> Method:
 @cache
 def decide_by(name: str) -> Decide:
     """Import and return the function of a method."""
-    return load(method_of(name).decide)
+    found: Decide = load(method_of(name).decide, f"decide of method {name}")
+    return found
 
 
 @cache
 def first_of(name: str) -> Decide | None:
     """Import and return what a method asks of one start before, None where it asks nothing."""
     first = method_of(name).first
-    return load(first) if first else None
+    return load(first, f"first of method {name}") if first else None

@@ -100,8 +100,8 @@ def sentence(question: Question, answer: Answer) -> str:
     )
 
 
-def told(question: Question | SpaceQuestion, answer: Answer) -> str:
-    """The verdict in words, without the keep-out radius."""
+def told(question: Question | SpaceQuestion, answer: Answer, beside: str = "") -> str:
+    """The verdict in words, without the keep-out radius; ``beside`` names what a NO_GO may break, too."""
     if answer.verdict is Verdict.UNDECIDED:
         return f"undecided: {answer.reason}; margin between {answer.lower:.3g} and {answer.upper:.3g} m"
     span, spare, short = question.horizon, f"{answer.lower:.2f} m", f"{-answer.upper:.2f} m"
@@ -134,7 +134,9 @@ def told(question: Question | SpaceQuestion, answer: Answer) -> str:
         )
     asked = "is at rest in the hold ball within" if question.goal is not None else "stays for"
     told = f"no thrust {held(question)}{fast} {asked} {span:g} s"
-    return f"{told}: each history misses a limit by at least {short}{scales}"
+    return (
+        f"{told}: each history misses a limit{f' or {beside}' if beside else ''} by at least {short}{scales}"
+    )
 
 
 def held(question: Question | SpaceQuestion) -> str:

@@ -128,6 +128,7 @@ SPEC = ProcessSpec(
     kernels=("exact answers",),
     run="safestart.processes.go_no_go.run:run",
     light=True,
+    at_once="safestart.processes.go_no_go.run:output_at_once",
     cost=lambda inputs: cost(inputs, len(inputs.states)),
     states="states",
     tables=(

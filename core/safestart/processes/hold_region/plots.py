@@ -10,17 +10,24 @@ from safestart.attitude.body_frame import rotation
 from safestart.control.hold.ellipsoid import Ellipsoid
 from safestart.control.hold.loop import Hold
 from safestart.control.hold.polyhedron import Polyhedron
+from safestart.control.hold.regime_hold import RegimeHold
 from safestart.model.scenario import Floats
 from safestart.processes.hold_region.spec import HoldRegionInputs
 from safestart.processes.plotting import draw_corridor, drawn_as, figure
 from safestart.sets.backward.polygon import box, cut, hull
 
-_SMALL, _LARGE = "#D55E00", "#0072B2"
+_SMALL, _LARGE, _OWN = "#D55E00", "#0072B2", "#009E73"
 
 
 @drawn_as("hold_region.png")
 def picture(
-    inputs: HoldRegionInputs, hold: Hold, inner: Ellipsoid, outer: Polyhedron | None, phase: float
+    inputs: HoldRegionInputs,
+    hold: Hold,
+    inner: Ellipsoid,
+    outer: Polyhedron | None,
+    phase: float,
+    own: RegimeHold,
+    kept: Ellipsoid | None,
 ) -> Figure:
     """Left: where a start that turns with the reference may be. Right: the sets' shadows along x and y, LVLH."""
     drawing = figure(12.0, 5.0)
@@ -33,9 +40,13 @@ def picture(
         wide = 2.0 * float(np.abs(outer.vertices[:, :2]).max())
         whole = box(np.zeros(2), np.full(2, wide))
         lengths = np.linalg.norm(outer.rows[:, :2], axis=1)
-        kept = lengths > 0.0
+        flat_rows = lengths > 0.0
         assert whole is not None
-        flat = cut(whole, outer.rows[kept, :2] / lengths[kept, None], outer.bounds[kept] / lengths[kept])
+        flat = cut(
+            whole,
+            outer.rows[flat_rows, :2] / lengths[flat_rows, None],
+            outer.bounds[flat_rows] / lengths[flat_rows],
+        )
         large = None if flat is None else flat @ back.T + point
     top = max(float(one[:, 1].max()) for one in (small, large) if one is not None)
     draw_corridor(place, inputs.scenario().corridor, 1.3 * top)
@@ -45,10 +56,13 @@ def picture(
     place.plot(*point, marker="+", color="black", markersize=9)
     place.set_title("starts with the reference's velocity", fontsize=10)
     place.legend(fontsize=8, loc="lower right")
-    inverse = np.linalg.inv(hold.design.cost)
+    inverse = np.linalg.inv(hold.cost)
     for axes, pair, name in ((radial, [0, 2], "x"), (along, [1, 3], "y")):
         root = np.linalg.cholesky(inner.level * inverse[np.ix_(pair, pair)])
         _ring(axes, _circle() @ root.T, _SMALL, "ellipsoid")
+        if kept is not None and kept.level > 0.0:
+            root = np.linalg.cholesky(kept.level * np.linalg.inv(own.cost)[np.ix_(pair, pair)])
+            _ring(axes, _circle() @ root.T, _OWN, "the controller's own hold")
         if outer is not None:
             _ring(axes, hull(outer.vertices[:, pair]), _LARGE, "polyhedron")
         axes.set_xlabel(f"error of {name} [m]")
@@ -69,7 +83,7 @@ def _circle() -> Floats:
 
 def _section(hold: Hold, inner: Ellipsoid) -> Floats:
     """Outline of the ellipsoid at velocity error 0."""
-    root = np.linalg.cholesky(hold.design.cost[:2, :2] / inner.level)
+    root = np.linalg.cholesky(hold.cost[:2, :2] / inner.level)
     return np.asarray(np.linalg.solve(root.T, _circle().T).T)
 
 

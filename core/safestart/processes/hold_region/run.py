@@ -18,7 +18,9 @@ from safestart.control.hold.turning_reference import TurningReference
 from safestart.dynamics.cwh import Cwh
 from safestart.model.scenario import Floats
 from safestart.processes.base import ProcessOutput
+from safestart.processes.hold_region.flown import summary
 from safestart.processes.hold_region.plots import picture
+from safestart.processes.hold_region.regime import regime, regime_document, regime_flights
 from safestart.processes.hold_region.spec import HoldRegionInputs
 from safestart.processes.plotting import npz
 from safestart.runtime.progress import Context
@@ -27,9 +29,7 @@ from safestart.simulation.plant import Plant
 
 _AFTER = 15
 _BEYOND = 1.02
-# Rounding of a flight: the boundary's own distance is 0.
-_TOLERANCE = 1e-9
-_PARTS = 5
+_PARTS = 4
 
 
 def run(inputs: HoldRegionInputs, context: Context) -> ProcessOutput:
@@ -41,13 +41,17 @@ def run(inputs: HoldRegionInputs, context: Context) -> ProcessOutput:
         n, inputs.dt_s, inputs.position_scale_m, inputs.velocity_scale_m_s, inputs.thrust_scale_m_s2 or most
     )
     reference = TurningReference.of(point, rate, n, inputs.dt_s)
-    hold = Hold(design, reference, corridor_of(scenario.corridor), most)
+    hold = Hold.of(design, reference, corridor_of(scenario.corridor), most)
     phase = math.radians(inputs.phase_deg)
     inner = ellipsoid(hold)
     context.step(1, _PARTS, "ellipsoid")
     outer = polyhedron(hold, inner, phase)
     context.step(2, _PARTS, "polyhedron")
-    flown = _flights(inputs, hold, inner, outer, phase, context) if inputs.flights else []
+    own, kept = regime(inputs)
+    context.step(3, _PARTS, "the controller's own hold")
+    random = np.random.Generator(np.random.Philox(inputs.seed))
+    flown = _flights(inputs, hold, inner, outer, phase, random)
+    flown += regime_flights(inputs, own, kept, random)
     document: dict[str, Any] = {
         "code": "no_hold" if inner.level <= 0.0 else "ok" if outer is not None else "not_closed",
         "gain": design.gain.tolist(),
@@ -56,6 +60,7 @@ def run(inputs: HoldRegionInputs, context: Context) -> ProcessOutput:
         "reference_thrust_m_s2": reference.most_thrust,
         "ellipsoid": None,
         "polyhedron": None,
+        "regime": regime_document(own, kept),
         "flown": flown,
     }
     arrays: dict[str, Floats] = {}
@@ -82,7 +87,7 @@ def run(inputs: HoldRegionInputs, context: Context) -> ProcessOutput:
             "bounds": outer.bounds,
             "vertices": outer.vertices,
         }
-    artifacts = [picture(inputs, hold, inner, outer, phase)] if inner.level > 0.0 else []
+    artifacts = [picture(inputs, hold, inner, outer, phase, own, kept)] if inner.level > 0.0 else []
     if arrays:
         artifacts.append(npz("hold_region.npz", arrays))
     context.step(_PARTS, _PARTS)
@@ -102,44 +107,31 @@ def _flights(
     inner: Ellipsoid,
     outer: Polyhedron | None,
     phase: float,
-    context: Context,
+    random: np.random.Generator,
 ) -> list[dict[str, Any]]:
-    random = np.random.Generator(np.random.Philox(inputs.seed))
     out: list[dict[str, Any]] = []
-    if inner.level <= 0.0:
+    if inner.level <= 0.0 or inputs.flights == 0:
         return out
     sphere = random.standard_normal((inputs.flights, 4))
     sphere /= np.linalg.norm(sphere, axis=1)[:, None]
-    shell = math.sqrt(inner.level) * sphere @ np.linalg.inv(np.linalg.cholesky(hold.design.cost))
+    shell = math.sqrt(inner.level) * sphere @ np.linalg.inv(np.linalg.cholesky(hold.cost))
     out.append(_flown("ellipsoid", hold, shell, random.uniform(0.0, 2.0 * math.pi, len(shell)), 40))
-    context.step(3, _PARTS, "flights")
     if outer is None:
         return out
     chosen = outer.vertices[random.permutation(len(outer.vertices))[: inputs.flights]]
     angles = np.full(len(chosen), phase)
     out.append(_flown("polyhedron", hold, chosen, angles, outer.steps + _AFTER))
-    context.step(4, _PARTS, "flights")
     out.append(_flown("beyond_polyhedron", hold, _BEYOND * chosen, angles, outer.steps + _AFTER))
     return out
 
 
 def _flown(name: str, hold: Hold, errors: Floats, phases: Floats, steps: int) -> dict[str, Any]:
     """Fly each error in the loop, which watches the corridor at all times; held: no limit met."""
-    held, margins, peaks = 0, [], []
+    records = []
     for error, phase in zip(errors, phases.tolist(), strict=True):
         state = hold.reference.at(phase)[0] + error
         plant = Plant(Cwh(hold.reference.mean_motion), Spin(hold.reference.rate, phase=phase))
         pilot = HoldLqr(hold.design, hold.reference, phase, hold.most)
         start = np.array([state[0], state[1], 0.0, state[2], state[3], 0.0])
-        record = fly(plant, [hold.corridor], pilot, start, steps, hold.reference.step)
-        margins.append(float(record.margin[0]))
-        peaks.append(float(record.peak[0]))
-        held += margins[-1] >= -_TOLERANCE and peaks[-1] <= hold.most * (1.0 + _TOLERANCE)
-    finite = bool(np.isfinite(margins).all())
-    return {
-        "set": name,
-        "starts": len(errors),
-        "held": held,
-        "least_margin_m": min(margins) if finite else None,
-        "most_thrust_m_s2": max(peaks) if finite else None,
-    }
+        records.append(fly(plant, [hold.corridor], pilot, start, steps, hold.reference.step))
+    return summary(name, records, hold.most)

@@ -10,7 +10,7 @@ from safestart.processes.base import ProcessSpec, WireModel
 from safestart.processes.views import Column, Facts, Rows
 from safestart.processes.wire import ScenarioInput, Seed
 
-SetName = Literal["ellipsoid", "polyhedron", "beyond_polyhedron"]
+SetName = Literal["ellipsoid", "polyhedron", "beyond_polyhedron", "regime"]
 
 
 class HoldRegionInputs(ScenarioInput):
@@ -34,6 +34,10 @@ class HoldRegionInputs(ScenarioInput):
         ge=-360,
         le=360,
         description="Angle of the body against LVLH at the start (the polyhedron's), deg.",
+    )
+    preset: Literal["tuned", "paper"] = Field(
+        "tuned",
+        description="Gains of the three-regime controller, whose own hold is examined beside the LQR.",
     )
     flights: int = Field(40, ge=0, le=1000, description="Flights from the boundary of each set; 0: none.")
     seed: Seed = 0
@@ -60,6 +64,26 @@ class PolyhedronOutput(WireModel):
     volume_ratio: float = Field(description="Over the ellipsoid's volume.")
 
 
+class RegimeOutput(WireModel):
+    """What the three-regime controller keeps by its own hold: {e' P e <= level} in the errors of (x, y, vx, vy) and of
+    the previous command (ux, uy), LVLH, about where it settles; valid at every angle of the body."""
+
+    code: Literal["ok", "unstable", "no_hold"] = Field(
+        description="unstable: the law with the filter's weight on moves does not shrink errors; no_hold: where it "
+        "settles meets a limit."
+    )
+    spectral_radius: float = Field(description="Of the errors' step; 1 or more: unstable.")
+    level: float
+    limited_by: str | None = Field(
+        description="A face, thrust, filter (a row of its forecast), hold_band, switch_speed or sync_radius."
+    )
+    half_extents: list[float] | None = Field(description="m, m, m/s, m/s, m/s², m/s².")
+    settles_m: list[float] | None = Field(
+        description="Where it settles, body frame, m; it circles about it by um."
+    )
+    cost: list[list[float]] | None = Field(description="P (6 x 6).")
+
+
 class FlownHoldOutput(WireModel):
     """Flights from a set's boundary; from beyond_polyhedron, at 1.02 of its vertices, all must fail."""
 
@@ -83,6 +107,7 @@ class HoldRegionOutputs(WireModel):
     reference_thrust_m_s2: float = Field(description="Largest thrust that the hold point itself asks for.")
     ellipsoid: EllipsoidOutput | None
     polyhedron: PolyhedronOutput | None
+    regime: RegimeOutput
     flown: list[FlownHoldOutput]
 
 
@@ -92,7 +117,8 @@ SPEC = ProcessSpec(
     description=(
         "Station keeping at the hold point of a turning target by LQR (Iskender et al., section 8.3): the largest "
         "ellipsoid of errors that stays within corridor and thrust limit at all times and every angle of the body, and "
-        "the largest set at all from which the loop meets no limit, a polyhedron; both flown from their boundary."
+        "the largest set at all from which the loop meets no limit, a polyhedron. Beside them the ellipsoid that the "
+        "three-regime controller keeps for ever by its own hold. All are flown from their boundary."
     ),
     inputs=HoldRegionInputs,
     outputs=HoldRegionOutputs,
@@ -109,6 +135,15 @@ SPEC = ProcessSpec(
                 Column("Polyhedron: faces", "polyhedron.faces"),
                 Column("steps", "polyhedron.steps"),
                 Column("volume over the ellipsoid's", "polyhedron.volume_ratio"),
+            )
+        ),
+        Facts(
+            (
+                Column("The controller's own hold", "regime.code"),
+                Column("spectral radius", "regime.spectral_radius"),
+                Column("settles at [m, body frame]", "regime.settles_m"),
+                Column("its ellipsoid limited by", "regime.limited_by"),
+                Column("half extents [m, m/s, m/s²]", "regime.half_extents"),
             )
         ),
         Rows(

@@ -22,7 +22,7 @@ from safestart.processes.plotting import draw_corridor, drawn_as, figure
 
 _LABELS = {
     "tube": "S_tube (stays, disturbed)",
-    "analytical_tube": "paper's, tightened",
+    "analytical_tube": "paper's, tightened (not sound)",
     "certified": "S_certified (sound)",
     "analytical": "S_ana (paper's, not sound)",
     "synchronize": "S_sync (reach and co-rotate)",

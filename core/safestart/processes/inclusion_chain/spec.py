@@ -194,7 +194,7 @@ SPEC = ProcessSpec(
             explore=True,
         ),
         Rows(
-            "Certified starts of a fine grid that cannot stay",
+            "Starts of a fine grid that a closed form certifies, and those that cannot stay",
             "slivers",
             (
                 Column("certified by", "inner"),

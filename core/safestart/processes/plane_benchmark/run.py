@@ -35,14 +35,15 @@ def run(inputs: PlaneBenchmarkInputs, context: Context) -> ProcessOutput:
     )
     total, done = sum(engine_spec(name).share for name in inputs.engines) + _FINISH, 0.0
     results: dict[str, EngineResult] = {}
+    inside = problem.inside()
     for name in inputs.engines:
         share = engine_spec(name).share
-        results[name] = engine_in_space(name).solve(problem, context.part(done, share, total, name))
+        found = engine_in_space(name).solve(problem, context.part(done, share, total, name))
+        results[name] = found.fit(name, inside)
         done += share
         context.step(done, total, f"{name} done")
     a, b, _ = problem.plane.grid(problem.across, problem.along)
     cell = float((a[1] - a[0]) * (b[1] - b[0]))
-    inside = problem.inside()
     arrays: dict[str, Any] = {"x_m": a, "y_m": b, "inside": inside}
     for name, result in results.items():
         if result.mask is not None:

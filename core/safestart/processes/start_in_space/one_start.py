@@ -11,16 +11,17 @@ from pydantic import Field
 from safestart.processes.base import WireModel
 from safestart.processes.flat import Flat, Parameter
 from safestart.processes.go_no_go.question_fields import QuestionKind
-from safestart.processes.sharding import load
 from safestart.processes.start_in_space.flight_output import SpaceFlight, Turning
 from safestart.processes.start_in_space.parts import FiveFaces, SpaceStart
 from safestart.processes.start_in_space.spec import (
+    DECIDED_BY,
     SPEC,
     Method,
     SpaceInputs,
     SpaceOutputs,
 )
 from safestart.processes.tracking_mpc.controller_input import TrackingAnswer
+from safestart.runtime.named import load
 from safestart.runtime.progress import Context
 
 _WHOLE = Flat(SpaceInputs, {"starts": SpaceStart})
@@ -28,7 +29,7 @@ _FIVE = Flat(SpaceInputs, {"starts": SpaceStart, "corridor": FiveFaces})
 PARAMETERS: dict[str, Parameter] = _WHOLE.parameters | _FIVE.parameters
 """Flat names; the five faces come as their own parameters or, like any others, as the JSON of ``corridor``."""
 _ARRAYS = (
-    *("verdict", "margin_m", "model_error_m", "violated_faces", "position_m", "velocity_m_s"),
+    *("verdict", "decided_by", "margin_m", "model_error_m", "violated_faces", "position_m", "velocity_m_s"),
     *("reason", "end_s", "restriction", "flight", "tracking", "proof"),
 )
 
@@ -37,6 +38,7 @@ class SpaceAnswer(WireModel):
     """The verdict on one start in space; fields as in the outputs of start-in-space."""
 
     verdict: Literal["GO", "NO_GO", "UNDECIDED"]
+    decided_by: str | None = Field(description=DECIDED_BY)
     margin_m: float | None = Field(description=SpaceOutputs.model_fields["margin_m"].description)
     model_error_m: float = Field(description=SpaceOutputs.model_fields["model_error_m"].description)
     violated_faces: list[str] = Field(description=SpaceOutputs.model_fields["violated_faces"].description)

@@ -42,13 +42,16 @@ def run(inputs: SpaceInputs, context: Context) -> ProcessOutput:
         )
     watch = space_watch_of(question)
     flown = _by_tracking(inputs, question) if inputs.method == "tracking" else None
-    answers, tracking = [], []
+    answers, deciders, tracking = [], list[str | None](), []
+    prover = "exact" if half is None and not question.unknowns else "families"
     for k, state in enumerate(states):
         answer = decide_in_space(question, state) if half is None else decide_from_box(question, state, half)
+        by = prover
         if flown is not None:
-            answer, said, told = flown(state, answer, _told(question, half, answer))
+            answer, by, said, told = flown(state, answer, _told(question, half, answer))
             tracking.append((said, told))
         answers.append(answer)
+        deciders.append(None if answer.verdict is Verdict.UNDECIDED else by)
         context.step(k + 1, len(states), "starts")
     spans = [_covering(question, answer) for answer in answers]
     errors = [model_error(span, state) for span, state in zip(spans, states, strict=True)]
@@ -65,6 +68,7 @@ def run(inputs: SpaceInputs, context: Context) -> ProcessOutput:
             "question": question.kind,
             "faces": list(watch.names),
             "verdict": [answer.verdict.value for answer in answers],
+            "decided_by": deciders,
             "margin_m": [finite(answer.margin_m) for answer in answers],
             "model_error_m": errors,
             "violated_faces": [
@@ -128,16 +132,15 @@ def _told(question: SpaceQuestion, half: Floats | None, answer: Answer) -> str:
     at_start = lost_at_start(question.demands, answer)
     if at_start:
         return f"the start itself is {-answer.upper:.2f} m on the wrong side of {at_start}"
-    told = asked.told(question, answer)
     if answer.verdict is Verdict.GO and answer.restriction:
+        told = asked.told(question, answer)
         return f"{told}; found in a convex part of what is asked ({'; '.join(answer.restriction)})"
     if answer.verdict is Verdict.NO_GO and question.demands:
         rows = (*answer.multipliers, *(row for part in answer.parts for row in part.multipliers))
         by = VIEW if any(row.face == VIEW for row in rows) else ""
         without = [name for name in question.demands.names if name != by]
-        beside = f" or {by}" if by else ""
-        return f"{told}{beside}{', even without ' if without else ''}{', '.join(without)}"
-    return told
+        return f"{asked.told(question, answer, by)}{', even without ' if without else ''}{', '.join(without)}"
+    return asked.told(question, answer)
 
 
 def _demands_violated(question: SpaceQuestion, state: Floats) -> list[str]:

@@ -28,6 +28,10 @@ MOST_PROOFS = 100
 UNKNOWNS = ("attitude_half_angle_deg", "body_rate_half_width_deg_s", "inertia_half_width", "disturbance_m_s2")
 """What may not be known beside the start."""
 Method = Literal["exact", "auto", "tracking"]
+DECIDED_BY = (
+    "What decided: exact (a cone program, proved for the horizon), families (one for the whole box of starts or every "
+    "member of what is not known), tracking (flown, proved, certified); null when UNDECIDED."
+)
 
 
 class _Starts(WireModel):
@@ -152,6 +156,7 @@ class SpaceOutputs(WireModel):
     question: QuestionKind
     faces: list[str] = Field(description="Names of the faces.")
     verdict: list[Literal["GO", "NO_GO", "UNDECIDED"]]
+    decided_by: list[str | None] = Field(description=DECIDED_BY)
     margin_m: list[float | None] = Field(
         description="Proved bound on the margin (distance to every face; limits in metres, see docs), m: from below "
         "for GO, from above for NO_GO."
@@ -226,6 +231,7 @@ SPEC = ProcessSpec(
             "starts",
             (
                 "verdict",
+                "decided_by",
                 "margin_m",
                 "model_error_m",
                 "position_m",
@@ -246,6 +252,7 @@ SPEC = ProcessSpec(
             columns=(
                 Column("margin [m]", "margin_m"),
                 Column("error of the model [m]", "model_error_m"),
+                Column("decided by", "decided_by"),
                 Column("why", "reason"),
                 Column("faces violated at the start", "violated_faces"),
                 Column("found in", "restriction"),

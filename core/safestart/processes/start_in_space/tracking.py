@@ -24,11 +24,11 @@ from safestart.processes.tracking_mpc import flown_answer as flown
 from safestart.processes.wire import DT_S
 from safestart.tracking.take import Approach, take
 
-Flights = Callable[[Floats, Answer, str], tuple[Answer, dict[str, Any], str]]
+Flights = Callable[[Floats, Answer, str], tuple[Answer, str | None, dict[str, Any], str]]
 
 
 def flights(inputs: SpaceInputs, question: SpaceQuestion) -> Flights:
-    """A function from start (6,), exact answer and its words to answer, ``TrackingAnswer`` and words.
+    """A function from start (6,), exact answer and its words to answer, what decided it, ``TrackingAnswer`` and words.
 
     Raises ``InvalidInput`` for what the controller does not know.
     """
@@ -54,7 +54,7 @@ def flights(inputs: SpaceInputs, question: SpaceQuestion) -> Flights:
             )
     approach = _approach(inputs, question)
 
-    def fly(state: Floats, exact: Answer, told: str) -> tuple[Answer, dict[str, Any], str]:
+    def fly(state: Floats, exact: Answer, told: str) -> tuple[Answer, str | None, dict[str, Any], str]:
         def margin(thrust: Floats) -> float:
             watch = space_watch_of(replace(question, steps=len(thrust)))
             shares = _shares(question, thrust)
@@ -69,7 +69,7 @@ def flights(inputs: SpaceInputs, question: SpaceQuestion) -> Flights:
             answer = Answer(Verdict.GO, flight.margin, flight.margin, np.inf, thrust, (), 0)
         elif verdict is Verdict.UNDECIDED:
             answer = replace(exact, verdict=verdict, margin_m=math.nan, thrust=None)
-        return answer, flown.flown_answer(flight, exact), words
+        return answer, by, flown.flown_answer(flight, exact), words
 
     return fly
 

@@ -6,6 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
+from safestart.errors import invalid
+from safestart.model.registry import by_name
 from safestart.processes.wire import DT_S
 
 
@@ -15,8 +17,10 @@ class Offered:
 
     ``title`` names it in pictures and on pages, ``text`` describes it on the wire. ``make`` names the function,
     ``module:function``, from inputs, scenario, control interval (s), number of intervals and forecast nodes to the
-    controller. ``dt``: its control interval, s, which divides 2 s. ``compiled``: the filter's compiled loop can fly it;
-    the others are flown one start after another. ``note`` is said of its flights in every result.
+    controller. ``dt``: its control interval, s, which divides 2 s. ``plan`` names the function, of the same arguments,
+    that makes the tables of the filter's compiled loop; a controller without is flown one start after another.
+    ``own_limit``: it minds the thrust limit itself; what others command beyond is cut to the limit.
+    ``note`` is said of its flights in every result.
     """
 
     name: str
@@ -24,25 +28,32 @@ class Offered:
     text: str
     make: str
     dt: float = DT_S
-    compiled: bool = False
+    plan: str = ""
+    own_limit: bool = False
     note: str = ""
+
+    def __post_init__(self) -> None:
+        if not (self.dt > 0.0 and (DT_S / self.dt).is_integer()):
+            raise invalid(f"dt of {self.name}", f"an interval that divides {DT_S:g} s", self.dt)
 
 
 _HERE = "safestart.processes.sweep.fleet"
 _ALL = (
-    Offered("filter", "filter", "the paper's", f"{_HERE}:filter_of", compiled=True),
+    Offered("filter", "filter", "the paper's", f"{_HERE}:filter_of", plan=f"{_HERE}:plan_of", own_limit=True),
     Offered(
         *("filter_fine", "filter, 0.5 s", "the same commanded every 0.5 s", f"{_HERE}:filter_of"),
         dt=0.5,
-        compiled=True,
+        plan=f"{_HERE}:plan_of",
+        own_limit=True,
     ),
     Offered(
         *("sequence", "sequence", "MPC over the whole thrust sequence", f"{_HERE}:sequence_of"),
+        own_limit=True,
         note="the least impulse that keeps a margin; it may loiter. It is always checked at all times.",
     ),
 )
 
-CONTROLLERS = {one.name: one for one in _ALL}
+CONTROLLERS = by_name("controllers", _ALL, lambda one: one.name)
 TEXTS = "; ".join(f"{one.name}: {one.text}" for one in _ALL)
 """All of them in words."""
 
@@ -54,4 +65,4 @@ else:
 
 def slow(names: Iterable[str]) -> bool:
     """Whether one of them is flown one start after another."""
-    return not all(CONTROLLERS[name].compiled for name in names)
+    return not all(CONTROLLERS[name].plan for name in names)

@@ -10,18 +10,20 @@ import numpy as np
 
 from safestart.constraints.corridor import corridor_of
 from safestart.control.controller import Controller
-from safestart.control.forecast import flight_plan
+from safestart.control.forecast import Plan, flight_plan
 from safestart.control.gains import Gains, preset
+from safestart.control.limited import Limited
 from safestart.control.sequence_mpc import SequenceMpc, start_verdict
 from safestart.control.three_regimes import ThreeRegimes
+from safestart.dynamics.registry import CWH
 from safestart.exact.question import Question
 from safestart.model.scenario import Rest, Scenario
-from safestart.processes.sharding import load
 from safestart.processes.sweep.cases import Cases
 from safestart.processes.sweep.controllers import CONTROLLERS
 from safestart.processes.sweep.inputs import SweepInputs
 from safestart.processes.sweep.judge import UNASKED, Verdicts, of
 from safestart.processes.wire import DT_S
+from safestart.runtime.named import load
 from safestart.simulation.compiled_loop import fly
 from safestart.simulation.loop import fly as fly_slowly
 from safestart.simulation.noise import DRAWS, Drawn, Truth, draws, truth_of
@@ -90,11 +92,12 @@ def timing(inputs: SweepInputs, controller: str) -> tuple[float, int, int]:
 
 def fly_all(inputs: SweepInputs, controller: str, cases: Cases, poll: Callable[[int], None]) -> JudgedFlights:
     """Fly every case; ``poll`` gets the number flown and may raise."""
-    if not CONTROLLERS[controller].compiled or inputs.truth.model != "cwh":
+    offered = CONTROLLERS[controller]
+    if not offered.plan or inputs.truth.model != CWH:
         return _one_by_one(inputs, controller, cases, poll)
-    dt, steps, nodes = timing(inputs, controller)
+    _, steps, _ = timed = timing(inputs, controller)
     truth = truth_from(inputs)
-    plan = flight_plan(cases.scenario, gains_of(inputs), dt, steps, nodes=nodes)
+    plan: Plan = load(offered.plan, f"plan of controller {controller}")(inputs, cases.scenario, *timed)
     starts = start_states(cases.scenario, cases.points, Rest.LVLH)
     parts = []
     for first in range(0, len(starts), CHUNK):
@@ -126,13 +129,20 @@ def fly_one(
 
 def controller_of(inputs: SweepInputs, controller: str, cases: Cases) -> Controller:
     """The controller of that name for a scenario."""
-    made: Controller = load(CONTROLLERS[controller].make)(inputs, cases.scenario, *timing(inputs, controller))
-    return made
+    offered = CONTROLLERS[controller]
+    make = load(offered.make, f"make of controller {controller}")
+    made: Controller = make(inputs, cases.scenario, *timing(inputs, controller))
+    return made if offered.own_limit else Limited(made, cases.scenario.chaser.max_acceleration)
+
+
+def plan_of(inputs: SweepInputs, scenario: Scenario, dt: float, steps: int, nodes: int) -> Plan:
+    """Tables of the paper's safety filter, with the request's gains."""
+    return flight_plan(scenario, gains_of(inputs), dt, steps, nodes=nodes)
 
 
 def filter_of(inputs: SweepInputs, scenario: Scenario, dt: float, steps: int, nodes: int) -> Controller:
     """The safety filter of the paper, with the request's gains."""
-    return ThreeRegimes(flight_plan(scenario, gains_of(inputs), dt, steps, nodes=nodes))
+    return ThreeRegimes(plan_of(inputs, scenario, dt, steps, nodes))
 
 
 def sequence_of(_: SweepInputs, scenario: Scenario, dt: float, steps: int, __: int) -> Controller:

@@ -6,6 +6,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
+from safestart.dynamics.registry import CWH, MOTIONS, MotionName
+from safestart.dynamics.registry import TEXTS as MOTION_TEXTS
 from safestart.model.scenario import MAX_MEAN_MOTION, MAX_RANGE
 from safestart.model.wire_model import WireModel
 from safestart.processes.sweep.controllers import CONTROLLERS, TEXTS, Controller, slow
@@ -21,7 +23,9 @@ def _by_present_name(names: Any) -> Any:
 
 
 MAX_CASES = 1_000_000_000
-_SLOW = ", ".join(name for name in CONTROLLERS if slow([name]))
+_SLOW = " or ".join(
+    [name for name in CONTROLLERS if slow([name])] + [name for name in MOTIONS if name != CWH]
+)
 # Flown interval by interval from Python, or with a scenario of its own per case.
 MAX_SLOW_CASES = 200_000
 
@@ -36,10 +40,7 @@ Sigma = Annotated[float, Field(ge=0, le=100)]
 class TruthInput(WireModel):
     """The flown world."""
 
-    model: Literal["cwh", "two_body_j2"] = Field(
-        "cwh",
-        description="cwh: exact linear motion; two_body_j2: nonlinear two-body motion with J2 (DOP853).",
-    )
+    model: MotionName = Field(CWH, description=f"{MOTION_TEXTS}.")
     check: Literal["continuous", "substeps", "nodes"] = Field(
         "continuous",
         description="Where to look for a violation: at all times, at the paper's three sub-steps, at control nodes.",
@@ -123,11 +124,10 @@ class SweepInputs(WireModel):
         if self.total > MAX_CASES:
             raise ValueError(f"cases_per_cell: at most {MAX_CASES} cases in all, not {self.total}")
         if self.one_by_one and self.total > MAX_SLOW_CASES:
-            raise ValueError(
-                f"cases_per_cell: at most {MAX_SLOW_CASES} cases with {_SLOW} or two_body_j2, not {self.total}"
-            )
-        if self.truth.model != "cwh" and self.mean_motion_rad_s < 1e-4:
-            raise ValueError("mean_motion_rad_s: at least 1e-4 for two_body_j2")
+            raise ValueError(f"cases_per_cell: at most {MAX_SLOW_CASES} cases with {_SLOW}, not {self.total}")
+        motion = MOTIONS[self.truth.model]
+        if not motion.takes(self.mean_motion_rad_s):
+            raise ValueError(f"mean_motion_rad_s: {motion.required}")
         return self
 
     @property
@@ -140,7 +140,7 @@ class SweepInputs(WireModel):
     @property
     def one_by_one(self) -> bool:
         """Whether starts are flown one after another, in Python."""
-        return slow(self.controllers) or self.truth.model != "cwh"
+        return slow(self.controllers) or self.truth.model != CWH
 
     @property
     def steps(self) -> int:

@@ -13,6 +13,7 @@ from safestart.campaign.spread import Spread
 from safestart.campaign.study import Study
 from safestart.campaign.table import Column, Kind
 from safestart.campaign.tally import Flagged, Known, Rows, Tally, Total
+from safestart.dynamics.registry import CWH, MOTIONS
 from safestart.processes.sweep.controllers import CONTROLLERS
 from safestart.processes.sweep.inputs import SweepInputs
 from safestart.processes.sweep.split import DRAWN_OWN
@@ -138,8 +139,7 @@ def notes(inputs: SweepInputs) -> list[str]:
             said.append("exact: every start (thrust held for 2 s, CWH without disturbance).")
         else:
             said.append(f"exact: about the first {inputs.exact_cases} starts, spread over the shards.")
-    if inputs.truth.model != "cwh":
-        said.append(
-            "two_body_j2: the certificates speak of CWH; the truth differs by millimetres to centimetres."
-        )
+    if inputs.truth.model != CWH:
+        note = MOTIONS[inputs.truth.model].note
+        said.append(f"{inputs.truth.model}: the certificates speak of CWH{note and f'; {note}'}.")
     return said

@@ -13,7 +13,7 @@ from itertools import pairwise
 from flint import arb, arb_mat, fmpq
 
 from safestart.proofs.abort.complete import Complete
-from safestart.proofs.abort.earth import EarthChecker
+from safestart.proofs.abort.earth.sets import EarthChecker
 from safestart.proofs.abort.reached import Reached, transition
 from safestart.proofs.abort.sets import Sets
 from safestart.proofs.abort.statement import Asked, Event, Zone, read

@@ -14,7 +14,6 @@ from flint import arb, arb_mat, fmpq
 from safestart.proofs.abort.reached import Reached, axes, column, generator, held, shell, transition
 from safestart.proofs.abort.statement import Asked, Event
 
-FULL_THRUST = ("made", "cut", "late", "stuck")
 LONG = ("made", "cut", "stuck")
 """Kinds after which the chaser drifts for the whole horizon, however long the burn lasts."""
 

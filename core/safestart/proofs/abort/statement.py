@@ -126,7 +126,7 @@ def read(document: Any) -> Asked:
     if document["verdict"] != "PROVED":
         raise ProofRejected(f"verdict: required PROVED, received {shown(document['verdict'])}")
     question = part(document, "question", dict)
-    model = question.get("model")
+    model = part(question, "model", str)
     if model not in MODELS:
         raise ProofRejected(f"model: required {' or '.join(MODELS)}, received {shown(model)}")
     bent = model != "linear"

@@ -39,10 +39,10 @@ def check(document: Any) -> Verified:
 
 
 def _fly(stated: SpaceStated, course: Course, motion: Motion, spread: Spread | None) -> int:
-    """Every thrust can be had and every margin is >= the claim > 0 at all times; the number of pieces it took.
+    """Check that every thrust is in its set, and that every margin keeps the claimed one, which is > 0, at all times.
 
-    From a box of starts: the middle flown, and beside it how the state moves with each number of the start. What else
-    is not known takes from the distances what ``spread`` says.
+    For a box of starts it flies the middle, and with it the change of the state with each number of the start.
+    ``spread`` says how much the other unknowns take off the distances. Returns the number of pieces that it took.
     """
     wide = [i for i in range(6) if stated.half[i] > 0]
     columns = [[arb(e) for e in stated.start]]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -10,7 +11,10 @@ from pydantic import BaseModel
 
 from safestart.errors import invalid
 from safestart.processes.tables import TypedTable, typed_tables
+from safestart.runtime.named import misregistered
 from safestart_service.errors import NotAcceptable
+
+_MEDIA_TYPE = re.compile(r"[a-z]+/[a-z0-9][a-z0-9.+-]*(;.*)?")
 
 Record = dict[str, Any]
 """A stored result as ``ResultDocument`` describes it."""
@@ -31,6 +35,11 @@ class Format:
     rows: bool = False
     document: bool = False
     model: type[BaseModel] | None = None
+
+    def __post_init__(self) -> None:
+        """Raise ``Misregistered`` for a media type of another form than ``type/subtype``."""
+        if not _MEDIA_TYPE.fullmatch(self.media_type):
+            raise misregistered(f"media type of format {self.name}", "type/subtype", self.media_type)
 
 
 def rows_of(record: Record, table: str | None) -> list[dict[str, Any]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from safestart.processes.registry import PROCESS_IDS, process
-from safestart.processes.sharding import load
+from safestart.runtime.named import load
 from safestart_service.documents.formats.base import Format, Record
 from safestart_service.errors import NotAcceptable
 
@@ -17,7 +17,9 @@ def courses_in(record: Record) -> FlightCourses:
     """The courses of a flight's record; raises ``NotAcceptable`` for another process, ``InvalidInput``."""
     process_id = record.get("process", {}).get("id")
     named = process(process_id).courses if process_id in PROCESS_IDS else None
-    found: FlightCourses | None = load(named)(record["inputs"], record["outputs"]) if named else None
+    found: FlightCourses | None = None
+    if named:
+        found = load(named, f"courses of process {process_id}")(record["inputs"], record["outputs"])
     if found is None:
         raise NotAcceptable(
             "this result is not a flight; required application/json",

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from hashlib import sha256
-from importlib import import_module
 
+from safestart.model.registry import by_name
+from safestart.runtime.named import misregistered, module_of
 from safestart_service.documents.formats.base import Format
 
 _MODULES = (
@@ -18,11 +19,18 @@ _MODULES = (
     "czml",
 )
 
-FORMATS: tuple[Format, ...] = tuple(
-    import_module(f"safestart_service.documents.formats.{module}").FORMAT for module in _MODULES
-)
-BY_NAME = {form.name: form for form in FORMATS}
-BY_TYPE = {form.media_type: form for form in FORMATS}
+
+def format_in(module: str) -> Format:
+    """The ``FORMAT`` of a module in this folder; raises ``Misregistered`` for a module without one."""
+    found = getattr(module_of(f"{__package__}.{module}", "formats"), "FORMAT", None)
+    if not isinstance(found, Format):
+        raise misregistered("formats", f"a Format named FORMAT in {module}.py", found)
+    return found
+
+
+FORMATS: tuple[Format, ...] = tuple(map(format_in, _MODULES))
+BY_NAME = by_name("formats", FORMATS, lambda form: form.name)
+BY_TYPE = by_name("media types", FORMATS, lambda form: form.media_type)
 
 
 def tag_of(form: Format, table: str | None) -> str:

@@ -1,6 +1,6 @@
 // Pinned starts: each with the question that it was asked and the answer to that question, whatever the fields say since.
 
-import { ASKED } from "./question.js";
+import { ASKED, proven } from "./question.js";
 import { digest } from "./store.js";
 
 export const MOST_STARTS = 200;
@@ -19,7 +19,7 @@ export function startsOf(text) {
 }
 
 /** The question of values without the start and the extent of the map. */
-const asked = (values) => digest(Object.fromEntries(Object.entries(values).filter(([name]) => !["x_m", "y_m", "y_max_m"].includes(name))));
+const asked = (values) => digest(proven(values, {}));
 
 /** A pinned start out of its question and the answer for it. */
 export const pinned = (values, start, { verdict, margin_m = null, decided_by = null, reason = "" }) => ({
@@ -33,8 +33,8 @@ export const pinnedAll = (values, starts, outputs) => starts.map((start, k) => p
 /** The list with new ones first; one that is asked again takes its old place's answer away. */
 export const added = (list, fresh) => [...fresh, ...list.filter(({ id }) => !fresh.some((one) => one.id === id))];
 
-/** Those of the list that were asked what these values ask. */
-export const alike = (list, values) => list.filter((one) => one.asked === asked(values));
+/** Those of the list that were asked what these values ask; none where there are no values. */
+export const alike = (list, values) => (values === null ? [] : list.filter((one) => one.asked === asked(values)));
 
-/** What differs between the questions of the list: names of values. */
-export const differing = (list) => ASKED.filter((name) => new Set(list.map(({ values }) => values[name])).size > 1);
+/** What differs between the questions of the list: names of values. Who stays asks nothing within a time. */
+export const differing = (list) => ASKED.filter((name) => new Set(list.map(({ values }) => (name === "within_s" && values.question === "stay" ? null : values[name]))).size > 1);

@@ -95,7 +95,8 @@ export const asProcess = (values, ...starts) => ({
 
 const said = (name, value) => `${FIELDS[name].title[0].toLowerCase()}${FIELDS[name].title.slice(1)} ${value}${FIELDS[name].unit ? ` ${FIELDS[name].unit}` : ""}`;
 /** Orbit and corridor values that differ from the usual ones. */
-const unusual = (values) => ["mean_motion_rad_s", ...SHAPE].filter((name) => values[name] !== Number(FIELDS[name].first)).map((name) => said(name, values[name]));
+const UNUSUAL = ["mean_motion_rad_s", ...SHAPE], isUnusual = (name, values) => values[name] !== Number(FIELDS[name].first);
+const unusual = (values) => UNUSUAL.filter((name) => isUnusual(name, values)).map((name) => said(name, values[name]));
 const operating = (values) => [`${values.omega_t_deg_s} deg/s`, `${values.a_max_m_s2} m/s²`];
 const atRest = (values) => `at rest in ${values.rest === "lvlh" ? "LVLH" : "the body frame"}`;
 const staying = (values) => `stay ${values.horizon_s} s`;
@@ -106,6 +107,16 @@ export const verdictWords = (values, { x_m, y_m }) => [
   `start (${x_m}, ${y_m}) m ${atRest(values)}`, ...operating(values), required(values),
   ...Object.entries(spreads(values)).map(([name, value]) => said(name, value)), ...unusual(values),
 ].join(" · ");
+
+/** What questions that differ in some values ask alike, in words; `values` are those of one of them. */
+export function sharedWords(values, differ) {
+  const same = (name) => !differ.includes(name), requirement = ["question", "horizon_s", "within_s"].every(same);
+  return [
+    ...["omega_t_deg_s", "a_max_m_s2", ...(requirement ? [] : ["question", "horizon_s"])].filter(same).map((name) => said(name, values[name])),
+    ...(requirement ? [required(values)] : []), ...(same("rest") ? [atRest(values)] : []),
+    ...[...Object.keys(spreads(values)), ...UNUSUAL.filter((name) => isUnusual(name, values))].filter(same).map((name) => said(name, values[name])),
+  ].join(" · ");
+}
 
 /** The map's question in words. */
 export const mapWords = (values) => [

@@ -17,6 +17,7 @@ export const spoken = (name) => name.replaceAll("_", " ");
 
 export function duration(seconds) {
   if (seconds === null || seconds === undefined) return "–";
+  if (seconds < 0.1) return `${Number(seconds.toPrecision(1))} s`;
   if (seconds < 10) return `${seconds.toFixed(1)} s`;
   if (seconds < 90) return `${Math.round(seconds)} s`;
   if (seconds < 5400) return `${Math.round(seconds / 60)} min`;
@@ -67,6 +68,18 @@ export function roundTicks(low, high) {
     }
   }
   return found;
+}
+
+const MOST_TICKS = 10;
+
+/** A logarithmic axis for bars, with round ticks: it begins below the least value, so that each bar has a height. */
+export function barAxis(values) {
+  const there = values.filter((value) => value > 0);
+  if (!there.length) return { type: "log" };
+  const [low, high] = [Math.min(...there), Math.max(...there)], around = roundTicks(low / 10, high * 10);
+  const [first, last] = [around.findLast((tick) => tick < low), around.find((tick) => tick >= high)];
+  const all = around.filter((tick) => tick >= first && tick <= last), ticks = all.length > MOST_TICKS ? all.filter((tick) => Number.isInteger(Math.log10(tick))) : all;
+  return { type: "log", range: [Math.log10(first), Math.log10(last)], tickvals: ticks, ticktext: ticks.map(String) };
 }
 
 /** Rows of cells as CSV (RFC 4180 with plain line ends). */

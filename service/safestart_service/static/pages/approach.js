@@ -4,6 +4,7 @@ import { FIELDS, SAYS, angleOf, burnRows, holdOf, isOf, lasting, planNeeds, plan
 import { addressOf, textsFrom, valuesOf } from "../logic/fields.js";
 import { Store } from "../logic/store.js";
 import { csv, figure } from "../logic/words.js";
+import { onMove, writeAddress } from "../parts/address.js";
 import { call, execute, get, plain, root } from "../parts/api.js";
 import { saveButtons } from "../parts/chart.js";
 import { copies } from "../parts/copies.js";
@@ -160,14 +161,17 @@ function change(inputs, writing = null) {
     const range = document.querySelector(`input[data-for="${name}"]`);
     if (range && values[name] !== null && range !== document.activeElement) range.value = values[name];
   }
-  if (!Object.keys(wrong).length) history.replaceState(null, "", `${location.pathname}${addressOf(FIELDS, store.inputs)}`);
+  if (!Object.keys(wrong).length) writeAddress(`${location.pathname}${addressOf(FIELDS, store.inputs)}`);
 }
 
-$("controls").addEventListener("input", ({ target }) => {
-  const name = target.dataset.for ?? target.name;
-  // A number field gives no text for an invalid number.
-  if (name in FIELDS) change({ [name]: target.validity.badInput ? "no number" : target.value }, target.dataset.for ? null : name);
-});
+// What fills in forms may tell of a change alone.
+for (const kind of ["input", "change"]) {
+  $("controls").addEventListener(kind, ({ target }) => {
+    const name = target.dataset.for ?? target.name;
+    // A number field gives no text for an invalid number.
+    if (name in FIELDS) change({ [name]: target.validity.badInput ? "no number" : target.value }, target.dataset.for ? null : name);
+  });
+}
 $("controls").addEventListener("submit", (event) => { event.preventDefault(); store.hasten(); });
 $("submit").addEventListener("click", submit);
 draggable(map, () => planned(store.inputs), (handle, point) => {
@@ -181,10 +185,14 @@ $("near").addEventListener("click", ({ target }) => {
   plan.show();
 });
 map.after(saveButtons(map, "approach", el));
-$("verdict").after(copies(() => { const values = planned(store.inputs); return values && { id: PLANS, inputs: planOf(values) }; }));
+$("verdict").after(copies(() => { const values = planned(store.inputs); return values && { id: PLANS, inputs: planOf(values) }; }, store));
 if (unknown.length) $("address").textContent = `The address has settings that this page does not know: ${unknown.join(", ")}.`;
 for (const details of document.querySelectorAll("#controls details")) {
   details.open = [...details.querySelectorAll("[name]")].some(({ name }) => store.inputs[name] !== FIELDS[name].first);
 }
+onMove((search) => {
+  change(textsFrom(FIELDS, search).texts);
+  store.hasten();
+});
 change({});
 store.hasten();

@@ -3,16 +3,16 @@
 import { differing, outcome } from "../logic/outcome.js";
 import { tablesOf } from "../logic/tables.js";
 import { inputTitle, inputWords } from "../logic/titles.js";
-import { csv } from "../logic/words.js";
+import { barAxis, csv } from "../logic/words.js";
 import { get, root } from "../parts/api.js";
-import { draw, saveButtons } from "../parts/chart.js";
+import { draw, legendRows, saveButtons } from "../parts/chart.js";
 import { $, el, fail, loading, save, table } from "../parts/page.js";
 import { description, names, viewsOf } from "../parts/process.js";
 import { listed } from "../parts/views.js";
 
 const ids = (new URLSearchParams(location.search).get("jobs") ?? "").split(",").filter(Boolean).slice(0, 12);
 
-const LONG = 60;
+const LONG = 60, BARS_PX = 240;
 
 const empty = (...text) => $("state").replaceChildren(el("p", { class: "empty" }, ...text, el("a", { href: `${root}/dashboard/jobs?status=successful` }, "among the jobs"), "."));
 
@@ -69,7 +69,8 @@ async function compare(spec, view, { title, colour }, runs) {
   const differ = differing(runs.map((run) => run.inputs));
   const rowsOf = (run) => run.tables[view?.table] ?? [];
   const value = (run, name, path) => rowsOf(run).find((row) => row[view.by] === name)?.[path] ?? null;
-  const heading = (run) => [run.job.name, ...differ.slice(0, run.job.name ? 1 : 3).map((path) => inputWords(path, told(run.inputs, path))), run.id.slice(0, 8)].filter(Boolean).join(", ");
+  const words = (run) => [run.job.name, ...differ.slice(0, run.job.name ? 1 : 3).map((path) => inputWords(path, told(run.inputs, path))), run.id.slice(0, 8)].filter(Boolean);
+  const heading = (run) => words(run).join(", ");
   const all = view ? [...new Set(runs.flatMap((run) => rowsOf(run).map((row) => row[view.by])))] : [];
   const parts = figures(spec, runs, differ, heading), charts = [];
   const measures = (view?.measures ?? []).filter(({ path }) => runs.some((run) => all.some((one) => value(run, one, path) !== null)));
@@ -84,9 +85,12 @@ async function compare(spec, view, { title, colour }, runs) {
   $("compare").replaceChildren(...parts);
   $("state").replaceChildren(el("p", { class: "lead" }, `${runs.length} runs; inputs that differ: ${differ.map(inputTitle).join(", ") || "none"}.`));
   for (const [place, path, name] of charts) {
-    await draw(place, all.map((one) => ({
-      type: "bar", name: title(one), x: runs.map(heading), y: runs.map((run) => value(run, one, path)), marker: { color: colour(one) }, hovertemplate: "%{y:.4g}",
-    })), { barmode: "group", yaxis: { title: { text: name }, type: view.logarithmic.includes(path) ? "log" : "linear" }, legend: { orientation: "h", y: -0.25 } });
+    const traces = all.map((one) => ({
+      type: "bar", name: title(one), x: runs.map((run) => words(run).join("<br>")), y: runs.map((run) => value(run, one, path)), marker: { color: colour(one) }, hovertemplate: "%{y:.4g}",
+    }));
+    // Bars of one height, however many rows the legend takes.
+    place.style.height = `${BARS_PX + 20 * legendRows(place, traces)}px`;
+    await draw(place, traces, { barmode: "group", yaxis: { title: { text: name }, ...(view.logarithmic.includes(path) ? barAxis(runs.flatMap((run) => all.map((one) => value(run, one, path)))) : {}) } });
     place.after(saveButtons(place, path, el));
   }
 }

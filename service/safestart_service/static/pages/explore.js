@@ -7,6 +7,7 @@ import { FIELDS, asProcess, certificate, flight as flightOf, flightWords, fromAd
 import { Store } from "../logic/store.js";
 import { rowsOf } from "../logic/tables.js";
 import { csv, figure, spoken } from "../logic/words.js";
+import { onMove, writeAddress } from "../parts/address.js";
 import { execute, get, post } from "../parts/api.js";
 import { saveButtons } from "../parts/chart.js";
 import { copies } from "../parts/copies.js";
@@ -224,7 +225,8 @@ function change(inputs, writing = null) {
   }
   $("within").hidden = store.inputs.question !== "synchronize";
   pointed.set({ at: null });
-  if (!Object.keys(wrong).length) history.replaceState(null, "", `${location.pathname}${toAddress(store.inputs)}`);
+  if (!Object.keys(wrong).length) writeAddress(`${location.pathname}${toAddress(store.inputs)}`);
+  pins.mark();
 }
 
 function typed({ target }) {
@@ -236,7 +238,8 @@ function typed({ target }) {
   change({ [name]: text }, target.dataset.for ? null : name);
 }
 for (const id of ["controls", "start"]) {
-  $(id).addEventListener("input", typed);
+  // What fills in forms may tell of a change alone.
+  for (const kind of ["input", "change"]) $(id).addEventListener(kind, typed);
   $(id).addEventListener("submit", (event) => { event.preventDefault(); store.hasten(); });
 }
 
@@ -260,7 +263,7 @@ map.addEventListener("mousemove", (event) => {
 $("frame").addEventListener("change", redraw);
 $("stored").addEventListener("change", ({ target }) => change({ job: target.value, ...storedInputs(target.value) }));
 map.after(saveButtons(map, "safe-start-region", el));
-$("verdict").after(copies(() => { const asked = started(store.inputs); return asked && asProcess(asked.values, asked.start); }));
+$("verdict").after(copies(() => { const asked = started(store.inputs); return asked && asProcess(asked.values, asked.start); }, store));
 $("pin").addEventListener("click", () => {
   const { values, start, found } = verdict.answer;
   pins.add([pinned(values, start, found)]);
@@ -279,6 +282,10 @@ for (const details of document.querySelectorAll("#controls details")) {
   details.open = [...details.querySelectorAll("input[name]")].some(({ name }) => store.inputs[name] !== FIELDS[name].first);
 }
 explain($("controls"));
+onMove((search) => {
+  change(fromAddress(search).texts);
+  store.hasten();
+});
 change({});
 store.hasten();
 listStored();

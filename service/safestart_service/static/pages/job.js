@@ -11,6 +11,7 @@ import { description } from "../parts/process.js";
 import { known, results, verdictBadge } from "../parts/results.js";
 import { shown } from "../parts/views.js";
 
+const LOOKS_MS = 3000; // how often the partial result of a job is looked at
 const id = $("job").dataset.job;
 const log = el("div", { class: "log", role: "log", "aria-label": "Log", tabindex: "0" });
 const bar = el("progress", { max: 100, value: 0, "aria-label": "progress" });
@@ -82,6 +83,8 @@ const show = newest(() => get(`/jobs/${id}`), (found) => { job = found; frame();
 
 async function live() {
   loading($("state"));
+  // The stream begins with what has been told already.
+  log.replaceChildren();
   const over = new AbortController();
   try {
     await show();
@@ -89,10 +92,9 @@ async function live() {
       // The stream below reports an unavailable service.
       if (job.status === "accepted") show().catch(() => null);
     }, 2000);
-    const part = job.links.some((link) => link.rel === "partial") ? setInterval(() => partial(over.signal), 3000) : 0;
+    if (job.links.some((link) => link.rel === "partial")) partials(over.signal);
     await follow(id, heard, (error) => { connection.textContent = error ? "The connection broke; trying again." : ""; }, over.signal).finally(() => {
       clearInterval(waiting);
-      clearInterval(part);
       over.abort();
     });
     await show();
@@ -120,7 +122,14 @@ async function finished() {
   title();
 }
 
-/** The partial result of a sharded process; nothing once the job has ended. */
+/** The partial results of a sharded process, one look after the other, until the job has ended. */
+async function partials(signal) {
+  while (!signal.aborted) {
+    await new Promise((resolve) => setTimeout(resolve, LOOKS_MS));
+    await partial(signal);
+  }
+}
+
 async function partial(signal) {
   try {
     const { shards, outputs } = await get(`/jobs/${id}/partial`, { signal });

@@ -2,6 +2,7 @@
 
 import { counted, fromAddress, pagesOf, PER_PAGE, request, toAddress } from "../logic/paging.js";
 import { Store } from "../logic/store.js";
+import { onMove, writeAddress } from "../parts/address.js";
 import { get, root } from "../parts/api.js";
 import { bulk, FOR } from "../parts/bulk.js";
 import { called, jobTable } from "../parts/joblist.js";
@@ -73,7 +74,7 @@ function show({ state, answer, old, error }) {
 /** Change what the list shows; the address and the fields say it too. */
 function change(inputs) {
   store.set(inputs);
-  history.replaceState(null, "", `${location.pathname}${toAddress(store.inputs)}`);
+  writeAddress(`${location.pathname}${toAddress(store.inputs)}`);
   for (const name of FIELDS) if ($(name).value !== store.inputs[name]) $(name).value = store.inputs[name];
 }
 
@@ -135,6 +136,7 @@ try {
   own = caller.key_id;
   $("process").append(...processes.map((one) => el("option", { value: one.id }, one.title)));
   change(fromAddress(location.search));
+  onMove((search) => change(fromAddress(search)));
 } catch (error) {
   fail($("list"), error, () => location.reload());
 }

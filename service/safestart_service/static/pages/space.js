@@ -6,6 +6,7 @@ import { offered } from "../logic/space-presets.js";
 import { Store } from "../logic/store.js";
 import { rowsOf } from "../logic/tables.js";
 import { HELD, csv, figure, sentence, spoken } from "../logic/words.js";
+import { onMove, writeAddress } from "../parts/address.js";
 import { call, execute, get, plain } from "../parts/api.js";
 import { saveButtons } from "../parts/chart.js";
 import { copies } from "../parts/copies.js";
@@ -115,13 +116,16 @@ function change(inputs, writing = null) {
     else field.removeAttribute("aria-invalid");
     field.closest(".dial").hidden = !counts.has(name);
   }
-  if (!Object.keys(wrong).length) history.replaceState(null, "", `${location.pathname}${addressOf(FIELDS, store.inputs)}`);
+  if (!Object.keys(wrong).length) writeAddress(`${location.pathname}${addressOf(FIELDS, store.inputs)}`);
 }
 
-$("controls").addEventListener("input", ({ target }) => {
-  // A number field gives no text for an invalid number.
-  if (target.name in FIELDS) change({ [target.name]: target.validity.badInput ? "no number" : target.value }, target.name);
-});
+// What fills in forms may tell of a change alone.
+for (const kind of ["input", "change"]) {
+  $("controls").addEventListener(kind, ({ target }) => {
+    // A number field gives no text for an invalid number.
+    if (target.name in FIELDS) change({ [target.name]: target.validity.badInput ? "no number" : target.value }, target.name);
+  });
+}
 $("controls").addEventListener("submit", (event) => { event.preventDefault(); store.hasten(); });
 $("frame").addEventListener("change", redraw);
 $("preset").addEventListener("change", ({ target }) => {
@@ -132,10 +136,14 @@ $("preset").addEventListener("change", ({ target }) => {
   store.hasten();
 });
 scene.after(saveButtons(scene, "space", el));
-$("verdict").after(copies(() => { const values = given(store.inputs); return values && { id: STARTS, inputs: { ...startQuestion(values), proofs: true } }; }));
+$("verdict").after(copies(() => { const values = given(store.inputs); return values && { id: STARTS, inputs: { ...startQuestion(values), proofs: true } }; }, store));
 $("flight-tools").append(el("button", { type: "button", class: "plain", onclick: () => save("flight.csv", csv(rowsOf(flight.data))) }, "Flight as CSV"));
 if (unknown.length) $("address").textContent = `The address has settings that this page does not know: ${unknown.join(", ")}.`;
 explain($("controls"));
+onMove((search) => {
+  change(textsFrom(FIELDS, search).texts);
+  store.hasten();
+});
 change({});
 store.hasten();
 

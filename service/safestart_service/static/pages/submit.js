@@ -45,6 +45,8 @@ store.panel({
   shows: showAnswer,
 });
 
+const command = copies(() => entry && { id: store.inputs.process, inputs: entry.value() }, store);
+
 function showForm({ state, answer, error }) {
   entry = null;
   if (state === "failed") {
@@ -62,7 +64,7 @@ function showForm({ state, answer, error }) {
   labels = labelFields(named);
   $("form").replaceChildren(...choices(spec, preset), entry.node, el("details", { class: "rare", open: !light }, el("summary", {}, `Name, tags and note${light ? " of a queued run" : ""}`), ...labels.nodes), el("div", { class: "tools" },
     el("button", { type: "submit" }, light ? "Run now" : "Submit"),
-    light ? el("button", { type: "button", class: "plain", onclick: queue }, "Queue it") : null), el("p", { class: "note", id: "estimate", role: "status" }), copies(() => ({ id: spec.id, inputs: entry.value() })));
+    light ? el("button", { type: "button", class: "plain", onclick: queue }, "Queue it") : null), el("p", { class: "note", id: "estimate", role: "status" }), command);
   explain($("form"));
   store.set({ entered: entered() });
 }

@@ -3,16 +3,23 @@
 import { Store } from "../logic/store.js";
 import { closedWords, readTrade, tradeAddress, tradeExplore } from "../logic/trade.js";
 import { csv, figure, roundTicks } from "../logic/words.js";
+import { onMove, writeAddress } from "../parts/address.js";
 import { execute, root } from "../parts/api.js";
 import { draw, saveButtons, theme } from "../parts/chart.js";
 import { $, el, fail, loading, save, table } from "../parts/page.js";
 
 const FIELDS = ["low", "high", "stand_off_m", "y_max_m", "rest"];
-const address = new URLSearchParams(location.search);
-for (const name of FIELDS) if (address.has(name)) $(name).value = address.get(name);
 const texts = () => Object.fromEntries(FIELDS.map((name) => [name, $(name).value]));
+const usual = texts(), store = new Store(usual);
 
-const store = new Store(texts());
+/** Put what an address says into the fields, and ask it. */
+function open(search) {
+  const told = new URLSearchParams(search);
+  for (const name of FIELDS) $(name).value = told.get(name) ?? usual[name];
+  store.set(texts());
+  store.hasten();
+}
+
 store.panel({
   quiet: 250,
   poses: readTrade,
@@ -69,10 +76,13 @@ function figures(found, inputs) {
     }, "CSV"), saveButtons($("map"), "trade", el)));
 }
 
-$("controls").addEventListener("input", () => {
-  store.set(texts());
-  if (readTrade(store.inputs)) history.replaceState(null, "", tradeAddress(store.inputs));
-});
+// What fills in forms may tell of a change alone.
+for (const kind of ["input", "change"]) {
+  $("controls").addEventListener(kind, () => {
+    store.set(texts());
+    if (readTrade(store.inputs)) writeAddress(tradeAddress(store.inputs));
+  });
+}
 $("controls").addEventListener("submit", (event) => { event.preventDefault(); store.hasten(); });
-store.set();
-store.hasten();
+onMove(open);
+open(location.search);

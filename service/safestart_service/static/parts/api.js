@@ -28,8 +28,9 @@ export async function call(path, options = {}) {
   const url = path.startsWith("http") || (root && path.startsWith(`${root}/`)) ? path : root + path;
   let response;
   try {
-    // Without stored credentials, so that the page shows a refusal and no browser dialog asks for a password.
-    response = await fetch(url, { ...options, headers, body, credentials: "omit" });
+    // Without stored credentials, so that the page shows a refusal and no browser dialog asks for a password. Always asked
+    // again: on the way back a browser takes what it has kept, although that may be old or was given to a forgotten key.
+    response = await fetch(url, { ...options, headers, body, credentials: "omit", cache: "no-cache" });
   } catch (error) {
     if (error.name === "AbortError") throw error;
     throw new Problem(0, { title: "No answer", detail: "the service does not answer; is it running?" });

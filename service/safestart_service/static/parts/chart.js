@@ -12,6 +12,9 @@ export const theme = () => Object.fromEntries(SHADES.map((name) => [name, shades
 const drawn = new Map(), paper = matchMedia("print");
 let worn = theme();
 
+/** Rows that a legend of these traces takes below a picture. */
+export const legendRows = (place, traces) => Math.ceil(traces.filter((trace) => trace.name && trace.showlegend !== false).length / Math.max(1, Math.floor((place.clientWidth - 64) / 190)));
+
 /**
  * Draw or redraw; the picture follows the colour scheme and the width of its place. A title that is too long is broken
  * at its dots; a legend without a place in the layout goes below everything else.
@@ -20,11 +23,13 @@ export function draw(place, traces, layout = {}, config = {}) {
   drawn.set(place, [traces, layout, config]);
   const { ink, soft, line, card } = theme();
   const axis = { gridcolor: line, zerolinecolor: line, linecolor: line, tickcolor: line, automargin: true };
-  const title = layout.title && { font: { size: 12 }, x: 0, xref: "paper", xanchor: "left", y: 1, yref: "paper", yanchor: "bottom", pad: { b: 8 }, ...layout.title, text: lines(layout.title.text, (place.clientWidth - 64) / 6.3) };
-  const rows = layout.legend ? 0 : Math.ceil(traces.filter((trace) => trace.name && trace.showlegend !== false).length / Math.max(1, Math.floor((place.clientWidth - 64) / 190)));
+  const told = layout.title && lines(layout.title.text, (place.clientWidth - 64) / 6.3), more = 15 * (told ? told.split("<br>").length - 1 : 0);
+  // Plotly puts the first line of a title at its foot.
+  const title = layout.title && { font: { size: 12 }, x: 0, xref: "paper", xanchor: "left", y: 1, yref: "paper", yanchor: "bottom", pad: { b: 8 + more }, ...layout.title, text: told };
+  const rows = layout.legend ? 0 : legendRows(place, traces);
   const whole = {
     paper_bgcolor: card, plot_bgcolor: card, font: { color: ink, size: 12, family: "system-ui, sans-serif" }, hoverlabel: { font: { size: 12 } },
-    margin: { l: 52, r: 12, t: title ? 18 + 15 * title.text.split("<br>").length : 12, b: 46 + 20 * rows },
+    margin: { l: 52, r: 12, t: title ? 33 + more : 12, b: 46 + 20 * rows },
     legend: { orientation: "h", yref: "container", y: 0, yanchor: "bottom", x: 0, font: { color: soft } }, ...layout, title,
     xaxis: { ...axis, ...layout.xaxis }, yaxis: { ...axis, ...layout.yaxis },
   };

@@ -4,9 +4,10 @@ import { COPIES } from "../logic/copies.js";
 import { root } from "./api.js";
 import { el } from "./page.js";
 
-/** Buttons that copy a question; `asked()` gives its process and inputs, or null. */
-export function copies(asked) {
+/** Buttons that copy a question; `asked()` gives its process and inputs, or null. What is shown leaves with the inputs of `store`. */
+export function copies(asked, store = null) {
   const said = el("pre", { tabindex: "0", hidden: true });
+  store?.panel({ poses: asked, asks: async () => null, shows: () => { said.hidden = true; } });
   const button = (name) => el("button", {
     type: "button", class: "plain", onclick: async () => {
       const question = asked();

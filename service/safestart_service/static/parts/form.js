@@ -44,10 +44,12 @@ function dial(schema, name, path, control, more) {
     said ? el("p", { class: "note", id: `${id}-said` }, said) : null);
 }
 
+/** A number. A browser gives no text for what it cannot read as one; the service refuses what stands for it, in place of taking its default. */
 function number(schema, name, path, given) {
   const control = el("input", { type: "number", step: "any", inputmode: "decimal" });
   if (given !== undefined && given !== null) control.value = given;
-  return { node: dial(schema, name, path, control), value: () => (control.value === "" ? undefined : Number(control.value)) };
+  control.classList.toggle("long", control.value.length > 6);
+  return { node: dial(schema, name, path, control), value: () => (control.validity.badInput ? "no number" : control.value === "" ? undefined : Number(control.value)) };
 }
 
 /** A line; where the text of a file is wanted, many lines, which may come from a file. */

@@ -1,12 +1,15 @@
 // Explore's map: the corridor with the certified and the exact region, stored sets, and the flight in either frame.
 
 import { arc, closed, corridor, turned } from "../logic/geometry.js";
+import { lines } from "../logic/words.js";
 import { draw, theme } from "./chart.js";
 
+/** Places narrower than this (px) give the map all of their width: no title along y, small letters, short names. */
+const NARROW = 420;
 const FILL = "rgba(128,128,128,0.09)";
 
 /** The corridor at rest with all sets of starts. `sets` are stored ones: { title, colour, x, y, mask }. */
-function body({ values, certified, region, sets }) {
+function body({ values, certified, region, sets, narrow }) {
   const { ink, soft, certified: green, exact: blue, limit } = theme();
   const shape = values, traces = [];
   const line = (name, points, colour, more = {}) => traces.push({
@@ -23,7 +26,7 @@ function body({ values, certified, region, sets }) {
       contours: { type: "constraint", operation: "<", value: 0 }, fillcolor: "rgba(0,158,115,0.30)",
       line: { color: green, width: 2 }, showscale: false, hoverinfo: "skip", showlegend: true,
     });
-    if (certified.r_sync_m) line("the paper's synchronization radius", arc(certified.r_sync_m, shape, values.y_max_m), limit, { dash: "dash" });
+    if (certified.r_sync_m) line(narrow ? "the paper's radius" : "the paper's synchronization radius", arc(certified.r_sync_m, shape, values.y_max_m), limit, { dash: "dash" });
   }
   for (const { title, colour, x, y, mask } of sets) {
     traces.push({
@@ -55,18 +58,34 @@ export function drawMap(place, { values, certified, region, sets, turn, overlay,
   const inOrbit = turn !== null;
   const reach = corridor(values, values.y_max_m).half * 1.03;
   const far = Math.max(reach, values.y_max_m * 1.03);
-  const known = { values, certified, region, sets };
+  const narrow = place.clientWidth < NARROW, known = { values, certified, region, sets, narrow };
   const traces = [...(inOrbit ? orbit(known, turn) : body(known)), ...overlay(inOrbit ? "lvlh" : "body")];
   const high = inOrbit ? 2 * far : 1.09 * values.y_max_m, wide = 2 * (inOrbit ? far : reach);
   // As tall as equal axes need, plus title, ticks and legend; the clock below stays on the same screen.
-  const beside = 100 + 20 * Math.ceil(7 / Math.max(1, Math.floor((place.clientWidth - 64) / 190)));
+  const small = narrow ? smallLayout(place, traces, says) : null;
+  const beside = narrow ? small.margin.t + small.margin.b : 100 + 20 * Math.ceil(7 / Math.max(1, Math.floor((place.clientWidth - 64) / 190)));
   const above = Math.min(place.getBoundingClientRect().top + scrollY, 0.35 * innerHeight);
-  place.style.height = `${Math.max(280, Math.min(innerHeight - above - 90, ((place.clientWidth - 70) * high) / wide + beside))}px`;
+  const height = Math.max(narrow ? 200 : 280, Math.min(innerHeight - above - 90, ((place.clientWidth - (narrow ? 46 : 70)) * high) / wide + beside));
+  place.style.height = `${height}px`;
   return draw(place, traces, {
+    ...small, height,
     uirevision: `${inOrbit}/${values.y_max_m}/${values.c_x}`, showlegend: true, title: { text: says },
-    xaxis: { title: { text: inOrbit ? "x [m], LVLH: radial" : "x [m], target's body frame" }, range: inOrbit ? [-far, far] : [-reach, reach], constrain: "domain" },
-    yaxis: { title: { text: inOrbit ? "y [m], LVLH: along-track" : "y [m], target's body frame" }, range: inOrbit ? [-far, far] : [-0.06 * values.y_max_m, 1.03 * values.y_max_m], scaleanchor: "x", constrain: "domain" },
+    xaxis: { automargin: false, title: { text: inOrbit ? `x [m], LVLH: radial${narrow ? "; y: along-track" : ""}` : `x${narrow ? ", y" : ""} [m], target's body frame` }, range: inOrbit ? [-far, far] : [-reach, reach], constrain: "domain" },
+    yaxis: { automargin: false, title: { text: narrow ? "" : inOrbit ? "y [m], LVLH: along-track" : "y [m], target's body frame" }, range: inOrbit ? [-far, far] : [-0.06 * values.y_max_m, 1.03 * values.y_max_m], scaleanchor: "x", constrain: "domain" },
   });
+}
+
+/** Names that the legend has room for from the beginning: the map does not jump when its answers come. */
+const USUAL_NAMES = 6;
+
+/** Fixed margins and the legend of a narrow map, as small as their words allow. */
+function smallLayout(place, traces, says) {
+  const named = traces.filter(({ name, showlegend }) => name && showlegend !== false).map(({ name }) => name), longest = Math.max(18, ...named.map((name) => name.length));
+  const columns = Math.max(1, Math.floor((place.clientWidth - 20) / (5.4 * longest + 45)));
+  return {
+    margin: { autoexpand: false, l: 38, r: 8, t: 18 + 15 * lines(says, (place.clientWidth - 64) / 6.3).split("<br>").length, b: 56 + 19 * Math.ceil(Math.max(USUAL_NAMES, named.length) / columns) },
+    legend: { orientation: "h", yref: "container", y: 0, yanchor: "bottom", xref: "container", x: 0, font: { size: 10, color: theme().soft } },
+  };
 }
 
 /** The point of the map under a pointer event, to a centimetre; null outside the axes. */

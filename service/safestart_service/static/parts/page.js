@@ -60,7 +60,7 @@ export function keyForm(id = "key", text = hasKey() ? "This key is not accepted.
 
 /** The card that asks for a key in place of what it opens. */
 const keyCard = () => el("section", { class: "card alone" }, el("h2", {}, "This service needs a key"), keyForm(),
-  el("p", { class: "note" }, "The browser keeps it until this tab is closed. ", el("code", {}, "safestart keys create"), " beside the database makes one, an administrator too."));
+  el("p", { class: "note" }, "The browser keeps it until this tab is closed. ", el("code", {}, "safestart keys create"), " makes a key on the machine of the database; whoever runs this service can give you one."));
 
 /** A word in a frame, and its subject: a job's status says nothing about the verdict of its result. */
 export const badge = (about, word, kind) => el("span", { class: `badge ${about}` }, el("span", { class: "about" }, about), " ", el("b", { class: about === "job" ? `status ${kind}` : `outcome ${kind}` }, word));

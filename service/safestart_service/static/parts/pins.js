@@ -1,7 +1,7 @@
 // The pinned starts: compared in a table, marked on the map where it asks the same.
 
 import { added, alike, differing, pinnedAll, startsOf } from "../logic/pins.js";
-import { ASKED, FIELDS, asProcess } from "../logic/question.js";
+import { ASKED, FIELDS, asProcess, sharedWords } from "../logic/question.js";
 import { csv, figure } from "../logic/words.js";
 import { execute } from "./api.js";
 import { theme } from "./chart.js";
@@ -63,17 +63,23 @@ export class Pins {
     }
     const differ = differing(this.list);
     const columns = [
-      ["verdict", ({ verdict }) => el("b", { class: `word ${{ GO: "good", NO_GO: "bad" }[verdict] ?? "open"}` }, word(verdict))],
+      ["verdict", ({ verdict }) => el("span", {}, el("b", { class: `word ${{ GO: "good", NO_GO: "bad" }[verdict] ?? "open"}` }, word(verdict)), el("span", { class: "note elsewhere" }, "other inputs"))],
       ["x [m]", ({ start }) => start.x_m], ["y [m]", ({ start }) => start.y_m],
       ...differ.map((name) => [`${FIELDS[name].title}${unit(name)}`, ({ values }) => values[name]]),
       ["margin [m]", ({ margin_m: margin }) => (margin === null ? null : Number(figure(margin, 4)))], ["why", ({ reason }) => reason],
       ["", (pin) => el("span", { class: "inline" }, el("button", { type: "button", class: "plain", onclick: () => this.open(pin.values) }, "Show"),
         el("button", { type: "button", class: "plain", "aria-label": `unpin (${pin.start.x_m}, ${pin.start.y_m})`, onclick: () => { this.list = this.list.filter((one) => one !== pin); this.show(); this.changed(); } }, "Unpin"))],
     ];
-    const same = ASKED.filter((name) => !differ.includes(name) && String(this.list[0].values[name]) !== FIELDS[name].first).map((name) => `${FIELDS[name].title.toLowerCase()} ${this.list[0].values[name]} ${FIELDS[name].unit}`.trim());
     const rows = [["verdict", "x_m", "y_m", ...ASKED, "margin_m", "decided_by", "reason"], ...this.list.map(({ verdict, start, values, margin_m: margin, decided_by: by, reason }) => [verdict, start.x_m, start.y_m, ...ASKED.map((name) => values[name]), margin, by, reason])];
-    $("pinned").replaceChildren(same.length ? el("p", { class: "note" }, `All: ${same.join(" · ")}.`) : "", table(this.list, columns, "Pinned starts"),
+    $("pinned").replaceChildren(el("p", { class: "note" }, `${this.list.length > 1 ? "All asked" : "Asked"}: ${sharedWords(this.list[0].values, differ)}.`), table(this.list, columns, "Pinned starts"),
       el("div", { class: "tools" }, el("button", { type: "button", class: "plain", onclick: () => save("starts.csv", csv(rows)) }, "CSV"),
         el("button", { type: "button", class: "plain", onclick: () => { this.list = []; this.show(); this.changed(); } }, "Unpin all")));
+    this.mark();
+  }
+
+  /** Say of each pinned start whether the fields ask the same now. */
+  mark() {
+    const same = alike(this.list, this.given());
+    [...$("pinned").querySelectorAll("tbody tr")].forEach((row, k) => row.classList.toggle("other", !same.includes(this.list[k])));
   }
 }

@@ -27,7 +27,7 @@ export function verdictBadge({ spec, tables }) {
 export function firstScreen(result, head, picture) {
   const inputs = keyInputs(result.spec, result.inputs), short = !head.some((node) => node.matches(".findings, .scroll, .two"));
   const told = el("section", { class: "key-inputs", "aria-label": "Key inputs" }, el("h2", {}, "Asked with"), el("dl", {}, ...inputs.map(([path, value]) => definition(inputTitle(path), value, explained(inputTitle(path).replace(/ \[[^\]]*\]$/, ""))))));
-  return el("div", { class: "first" }, el("div", { class: "said" }, ...head, ...(short ? [told] : [])), el("div", { class: "beside" }, ...(picture ? [picture] : []), ...(short ? [] : [told])));
+  return el("div", { class: short ? "first brief" : "first" }, el("div", { class: "said" }, ...head, ...(short ? [told] : [])), el("div", { class: "beside" }, ...(picture ? [picture] : []), ...(short ? [] : [told])));
 }
 
 /** Show the result of a job. */
@@ -49,9 +49,16 @@ export async function results(place, job, spec, call) {
   return result;
 }
 
+/** A picture this much wider than tall takes the width of the first screen. */
+const PANORAMA = 2.2;
+
+function spread({ target: { naturalWidth: wide, naturalHeight: high } }) {
+  this.closest(".first")?.classList.toggle("panorama", wide > PANORAMA * high);
+}
+
 function images(call, process, artifacts) {
   return artifacts.filter((file) => file.media_type === "image/png").map((file) => {
-    const image = el("img", { alt: `${process}: ${file.name}` }), whole = el("a", { target: "_blank", title: "in full size" }, image);
+    const image = el("img", { alt: `${process}: ${file.name}`, onload: spread }), whole = el("a", { target: "_blank", title: "in full size" }, image);
     call(file.href).then((answer) => answer.blob()).then((blob) => { whole.href = image.src = URL.createObjectURL(blob); }, () => { image.alt += " (not loaded)"; });
     return el("figure", {}, whole, el("figcaption", {}, file.name));
   });

@@ -45,5 +45,5 @@ export function storedNote({ state, answer, error, question }, values) {
   if (state === "asking") return { sets: [], note: "Loading …" };
   const inputs = known.get(question);
   if (!isAbout(inputs, values)) return { sets: [], note: `Not shown: these sets are about ${inputs.omega_t_deg_s} deg/s, ${inputs.a_max_m_s2} m/s² and the corridor of that job, not about the fields above.` };
-  return { sets: answer, note: `Sets of reaching the corridor after ${inputs.horizon_s} s, another question than to stay in it.` };
+  return { sets: answer, note: `These sets answer another question: which starts reach the corridor after ${inputs.horizon_s} s, not which stay in it.` };
 }

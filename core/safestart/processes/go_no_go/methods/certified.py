@@ -45,11 +45,18 @@ def decide(inputs: GoNoGoInputs, conditions: Conditions, context: Context) -> Ve
 
 
 def go_at_once(inputs: GoNoGoInputs, _: Conditions) -> Verdicts | None:
-    """The answer for one start if it is GO, in microseconds; None if another method must decide."""
+    """The answer if every start is GO, in microseconds each; None if another method must decide one."""
     if not answers(inputs):
         return None
-    one = certificates(inputs)[0]
-    return Verdicts(["GO"], [one.margin], [sentence(one)], decided_by=[NAME]) if one.go else None
+    found = certificates(inputs)
+    if not all(one.go for one in found):
+        return None
+    return Verdicts(
+        ["GO"] * len(found),
+        [one.margin for one in found],
+        [sentence(one) for one in found],
+        decided_by=[NAME] * len(found),
+    )
 
 
 def answers(inputs: GoNoGoInputs) -> bool:

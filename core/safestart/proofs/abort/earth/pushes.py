@@ -13,11 +13,11 @@ from __future__ import annotations
 
 from flint import arb, arb_mat, fmpq
 
-from safestart.proofs.abort.course import Course, inverse
+from safestart.proofs.abort.earth.course import Course, inverse
+from safestart.proofs.abort.earth.taylor import middle
+from safestart.proofs.abort.earth.turning import Turning
 from safestart.proofs.abort.finite import Rates
 from safestart.proofs.abort.reached import Reached, axes, column, shell
-from safestart.proofs.abort.taylor import middle
-from safestart.proofs.abort.turning import Turning
 
 Limits = tuple[arb, arb]
 _BALL = arb(0, 1)

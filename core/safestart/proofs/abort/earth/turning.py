@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from flint import arb
 
-from safestart.proofs.abort.course import Course
+from safestart.proofs.abort.earth.course import Course
 from safestart.proofs.strict import ProofRejected
 
 _BALL = arb(0, 1)

@@ -20,7 +20,7 @@ import numpy as np
 from scipy.linalg import expm
 
 from tests.fuzzing.cone import largest
-from tests.fuzzing.printed import Printed
+from tests.fuzzing.plane.printed import Printed
 
 Truth = Literal["true", "false", "open"]
 _SAMPLES, _DENSE, _MOST = 24, 12, 400

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from tests.fuzzing.decided import Member, Truth, rows_of, steps_of, truth
-from tests.fuzzing.printed import Printed
+from tests.fuzzing.plane.decided import Member, Truth, rows_of, steps_of, truth
+from tests.fuzzing.plane.printed import Printed
 
 _PANELS, _DIRECTIONS = 48, 24
 

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from tests.fuzzing.decided import Truth, steps_of
-from tests.fuzzing.printed import Feedback, Printed
+from tests.fuzzing.plane.decided import Truth, steps_of
+from tests.fuzzing.plane.printed import Feedback, Printed
 
 _INSTANTS, _STEPS, _TOLERANCE = 40, 60, 1e-7
 

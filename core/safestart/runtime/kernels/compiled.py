@@ -29,7 +29,7 @@ import numpy as np
 from numba import njit, types
 from numba.core.caching import FunctionCache
 
-from safestart.runtime.kernel_parts import part
+from safestart.runtime.kernels.parts import part
 
 log = logging.getLogger("safestart.kernels")
 

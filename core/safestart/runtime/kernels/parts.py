@@ -13,8 +13,8 @@ from typing import Any
 from numba import njit, types, version_info
 
 KNOWN = (0, 68)
-"""The version of Numba whose inner classes :mod:`safestart.runtime.kernel_pipeline` extends. With another one parts are
-compiled as Numba does it: the same bits, later."""
+"""The version of Numba whose inner classes :mod:`safestart.runtime.kernels.pipeline` extends. With another one parts
+are compiled as Numba does it: the same bits, later."""
 
 
 def part(function: Callable[..., Any], **options: Any) -> Any:
@@ -39,6 +39,6 @@ def part(function: Callable[..., Any], **options: Any) -> Any:
 def _pipeline() -> dict[str, Any]:
     if tuple(version_info[:2]) != KNOWN:
         return {}
-    from safestart.runtime.kernel_pipeline import PartCompiler
+    from safestart.runtime.kernels.pipeline import PartCompiler
 
     return {"pipeline_class": PartCompiler}

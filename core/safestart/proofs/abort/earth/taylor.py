@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 from flint import arb, arb_mat
 
-from safestart.proofs.abort.polynomial import Polynomial
-from safestart.proofs.abort.pull import Field, Pull, Series, dot
+from safestart.proofs.abort.earth.polynomial import Polynomial
+from safestart.proofs.abort.earth.pull import Field, Pull, Series, dot
 from safestart.proofs.strict import ProofRejected
 
 ORDER = 44

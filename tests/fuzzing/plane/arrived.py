@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from tests.fuzzing.decided import Truth, steps_of
-from tests.fuzzing.printed import Printed
+from tests.fuzzing.plane.decided import Truth, steps_of
+from tests.fuzzing.plane.printed import Printed
 
 _TOLERANCE = 1e-9
 

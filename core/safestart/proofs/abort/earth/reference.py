@@ -11,9 +11,9 @@ from operator import add, mul
 
 from flint import arb, arb_mat, fmpq
 
-from safestart.proofs.abort.course import Course, inverse
-from safestart.proofs.abort.pushes import LastingPushes, frame
-from safestart.proofs.abort.turning import Turning
+from safestart.proofs.abort.earth.course import Course, inverse
+from safestart.proofs.abort.earth.pushes import LastingPushes, frame
+from safestart.proofs.abort.earth.turning import Turning
 from safestart.proofs.strict import ProofRejected
 
 

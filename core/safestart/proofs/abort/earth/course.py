@@ -1,7 +1,7 @@
 """A body's course about the Earth with J2 and the linear motion near it, enclosed at all times.
 
-The pieces of :mod:`safestart.proofs.abort.taylor` make one course p and one motion F, from F = I on. With the true
-fundamental solution Psi = F (I + eta),
+The pieces of :mod:`safestart.proofs.abort.earth.taylor` make one course p and one motion F, from F = I on. With the
+true fundamental solution Psi = F (I + eta),
 
     |eta| <= exp(E) - 1,  E = sum of length x |F^-1| x (defect of F + 2 c |e| |F|) + 2 |F^-1| |jump|,
 
@@ -16,8 +16,8 @@ from bisect import bisect_right
 
 from flint import arb, arb_mat, fmpq
 
-from safestart.proofs.abort.pull import Field
-from safestart.proofs.abort.taylor import Step, frobenius, middle, step
+from safestart.proofs.abort.earth.pull import Field
+from safestart.proofs.abort.earth.taylor import Step, frobenius, middle, step
 from safestart.proofs.strict import ProofRejected
 
 _MOST_STEPS = 20_000

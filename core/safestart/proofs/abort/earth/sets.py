@@ -15,15 +15,15 @@ from __future__ import annotations
 from flint import arb, arb_mat, fmpq
 
 from safestart.proofs.abort.complete import Complete
-from safestart.proofs.abort.course import Course
+from safestart.proofs.abort.earth.course import Course
+from safestart.proofs.abort.earth.pushes import LastingPushes, Pushes, lift
+from safestart.proofs.abort.earth.reference import Reference
+from safestart.proofs.abort.earth.taylor import frobenius, middle
+from safestart.proofs.abort.earth.turning import turning
 from safestart.proofs.abort.finite import burning, times
-from safestart.proofs.abort.pushes import LastingPushes, Pushes, lift
 from safestart.proofs.abort.reached import Reached, column, level, reach, sizes_along, sizes_of
-from safestart.proofs.abort.reference import Reference
 from safestart.proofs.abort.sets import Sets
 from safestart.proofs.abort.statement import Asked, Event, Zone
-from safestart.proofs.abort.taylor import frobenius, middle
-from safestart.proofs.abort.turning import turning
 from safestart.proofs.strict import ProofRejected
 
 
