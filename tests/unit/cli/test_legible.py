@@ -34,20 +34,34 @@ def test_an_error_shows_them_escaped(capsys: pytest.CaptureFixture[str]) -> None
 
 
 @pytest.mark.parametrize("terminal", [True, False])
-def test_a_console_shows_them_escaped_and_keeps_its_colours(
-    terminal: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(console.out, "_force_terminal", terminal)
-    monkeypatch.setattr(console.out, "file", found := io.StringIO())
+def test_a_console_shows_them_escaped_and_keeps_its_colours(terminal: bool) -> None:
+    # A console of its own: the commands' consoles follow sys.stdout, and whoever sets their file ends that.
+    found = io.StringIO()
+    own = console.LegibleConsole(
+        file=found,
+        force_terminal=terminal,
+        color_system="standard" if terminal else None,
+        width=112,
+        highlight=False,
+    )
     shown = console.table_of("t", (("name", "left"),))
     shown.add_row(HOSTILE.replace("\r", "").replace("[31m", ""))
-    console.out.print(shown)
-    console.out.print(f"{HOSTILE}\nnext", markup=False, soft_wrap=True)
+    own.print(shown)
+    own.print(f"{HOSTILE}\nnext", markup=False, soft_wrap=True)
+    own.print("red", style="bold red")
     said = found.getvalue()
     assert not any(c in said for c in "\u202e\u200b\x9b\ud800\u2028\r")
     assert "\x1b[31m" not in said
     assert "\\x1b[31m\\u202eb" in said
     assert "\nnext\n" in said
+    assert ("\x1b[1;31mred" in said) == terminal
+
+
+def test_the_commands_consoles_are_legible_and_follow_the_streams(capsys: pytest.CaptureFixture[str]) -> None:
+    console.out.print("a\u202eb", markup=False)
+    console.err.print("c\u202ed", markup=False)
+    said = capsys.readouterr()
+    assert (said.out, said.err) == ("a\\u202eb\n", "c\\u202ed\n")
 
 
 def test_the_name_in_a_bundle_acts_on_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
