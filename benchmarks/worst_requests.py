@@ -2,8 +2,9 @@
 
 ``python -m benchmarks.worst_requests [CGROUP]`` starts a service of its own, in the memory control group CGROUP where
 one is given (a folder with ``cgroup.procs``): whatever takes more than the group allows is killed.
-Memory is the proportional set size of the service and its helper processes (``own_mb``: without what others share, such
-as mapped files); health is the time of ``GET /healthz``. Processes of their own measure both every 20 ms.
+Memory is the proportional set size of the service and its helper processes, so that what they share counts once
+(``own_mb``: without mapped files); health is the time of ``GET /healthz``. Processes of their own measure both every
+20 ms.
 """
 
 from __future__ import annotations
@@ -103,8 +104,8 @@ def watched(address: str, process: psutil.Process, work: Callable[[], Any]) -> d
     return {
         "answers": answers,
         "took_s": round(took, 2),
-        "peak_mb": round(peaks["pss"] / 1e6),
-        "own_mb": round(peaks["uss"] / 1e6),
+        "peak_mb": round(peaks["Pss"] / 1e6),
+        "own_mb": round(peaks["Pss_Anon"] / 1e6),
         "health_p99_s": round(times[min(len(times) - 1, int(0.99 * len(times)))], 4) if times else None,
         "health_asked": len(times),
     }

@@ -8,9 +8,11 @@ from __future__ import annotations
 import http.client
 import multiprocessing
 import time
-from collections.abc import Callable, Iterator
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from multiprocessing.connection import Connection
+from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -36,22 +38,31 @@ def health(end: Connection, address: str) -> None:
 def memory(end: Connection, pid: int) -> None:
     """Look until told to stop; answers with the peaks over a process and its children, bytes.
 
-    ``pss``: proportional set size, with files that are mapped; ``uss``: what no other process shares.
+    By the names of :func:`memory_of`.
     """
-    peaks = {"pss": 0, "uss": 0}
+    peaks: Counter[str] = Counter()
     service = psutil.Process(pid)
     end.send(None)
     while True:
-        now = dict.fromkeys(peaks, 0)
-        for one in (service, *service.children(recursive=True)):
-            with suppress(psutil.Error):
-                found = one.memory_full_info()
-                now["pss"] += found.pss
-                now["uss"] += found.uss
-        peaks = {name: max(peak, now[name]) for name, peak in peaks.items()}
+        peaks |= memory_of([service, *service.children(recursive=True)])
         if end.poll(EVERY_S):
             break
     end.send(peaks)
+
+
+def memory_of(processes: Iterable[psutil.Process]) -> Counter[str]:
+    """Memory of processes together, bytes; what some of them share counts once.
+
+    ``Pss``: proportional set size, with files that are mapped; ``Pss_Anon``: without them.
+    """
+    found: Counter[str] = Counter()
+    for one in processes:
+        with suppress(OSError):  # it has ended
+            for line in Path(f"/proc/{one.pid}/smaps_rollup").read_text().splitlines()[1:]:
+                name, value = line.split(":")
+                if name in ("Pss", "Pss_Anon"):
+                    found[name] += 1024 * int(value.split()[0])
+    return found
 
 
 @contextmanager

@@ -16,7 +16,6 @@ from itertools import count
 from pathlib import Path
 from typing import Any, TypeVar
 
-from anyio import BrokenWorkerProcess, CapacityLimiter, to_process
 from fastapi import Request
 from starlette.requests import ClientDisconnect
 
@@ -28,6 +27,7 @@ from safestart_service.computing import inside
 from safestart_service.computing.light import leaves
 from safestart_service.computing.limits import too_long
 from safestart_service.computing.line import Line
+from safestart_service.computing.pool import HelperEnded, Pool
 
 Answer = TypeVar("Answer")
 
@@ -47,7 +47,7 @@ class Helpers:
         self._settings = settings
         self.callers = Callers("heavy answers are asked for", MOST_HEAVY)
         self.line = Line(settings.answer_processes)
-        self._limiter = CapacityLimiter(settings.answer_processes)
+        self._pool = Pool(settings.answer_processes)
         self._folder = _folder()
         self._numbers = count()
         self._warming: asyncio.Task[None] | None = None
@@ -122,20 +122,9 @@ class Helpers:
         async with self.line.slot(name, cost_s):
             await asyncio.shield(self.warm())
             try:
-                return await to_process.run_sync(
-                    inside.call,
-                    function,
-                    self._settings,
-                    stop,
-                    *arguments,
-                    cancellable=True,
-                    limiter=self._limiter,
-                )
-            except asyncio.CancelledError:
-                self._warming = None  # the process is killed; no deadline ends the next one while it starts
-                raise
-            except BrokenWorkerProcess:
-                self._warming = None
+                return await self._pool(inside.call, function, self._settings, stop, *arguments)
+            except HelperEnded:
+                self._warming = None  # it may have taken the one that forks them along
                 log.exception("a helper process ended while it computed an answer")
                 raise Unavailable(
                     "the process that computed the answer ended; required a smaller question, or a job",
@@ -147,17 +136,18 @@ class Helpers:
         return None if self._folder is None else self._folder / str(next(self._numbers))
 
     def warm(self) -> asyncio.Task[None]:
-        """Start a helper process, unless one was started and not killed; the first heavy answer waits for it."""
+        """Start a helper process, unless one was started and has not ended; heavy answers wait for it."""
         if self._warming is None:
             self._warming = asyncio.ensure_future(self._start())
         return self._warming
 
     async def _start(self) -> None:
-        with suppress(BrokenWorkerProcess, inside.Failed):
-            await to_process.run_sync(inside.ready, limiter=self._limiter, cancellable=True)
+        with suppress(HelperEnded):
+            await self._pool.start()
 
     def close(self) -> None:
-        """Remove the flag files; the event loop ends the processes."""
+        """End the processes and remove the flag files."""
+        self._pool.close()
         if self._folder is not None:
             shutil.rmtree(self._folder, ignore_errors=True)
 

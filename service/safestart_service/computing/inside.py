@@ -72,8 +72,8 @@ def ready() -> int:
         import_module(name)
     # By name, like the processes: the application itself, which imports this module, loads no Numba.
     import_module("safestart.exact.kernels.warm").warm()
-    # Numba's objects stay: scanning them takes a tenth of a second every time.
-    gc.collect()
+    # Numba's objects stay: scanning them takes a tenth of a second every time. What compiling took is given back.
+    _return_memory()
     gc.freeze()
     return os.getpid()
 

@@ -1,0 +1,201 @@
+"""Helper processes: forked from one that has loaded, killed when nobody waits, gone when their service is."""
+
+from __future__ import annotations
+
+import asyncio
+import operator
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Awaitable, Callable, Iterator
+from contextlib import suppress
+from typing import Any
+
+import psutil
+import pytest
+
+from safestart_service.computing import nursery
+from safestart_service.computing.pool import FORKS, Forked, HelperEnded, Pool, Source, Spawned
+from tests.waiting import until
+
+needs_fork = pytest.mark.skipif(not FORKS, reason="this system cannot fork")
+
+
+class Shared(Forked):
+    """One for all tests, as loading takes seconds: the end of a pool is not the end of it."""
+
+    def close(self) -> None:
+        pass
+
+
+@pytest.fixture(scope="module")
+def source() -> Iterator[Source]:
+    found = Shared()
+    yield found
+    Forked.close(found)
+
+
+def asked(source: Source, work: Callable[[Pool], Awaitable[None]]) -> None:
+    async def all_of_it() -> None:
+        pool = Pool(2, source)
+        try:
+            await work(pool)
+        finally:
+            pool.close()
+
+    asyncio.run(all_of_it())
+
+
+def gone(pid: int) -> bool:
+    try:
+        return psutil.Process(pid).status() == psutil.STATUS_ZOMBIE
+    except psutil.NoSuchProcess:
+        return True
+
+
+@needs_fork
+def test_a_helper_is_kept_and_another_one_comes_beside_it(source: Source) -> None:
+    asked(source, _kept)
+
+
+def test_the_same_where_a_system_cannot_fork() -> None:
+    asked(Spawned(), _kept)
+
+
+async def _kept(pool: Pool) -> None:
+    await pool.start()
+    first = await pool(os.getpid)
+    assert first != os.getpid()
+    assert await pool(os.getpid) == first
+    both = await asyncio.gather(pool(_pid_after, 0.5), pool(_pid_after, 0.5))
+    assert first in both
+    assert len(set(both)) == 2
+    assert await pool(operator.add, [1], [2.5]) == [1, 2.5]
+    with pytest.raises(ZeroDivisionError):
+        await pool(operator.truediv, 1, 0)
+    assert await pool(os.getpid) in both
+
+
+@needs_fork
+def test_a_cancelled_call_ends_its_process_and_the_next_one_is_served(source: Source) -> None:
+    async def work(pool: Pool) -> None:
+        first = await pool(os.getpid)
+        with pytest.raises(TimeoutError):
+            await asyncio.wait_for(pool(time.sleep, 600), 0.2)
+        assert await pool(os.getpid) != first
+        assert until(lambda: gone(first), "the end of the process")
+
+    asked(source, work)
+
+
+@needs_fork
+def test_a_process_that_ends(source: Source) -> None:
+    """In a call it is told; between calls another one takes its place."""
+
+    async def work(pool: Pool) -> None:
+        with pytest.raises(HelperEnded):
+            await pool(os._exit, 3)
+        first = await pool(os.getpid)
+        os.kill(first, signal.SIGKILL)
+        assert until(lambda: gone(first), "the end of the process")
+        assert await pool(os.getpid) != first
+
+    asked(source, work)
+
+
+@needs_fork
+def test_what_cannot_be_sent_back_ends_the_process_alone(source: Source) -> None:
+    async def work(pool: Pool) -> None:
+        with pytest.raises(HelperEnded):
+            await pool(eval, "lambda: 0")
+        with pytest.raises(Exception, match="pickle"):
+            await pool(lambda: 0)
+        assert await pool(abs, -1) == 1
+
+    asked(source, work)
+
+
+@needs_fork
+def test_closed_while_one_computes(source: Source) -> None:
+    pids: list[int] = []
+
+    async def work(pool: Pool) -> None:
+        pids.append(await pool(os.getpid))
+        call = asyncio.ensure_future(pool(time.sleep, 600))
+        await asyncio.sleep(0.1)
+        pool.close()
+        with pytest.raises(HelperEnded):
+            await call
+
+    asked(source, work)
+    assert until(lambda: gone(pids[0]), "the end of the process")
+
+
+@needs_fork
+def test_a_nursery_that_ends_is_replaced() -> None:
+    others, source = _nurseries(), Forked()
+
+    async def work(pool: Pool) -> None:
+        assert await pool(abs, -1) == 1
+        (pid,) = _nurseries() - others
+        os.kill(pid, signal.SIGKILL)
+        assert until(lambda: gone(pid), "the end of the process")
+        # The helper that it has forked lives on; two at once need a new one.
+        assert await asyncio.gather(pool(_after, 0.3, 5), pool(_after, 0.3, 6)) == [5, 6]
+        assert len(_nurseries() - others) == 1
+
+    try:
+        asked(source, work)
+    finally:
+        source.close()
+    assert _nurseries() == others
+    with pytest.raises(HelperEnded):
+        source.helper()
+
+
+@needs_fork
+def test_no_process_outlives_a_service_that_is_killed() -> None:
+    service = subprocess.Popen(
+        [sys.executable, "-c", ALONE], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    )
+    assert service.stdout is not None
+    assert service.stdout.readline() == "ready\n"
+    family = psutil.Process(service.pid).children(recursive=True)
+    assert len(family) >= 2
+    service.kill()
+    service.wait()
+    assert until(lambda: all(gone(one.pid) for one in family), "the end of all processes")
+
+
+ALONE = """
+import asyncio
+from safestart_service.computing import nursery
+from safestart_service.computing.pool import Pool
+async def wait():
+    await Pool(1).start()
+    print("ready", flush=True)
+    await asyncio.sleep(600)
+asyncio.run(wait())
+"""
+
+
+def _nurseries() -> set[int]:
+    """Process ids of those that are ours and live."""
+    found = set()
+    for one in psutil.Process().children():
+        with suppress(psutil.Error):  # it has just ended
+            if nursery.__name__ in one.cmdline():
+                found.add(one.pid)
+    return found
+
+
+def _pid_after(wait_s: float) -> int:
+    time.sleep(wait_s)
+    return os.getpid()
+
+
+def _after(wait_s: float, answer: Any) -> Any:
+    time.sleep(wait_s)
+    return answer
