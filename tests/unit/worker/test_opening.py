@@ -1,11 +1,13 @@
 """The embedded cluster has Dask's defaults and ours."""
 
+import asyncio
 import os
 
 import dask
+import psutil
 import pytest
 
-from safestart_worker.cluster.opening import _defaults
+from safestart_worker.cluster.opening import _defaults, open_cluster
 from safestart_worker.cluster.own_files import forget_variables
 
 USERS = {
@@ -40,3 +42,17 @@ def test_task_processes_do_not_see_dasks_variables(monkeypatch: pytest.MonkeyPat
     monkeypatch.setenv("DASK_CONFIG", "/nonexistent")
     forget_variables()
     assert not [name for name in os.environ if name.startswith("DASK_")]
+
+
+@pytest.mark.slow
+def test_a_process_without_a_task_hardly_wakes() -> None:
+    """Dask's profiler and its clock woke each process 100 times a second, which took a twentieth of a slow core."""
+
+    async def wakes_per_s() -> float:
+        async with open_cluster("", 1, 3, "me"):
+            family = psutil.Process().children(recursive=True)
+            before = {one: one.num_ctx_switches().voluntary for one in family}
+            await asyncio.sleep(3.0)
+            return max(one.num_ctx_switches().voluntary - count for one, count in before.items()) / 3.0
+
+    assert asyncio.run(wakes_per_s()) < 50.0

@@ -116,6 +116,10 @@ def _config(max_attempts: int) -> dict[str, Any]:
         "distributed.deploy.lost-worker-timeout": "1000 hours",
         # Events carry progress only; the database is the record.
         "distributed.admin.low-level-log-length": 1000,
+        # Samples of what runs, for a dashboard that we do not open: a thread of each process wakes 100 times a second.
+        "distributed.worker.profile.enabled": False,
+        # How late the event loop is, which Dask would log; our own signs of life say more (see liveness).
+        "distributed.admin.tick.interval": "500ms",
         # The process reads these before it imports NumPy or Numba.
         "distributed.nanny.pre-spawn-environ": {**_ONE_THREAD, "MALLOC_TRIM_THRESHOLD_": "65536"},
         "distributed.scheduler.http.routes": [],
