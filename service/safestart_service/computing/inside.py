@@ -30,6 +30,17 @@ _LOOK_S = 0.01
 _SHORT_S = 0.05
 
 
+# What is loaded where it is first needed. Loaded before the fork, it is there once for all helpers.
+_LATE = (
+    "clarabel",
+    "safestart.proofs.checker",
+    "safestart.store.cache",
+    "safestart.store.database",
+    "safestart.store.jobs.repository",
+    "safestart_service.computing.work",
+)
+
+
 class Failed(RuntimeError):
     """An unexpected error inside a helper process; its text holds the traceback."""
 
@@ -67,8 +78,7 @@ def ready() -> int:
             spec.runner()
     for method in METHODS.values():
         load(method.decide)
-    # What is loaded where it is first needed.
-    for name in ("clarabel", "safestart.proofs.checker"):
+    for name in _LATE:
         import_module(name)
     # By name, like the processes: the application itself, which imports this module, loads no Numba.
     import_module("safestart.exact.kernels.warm").warm()

@@ -1,6 +1,6 @@
 """The program that loads what heavy answers need, once, and forks the helper processes.
 
-A forked helper is there in milliseconds and shares what was loaded; one that loads for itself takes seconds and 120 MB.
+A forked helper is there in milliseconds and shares what was loaded; one that loads for itself takes seconds.
 ``python -m safestart_service.computing.nursery FD``: the stream socket ``FD`` brings the end of a connection for each
 new helper. When its other end is closed this program ends, and each helper ends with its own connection.
 """
