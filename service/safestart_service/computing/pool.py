@@ -97,7 +97,7 @@ class Forked:
                 self._end()
                 self._control, theirs = socket.socketpair()
                 # It finds the modules that we find, and no others in the folder where we happen to run.
-                environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
+                environment = os.environ | {"PYTHONPATH": os.pathsep.join(map(str, sys.path))}
                 command = [sys.executable, "-P", "-m", nursery.__name__, str(theirs.fileno())]
                 with theirs:
                     self._process = subprocess.Popen(
