@@ -123,6 +123,10 @@ class Helpers:
             await asyncio.shield(self.warm())
             try:
                 return await self._pool(inside.call, function, self._settings, stop, *arguments)
+            except asyncio.CancelledError:
+                # The process is killed. Where none can be forked the next one loads, in nobody's time for an answer.
+                self._warming = None
+                raise
             except HelperEnded:
                 self._warming = None  # it may have taken the one that forks them along
                 log.exception("a helper process ended while it computed an answer")

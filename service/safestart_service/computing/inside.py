@@ -82,7 +82,7 @@ def ready() -> int:
         import_module(name)
     # By name, like the processes: the application itself, which imports this module, loads no Numba.
     import_module("safestart.exact.kernels.warm").warm()
-    # Numba's objects stay: scanning them takes a tenth of a second every time. What compiling took is given back.
+    # Numba's objects stay: scanning them takes a tenth of a second every time. What compiling left is freed.
     _return_memory()
     gc.freeze()
     return os.getpid()
