@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import gzip
 import json
+import statistics
 from collections.abc import Iterator
 from typing import Any
 
@@ -21,6 +22,8 @@ FIRST_PAINT_MS = 1000.0
 DEAF_MS = 50.0
 FIXED_MS = 20.0
 """What the work of a fixed size takes on a quiet machine (of 2.8 GHz)."""
+LEAST_FIXED_MS = 5.0
+"""No processor does that work in less: such a trace has lost its task."""
 TRIES = 10
 _PAINTED = "performance.getEntriesByName('first-contentful-paint')[0]?.startTime ?? null"
 _FIXED_WORK = """() => {
@@ -73,7 +76,8 @@ def test_nobody_types_into_a_deaf_page(browser: Browser, context: BrowserContext
     """Each key changes the question, marks the answers as old, asks anew and draws the map again.
 
     Counted is the time of the processor in the longest task of the page's main thread, at the pace of a quiet machine:
-    beside other processes the same work takes twice as long, and work of a fixed size tells by how much.
+    beside other processes the same work takes twice as long, and work of a fixed size tells by how much. The two are
+    measured in turn, and their medians compared: the quietest moment of the one need not be that of the other.
     """
     page = Visit(context, url).go("/dashboard?omega_t_deg_s=3&x_m=5&y_m=40")
     expect(page.locator("#play")).to_be_enabled()
@@ -82,11 +86,21 @@ def test_nobody_types_into_a_deaf_page(browser: Browser, context: BrowserContext
         browser.start_tracing(page=page, categories=["toplevel"])
         _type(page, ("1.25", "2.5", "3.75", "4.5")[k % 4])
         longest.append(_longest_task(json.loads(browser.stop_tracing())["traceEvents"], 50))
+        fixed.append(_fixed_work(browser, page))
+    pace = max(1.0, statistics.median(fixed) / FIXED_MS)
+    assert statistics.median(longest) <= DEAF_MS * pace, (longest, fixed)
+
+
+def _fixed_work(browser: Browser, page: Page) -> float:
+    """Milliseconds of the processor for work of a fixed size; a trace that has lost its task is taken again."""
+    for _ in range(TRIES):
         browser.start_tracing(page=page, categories=["toplevel"])
         assert page.evaluate(_FIXED_WORK) == 25_000
-        fixed.append(_longest_task(json.loads(browser.stop_tracing())["traceEvents"], 1))
-    pace = max(1.0, min(fixed) / FIXED_MS)
-    assert min(longest) <= DEAF_MS * pace, (longest, fixed)
+        page.evaluate("() => new Promise(requestAnimationFrame)")  # by now the trace has the task before
+        took = _longest_task(json.loads(browser.stop_tracing())["traceEvents"], 1)
+        if took >= LEAST_FIXED_MS:
+            return took
+    raise AssertionError("the trace holds the work of a fixed size")
 
 
 def _type(page: Page, text: str) -> None:
