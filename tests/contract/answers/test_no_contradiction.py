@@ -61,7 +61,7 @@ def test_other_starts_keep_their_documents() -> None:
 
 
 def test_the_linked_document_is_a_go_or_there_is_none(tmp_path: Path) -> None:
-    with service(tmp_path, answer_timeout_s=60.0) as client:
+    with service(tmp_path) as client:
         answer = client.get("/go-no-go", params=FLAT).json()
         assert (answer["verdict"], answer["decided_by"]) == ("GO", "certified")
         assert check(client.get(answer["proof_url"]).json()).verdict == "GO"

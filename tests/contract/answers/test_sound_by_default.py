@@ -25,8 +25,7 @@ START = {"x_m": 9.364, "y_m": 81.044}
 
 @pytest.fixture(scope="module")
 def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
-    # Whether an answer is proved is asked here, not how soon a loaded machine gives it.
-    with service(tmp_path_factory.mktemp("service"), answer_timeout_s=300.0) as made:
+    with service(tmp_path_factory.mktemp("service")) as made:
         yield made
 
 

@@ -13,6 +13,7 @@ from safestart.records.artifact import Artifact
 from safestart.runtime.settings import Settings
 from safestart.store.database import Database
 from safestart.store.jobs.repository import JobRepository
+from tests.waiting import PATIENCE_S
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")  # the test client announces a successor of httpx
@@ -31,10 +32,13 @@ PNG = b"\x89PNG\r\n\x1a\n" + bytes(40)
 
 @contextmanager
 def service(folder: Path, **settings: Any) -> Iterator[TestClient]:
-    """A client on this machine whose unexpected server errors are answers, as they are on the wire."""
+    """A client on this machine whose unexpected server errors are answers, as they are on the wire.
+
+    It waits for answers as long as our tests do: what is answered is asked here, not how soon a loaded machine does it.
+    """
     from safestart_service.app import create_app
 
-    chosen = Settings(database_url=url_of(folder), **settings)
+    chosen = Settings(database_url=url_of(folder), **{"answer_timeout_s": PATIENCE_S, **settings})
     here: dict[str, Any] = {"base_url": BASE, "client": ("127.0.0.1", 50_000)}
     with TestClient(create_app(chosen), raise_server_exceptions=False, **here) as client:
         yield client

@@ -147,7 +147,7 @@ if __name__ == "__main__":
     for package in (safestart, safestart_service):
         assert Path(str(package.__file__)).is_relative_to(where), "the copy is asked"
     # The copy's kernels are compiled anew, which takes long on a busy machine: after a minute it is 503.
-    with service(where, answer_timeout_s=300) as asked:
+    with service(where) as asked:
         proof = POINT | START | {"method": "exact"}
         until(lambda: asked.get("/go-no-go/proof", params=proof).status_code != 503, "a helper process")
         print(json.dumps({part.__name__: part(asked, where) for part in PARTS}))

@@ -42,6 +42,7 @@ BENCHMARK: dict[str, Any] = {
 }
 SWEEP: dict[str, Any] = {"controllers": ["filter"], "omega_t_deg_s": [1, 4], "a_max_m_s2": [0.1]}
 ROOMY = {
+    "SAFESTART_ANSWER_TIMEOUT_S": str(PATIENCE_S),
     "SAFESTART_MAX_QUEUED": "1000000",
     "SAFESTART_RATE_PER_S": "1e9",
     "SAFESTART_SUBMIT_RATE_PER_S": "1e9",
@@ -108,7 +109,7 @@ def stock(folder: Path) -> Stock:
 
 @contextmanager
 def served(found: Stock, log: Path) -> Iterator[str]:
-    """The service on that database at its most talkative, without limits of rate; gives its address."""
+    """The service on that database at its most talkative, without limits of rate, and patient; gives its address."""
     command = [sys.executable, "-m", "safestart_service", "--port", "0", "--database-url", found.url]
     with log.open("a") as sink:
         server = subprocess.Popen(
@@ -132,7 +133,7 @@ def ask(
         *(sys.executable, "-m", "schemathesis.cli", "--config-file", str(config)),
         *("run", f"{base}/openapi.json", "--header", f"Authorization: Bearer {found.key}", "--checks", "all"),
         *("--phases", phases, "--max-examples", str(examples), "--continue-on-failure", "--no-shrink"),
-        *("--suppress-health-check", "all", "--warnings", "off", "--request-timeout", "60", *only),
+        *("--suppress-health-check", "all", "--warnings", "off", "--request-timeout", str(PATIENCE_S), *only),
     ]
     hooks = {"SCHEMATHESIS_HOOKS": str(CONFIG.with_name("fuzz_profile.py"))}
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, env=os.environ | hooks)
