@@ -92,7 +92,13 @@ def _serve(overrides: dict[str, object]) -> None:
             proxy_headers=False,  # access/proxies.py reads them
             timeout_graceful_shutdown=3,  # event streams do not end by themselves
         )
-        server = uvicorn.Server(config)
+
+        class Server(uvicorn.Server):
+            async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+                app.state.services.helpers.leave()  # else its answers would be cut off when the grace is over
+                await super().shutdown(sockets)
+
+        server = Server(config)
         # Exclude the loaded objects from collection: a full collection would scan them all and delay every answer.
         gc.collect()
         gc.freeze()

@@ -28,7 +28,7 @@ CERTIFICATE: dict[str, Any] = {"omega_t_deg_s": 3, "a_max_m_s2": 0.1}
 STEADY: dict[str, Any] = {
     "omega_t_deg_s": [0.5 * i for i in range(1, 51)],
     "a_max_m_s2": [0.05, 0.1],
-    "grid": {"nx": 1000, "ny": 1000, "y_max_m": 150},
+    "grid": {"nx": 400, "ny": 400, "y_max_m": 150},
 }
 # Minutes of work in steps of seconds, the first of which is a compilation: does not poll in time.
 STUBBORN: dict[str, Any] = {

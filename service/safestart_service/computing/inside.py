@@ -1,4 +1,4 @@
-"""What runs inside a helper process: one call at a time, in bounded memory, with a flag file that tells it to stop."""
+"""What runs inside a helper process: one call at a time, in bounded memory, at low priority."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
 from importlib import import_module
-from pathlib import Path
 from time import monotonic
 from typing import Any
 
@@ -20,12 +19,12 @@ from safestart.processes.registry import PROCESS_IDS, process
 from safestart.runtime.named import load
 from safestart.runtime.progress import Context
 from safestart.runtime.settings import Settings
+from safestart_service.computing.helpers import serving
 from safestart_service.computing.store import Store
 
 MOST_BYTES = 768 * 1024**2
 """Data of a helper process. Numba takes 130 MiB of it, the largest legal question less than half of the rest."""
 NICENESS = 5
-_LOOK_S = 0.01
 # An answer that took less has left too little behind to spend a millisecond on it.
 _SHORT_S = 0.05
 
@@ -45,12 +44,14 @@ class Failed(RuntimeError):
     """An unexpected error inside a helper process; its text holds the traceback."""
 
 
-def call(function: Callable[..., Any], settings: Settings, stop: Path | None, *arguments: Any) -> Any:
+def call(function: Callable[..., Any], settings: Settings, *arguments: Any) -> Any:
     """``function(store, context, *arguments)``; raises our errors as they are, and ``Failed`` for all others."""
-    _prepare()
-    store, begun = _store(settings), monotonic()
+    begun = monotonic()
     try:
-        return function(store, Context(cancelled=_stopped(stop), shelf=store.shelf), *arguments)
+        _prepare()
+        store = _store(settings)
+        begun = monotonic()
+        return function(store, Context(cancelled=serving.stopped, shelf=store.shelf), *arguments)
     except SafestartError:
         raise
     except MemoryError:
@@ -71,8 +72,6 @@ def ready() -> int:
     All of it: loading takes seconds on a busy machine. Where it fell into the time of an answer, its deadline ended the
     process, and the next one began anew.
     """
-    # First, as the priority is lower then: the application that starts beside it answers in the meantime.
-    _prepare()
     for spec in map(process, PROCESS_IDS):
         if spec.light:
             spec.runner()
@@ -111,17 +110,3 @@ def _store(settings: Settings) -> Store:
     from safestart.store.database import Database
 
     return Store.over(settings, Database(settings.url()))
-
-
-def _stopped(stop: Path | None) -> Callable[[], bool]:
-    if stop is None:
-        return lambda: False
-    looked, found = -_LOOK_S, False
-
-    def stopped() -> bool:
-        nonlocal looked, found
-        if not found and monotonic() - looked > _LOOK_S:
-            looked, found = monotonic(), stop.exists()
-        return found
-
-    return stopped

@@ -16,7 +16,7 @@ from typing import TypeVar
 from fastapi import Request
 from starlette.requests import ClientDisconnect
 
-from safestart.errors import Cancelled, SafestartError
+from safestart.errors import Cancelled, SafestartError, Unavailable
 from safestart_service.access.callers import Callers
 
 Answer = TypeVar("Answer")
@@ -46,11 +46,20 @@ class Threads:
         with self.callers.place(request):
             watch = asyncio.create_task(_watch(request, left))
             try:
-                return await asyncio.get_running_loop().run_in_executor(self._pool, wanted)
+                return await self._begun(wanted)
             except Cancelled:
                 raise ClientDisconnect from None
             finally:
                 watch.cancel()
+
+    def _begun(self, work: Callable[[], Answer]) -> asyncio.Future[Answer]:
+        try:
+            return asyncio.get_running_loop().run_in_executor(self._pool, work)
+        except RuntimeError as error:  # the system gives us no thread, or this is closed
+            raise Unavailable(
+                f"this machine has no thread for the answer ({error}); required the same request later",
+                required="the same request later",
+            ) from None
 
     def close(self) -> None:
         """Begin nothing more."""

@@ -24,6 +24,8 @@ def make_room(connections: int) -> None:
         resource.setrlimit(resource.RLIMIT_NOFILE, (needed, hard))
     except (ValueError, OSError):
         required = f"at most {hard - SPARE}, as this process may open {hard} files"
+        if hard <= SPARE:
+            required = f"a system that lets this process open {needed} files, not {hard} (ulimit -n)"
         raise InvalidInput(
             f"max_connections: required {required}, received {connections}",
             field="max_connections",

@@ -240,3 +240,12 @@ def test_no_more_connections_than_files(monkeypatch):
     assert set_to == [(1024, 2048)]
     with pytest.raises(InvalidInput, match="max_connections: required at most 1824"):
         make_room(2000)
+
+
+def test_too_few_files_for_anything_say_what_the_system_has_to_allow(monkeypatch):
+    resource = pytest.importorskip("resource")
+    monkeypatch.setattr(resource, "getrlimit", lambda _: (64, 64))
+    with pytest.raises(
+        InvalidInput, match=r"a system that lets this process open 234 files, not 64 \(ulimit -n\)"
+    ):
+        make_room(10)

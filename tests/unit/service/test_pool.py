@@ -11,13 +11,19 @@ import sys
 import time
 from collections.abc import Awaitable, Callable, Iterator
 from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 import psutil
 import pytest
 
-from safestart_service.computing import nursery
-from safestart_service.computing.pool import FORKS, Forked, HelperEnded, Pool, Source, Spawned
+from safestart.errors import Unavailable
+from safestart.runtime.settings import Settings
+from safestart_service.computing import inside
+from safestart_service.computing.helpers import nursery, serving, sources
+from safestart_service.computing.helpers.pool import Pool
+from safestart_service.computing.helpers.process import HelperEnded
+from safestart_service.computing.helpers.sources import FORKS, Forked, Source, Spawned
 from tests.waiting import until
 
 needs_fork = pytest.mark.skipif(not FORKS, reason="this system cannot fork")
@@ -156,29 +162,126 @@ def test_a_nursery_that_ends_is_replaced() -> None:
 
 
 @needs_fork
-def test_no_process_outlives_a_service_that_is_killed() -> None:
+def test_a_nursery_that_hangs_is_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
+    others, source = _nurseries(), Forked()
+
+    async def work(pool: Pool) -> None:
+        first = await pool(os.getpid)
+        (pid,) = _nurseries() - others
+        os.kill(pid, signal.SIGSTOP)
+        os.kill(first, signal.SIGKILL)
+        assert until(lambda: gone(first), "the end of the process")
+        assert await pool(abs, -1) == 1
+        assert pid not in _nurseries()
+
+    monkeypatch.setattr(sources, "FORK_S", 0.5)
+    try:
+        asked(source, work)
+    finally:
+        source.close()
+
+
+@needs_fork
+def test_a_call_that_stops_when_nobody_waits_keeps_its_process(source: Source) -> None:
+    async def work(pool: Pool) -> None:
+        first = await pool(os.getpid)
+        for _ in range(3):
+            with pytest.raises(TimeoutError):
+                await asyncio.wait_for(pool(_until_stopped), 0.2)
+            assert await pool(serving.stopped) is False, "the next call is wanted"
+        assert await pool(os.getpid) == first
+
+    asked(source, work)
+
+
+@needs_fork
+def test_no_call_begins_after_the_end(source: Source) -> None:
+    async def work(pool: Pool) -> None:
+        pool.close()
+        with pytest.raises(HelperEnded):
+            await pool(abs, -1)
+
+    asked(source, work)
+
+
+ALONE = """
+import asyncio, os, sys, time
+from safestart_service.computing.helpers.pool import Pool
+async def ready():
+    pool = Pool(1)
+    await pool.start()
+    return pool
+async def busy():
+    pool = await ready()
+    asyncio.ensure_future(pool(time.sleep, 600))
+    await asyncio.sleep(0.5)
+    return pool
+async def loads():
+    sys.path.insert(0, sys.argv[2])
+    pool = Pool(1)
+    asyncio.ensure_future(pool.start())
+    while not os.path.exists(os.path.join(sys.argv[2], "begun")):
+        await asyncio.sleep(0.05)
+    return pool
+async def wait():
+    pool = await globals()[sys.argv[1]]()
+    print("there", flush=True)
+    await asyncio.sleep(600)
+asyncio.run(wait())
+"""
+HANGS = """
+import pathlib, time
+pathlib.Path(__file__).with_name("begun").touch()
+time.sleep(600)
+"""
+
+
+@needs_fork
+@pytest.mark.parametrize("when", ["ready", "busy", "loads"])
+def test_no_process_outlives_a_service_that_is_killed(when: str, tmp_path: Path) -> None:
+    (tmp_path / "clarabel.py").write_text(HANGS)
     service = subprocess.Popen(
-        [sys.executable, "-c", ALONE], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        [sys.executable, "-c", ALONE, when, str(tmp_path)], stdout=subprocess.PIPE, text=True
     )
     assert service.stdout is not None
-    assert service.stdout.readline() == "ready\n"
+    assert service.stdout.readline() == "there\n"
     family = psutil.Process(service.pid).children(recursive=True)
-    assert len(family) >= 2
+    assert len(family) >= 1 + (when != "loads")
     service.kill()
     service.wait()
     assert until(lambda: all(gone(one.pid) for one in family), "the end of all processes")
 
 
-ALONE = """
-import asyncio
-from safestart_service.computing import nursery
-from safestart_service.computing.pool import Pool
-async def wait():
-    await Pool(1).start()
-    print("ready", flush=True)
-    await asyncio.sleep(600)
-asyncio.run(wait())
+NOWHERE = """
+import asyncio, os, sys
+from safestart_service.computing.helpers.pool import Pool
+os.mkdir(sys.argv[1])
+os.chdir(sys.argv[1])
+os.rmdir(sys.argv[1])
+async def asked():
+    pool = Pool(1)
+    print(await pool(os.getcwd))
+    pool.close()
+asyncio.run(asked())
 """
+
+
+@needs_fork
+def test_a_folder_that_was_deleted_is_left(tmp_path: Path) -> None:
+    """Modules that look where they are could not be loaded, and every exact answer was a 500."""
+    asked = [sys.executable, "-P", "-c", NOWHERE, str(tmp_path / "gone")]
+    done = subprocess.run(asked, capture_output=True, text=True)
+    assert done.stdout == f"{os.path.abspath(os.sep)}\n", done.stderr
+
+
+def test_no_memory_for_what_an_answer_needs_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    def none_left(settings: Settings) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr(inside, "_prepare", lambda: None)  # else this process had less memory from here on
+    monkeypatch.setattr(inside, "_store", none_left)
+    with pytest.raises(Unavailable, match="smaller question"):
+        inside.call(abs, Settings())
 
 
 def _nurseries() -> set[int]:
@@ -199,3 +302,8 @@ def _pid_after(wait_s: float) -> int:
 def _after(wait_s: float, answer: Any) -> Any:
     time.sleep(wait_s)
     return answer
+
+
+def _until_stopped() -> None:
+    while not serving.stopped():
+        time.sleep(0.01)

@@ -1,0 +1,1 @@
+"""Helper processes: how they start, compute one call at a time, and end."""

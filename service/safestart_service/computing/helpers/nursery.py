@@ -1,0 +1,90 @@
+"""The program that loads what heavy answers need, once, and forks the helper processes.
+
+A forked helper is there in milliseconds and shares what was loaded; one that loads for itself takes seconds.
+``python -m safestart_service.computing.helpers.nursery FD``: the stream socket ``FD`` brings the end of a connection
+for each new helper. When its other end is closed this program ends, also while it loads, and each helper ends with its
+own connection.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import sys
+import threading
+import traceback
+import warnings
+from contextlib import suppress
+from multiprocessing.connection import Connection
+from queue import SimpleQueue
+
+from safestart_service.computing.helpers.serving import serve
+
+
+def main(control: socket.socket) -> None:
+    """Load, then fork a helper for every connection that comes."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # at Ctrl-C the service ends its answers, and then us
+    ends: SimpleQueue[int] = SimpleQueue()
+    threading.Thread(target=_receive, args=(control, ends), daemon=True).start()
+    loaded = load()
+    while True:
+        end = ends.get()
+        loaded = loaded or load()
+        _bury()
+        try:
+            if _fork() == 0:
+                control.close()
+                serve(Connection(end))
+                return
+        except OSError:
+            traceback.print_exc()  # the other end sees that its connection is closed
+        os.close(end)
+
+
+def _receive(control: socket.socket, ends: SimpleQueue[int]) -> None:
+    """Hand on the ends that come; without a service the process ends, whatever it does."""
+    while True:
+        try:
+            _, found, _, _ = socket.recv_fds(control, 1, 1)
+        except OSError:
+            found = []
+        if not found:
+            os._exit(0)
+        ends.put(found[0])
+
+
+def load() -> bool:
+    """Load what answers need. What fails here fails again in an answer, which says so; the next call tries again."""
+    # Modules look for files beside them; from a folder that was deleted some of them cannot be loaded.
+    try:
+        os.getcwd()
+    except OSError:
+        os.chdir(os.path.abspath(os.sep))
+    from safestart_service.computing import inside
+
+    try:
+        inside.ready()
+    except Exception:
+        traceback.print_exc()
+        return False
+    return True
+
+
+def _bury() -> None:
+    """Let go of helpers that have ended. Until then no other process gets the number of one."""
+    with suppress(ChildProcessError):
+        while os.waitpid(-1, os.WNOHANG) != (0, 0):
+            pass
+
+
+def _fork() -> int:
+    with warnings.catch_warnings():
+        # Python warns of other threads: those of OpenBLAS, which ends them before a fork and starts them again when
+        # needed, and ours, which waits for a connection and holds nothing that a helper needs.
+        warnings.simplefilter("ignore", DeprecationWarning)
+        return os.fork()
+
+
+if __name__ == "__main__":
+    main(socket.socket(fileno=int(sys.argv[1])))

@@ -1,0 +1,71 @@
+"""A helper process as the service sees it."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+from collections.abc import Callable
+from contextlib import suppress
+from multiprocessing.connection import Connection
+from typing import Any
+
+from safestart_service.computing.helpers import serving
+
+KILL = getattr(signal, "SIGKILL", signal.SIGTERM)
+
+
+class HelperEnded(Exception):
+    """The process that did a call ended, or did not start."""
+
+
+class NotBegun(HelperEnded):
+    """The process ended before it began a call."""
+
+
+class Helper:
+    """A helper process at the other end of a connection.
+
+    Raises ``HelperEnded`` where it did not start, and ``TimeoutError`` where it says nothing within ``within_s``.
+    """
+
+    def __init__(self, connection: Connection, within_s: float | None = None) -> None:
+        self._connection = connection
+        self._sending = threading.Lock()
+        if not connection.poll(within_s):
+            raise TimeoutError
+        self._pid: int = self._received()
+
+    def ask(self, function: Callable[..., Any], arguments: tuple[Any, ...]) -> tuple[bool, Any]:
+        """Whether the call returned, and what it returned or raised; raises ``HelperEnded`` or ``NotBegun``."""
+        try:
+            with self._sending:
+                self._connection.send((function, arguments))
+            self._received()
+        except (OSError, HelperEnded) as error:
+            raise NotBegun from error
+        found: tuple[bool, Any] = self._received()
+        return found
+
+    def _received(self) -> Any:
+        try:
+            return self._connection.recv()
+        except (EOFError, OSError) as error:
+            raise HelperEnded from error
+
+    def ended(self) -> bool:
+        """Whether the process is gone. An idle one sends nothing, so what there is to read is the end."""
+        return self._connection.poll()
+
+    def stop(self) -> None:
+        """Tell it that nobody waits for its call any more; not where the call is still on its way."""
+        if self._sending.acquire(blocking=False):
+            with suppress(OSError):
+                self._connection.send(serving.STOP)
+            self._sending.release()
+
+    def kill(self) -> None:
+        """End the process, whatever it does; one that has just answered ends when its connection is dropped."""
+        if not self.ended():
+            with suppress(ProcessLookupError):
+                os.kill(self._pid, KILL)
