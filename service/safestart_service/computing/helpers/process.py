@@ -8,10 +8,13 @@ import threading
 from collections.abc import Callable
 from contextlib import suppress
 from multiprocessing.connection import Connection
+from time import monotonic
 from typing import Any
 
 from safestart_service.computing.helpers import serving
 
+DYING_S = 0.1
+"""A process that was killed takes calls until all its threads have ended."""
 KILL = getattr(signal, "SIGKILL", signal.SIGTERM)
 
 
@@ -20,7 +23,7 @@ class HelperEnded(Exception):
 
 
 class NotBegun(HelperEnded):
-    """The process ended before it began a call."""
+    """The process ended, most likely before it began a call."""
 
 
 class Helper:
@@ -38,13 +41,13 @@ class Helper:
 
     def ask(self, function: Callable[..., Any], arguments: tuple[Any, ...]) -> tuple[bool, Any]:
         """Whether the call returned, and what it returned or raised; raises ``HelperEnded`` or ``NotBegun``."""
+        begun = monotonic()
         try:
             with self._sending:
                 self._connection.send((function, arguments))
-            self._received()
+            found: tuple[bool, Any] = self._received()
         except (OSError, HelperEnded) as error:
-            raise NotBegun from error
-        found: tuple[bool, Any] = self._received()
+            raise NotBegun if monotonic() - begun < DYING_S else HelperEnded from error
         return found
 
     def _received(self) -> Any:

@@ -14,9 +14,6 @@ from typing import Any
 STOP = None
 """What is sent instead of a call when nobody waits for the last one any more."""
 
-BEGUN = None
-"""What is sent back before a call is done: without it the call may go to another process."""
-
 
 class _Now:
     told = threading.Event()
@@ -35,7 +32,6 @@ def serve(connection: Connection) -> None:
         connection.send(os.getpid())
         while True:
             _Now.told, function, arguments = calls.get()
-            connection.send(BEGUN)
             connection.send(_done(function, arguments))
 
 
