@@ -8,6 +8,7 @@ own connection.
 
 from __future__ import annotations
 
+import ctypes
 import os
 import signal
 import socket
@@ -21,10 +22,13 @@ from queue import SimpleQueue
 
 from safestart_service.computing.helpers.serving import serve
 
+_PR_SET_PDEATHSIG = 1
+
 
 def main(control: socket.socket) -> None:
     """Load, then fork a helper for every connection that comes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # at Ctrl-C the service ends its answers, and then us
+    _end_with_parent()
     ends: SimpleQueue[int] = SimpleQueue()
     threading.Thread(target=_receive, args=(control, ends), daemon=True).start()
     loaded = load()
@@ -34,6 +38,7 @@ def main(control: socket.socket) -> None:
         _bury()
         try:
             if _fork() == 0:
+                _end_with_parent()
                 control.close()
                 serve(Connection(end))
                 return
@@ -69,6 +74,15 @@ def load() -> bool:
         traceback.print_exc()
         return False
     return True
+
+
+def _end_with_parent() -> None:
+    """Have Linux end this process with the one that started it, also while a library keeps the interpreter to itself.
+
+    OpenBLAS does that for ever where it gets no memory to load into. Without a connection our threads end us, too.
+    """
+    with suppress(AttributeError, OSError):
+        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
 def _bury() -> None:

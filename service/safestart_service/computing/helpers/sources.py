@@ -8,6 +8,7 @@ import socket
 import subprocess
 import sys
 import threading
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from multiprocessing.connection import Connection
 from typing import Protocol
@@ -42,6 +43,8 @@ class Forked:
         self._closed = self._loaded = False
         self._process: subprocess.Popen[bytes] | None = None
         self._control: socket.socket | None = None
+        # Linux ends that process with the thread that started it, so this thread does nothing else.
+        self._starter = ThreadPoolExecutor(1, "nursery")
 
     def helper(self) -> Helper:
         """A new one."""
@@ -56,7 +59,7 @@ class Forked:
         try:
             control, loaded = self._started()
             connection = _asked(control)
-        except OSError as error:
+        except (OSError, RuntimeError) as error:  # no process, or no thread to start it
             raise HelperEnded from error
         try:
             found = Helper(connection, FORK_S if loaded else None)
@@ -88,13 +91,14 @@ class Forked:
                 environment = os.environ | {"PYTHONPATH": os.pathsep.join(map(str, sys.path))}
                 command = [sys.executable, "-P", "-m", nursery.__name__, str(theirs.fileno())]
                 with theirs:
-                    self._process = subprocess.Popen(
+                    self._process = self._starter.submit(
+                        subprocess.Popen,
                         command,
                         env=environment,
                         pass_fds=[theirs.fileno()],
                         stdin=subprocess.DEVNULL,
                         stdout=subprocess.DEVNULL,
-                    )
+                    ).result()
             return self._control, self._loaded
 
     def _end_if(self, control: socket.socket) -> None:
@@ -108,6 +112,7 @@ class Forked:
         with self._lock:
             self._closed = True
             self._end()
+        self._starter.shutdown(wait=False)
 
     def _end(self) -> None:
         if self._control is not None:
