@@ -55,8 +55,8 @@ class Helpers:
         """``function(store, context, *arguments)`` in a helper process.
 
         Raises ``RateLimited`` where too much is in line, ``AnswerTimeout`` for an answer that takes too long or would,
-        ``Unavailable`` when no process is ready after a minute, ``ClientDisconnect`` when the client has left, and what
-        the function raises.
+        ``Unavailable`` when no process is ready after a minute or the service stops, ``ClientDisconnect`` when the
+        client has left, and what the function raises.
         """
         limit_s = self._settings.answer_timeout_s
         if cost_s > limit_s:

@@ -274,6 +274,35 @@ def test_a_folder_that_was_deleted_is_left(tmp_path: Path) -> None:
     assert done.stdout == f"{os.path.abspath(os.sep)}\n", done.stderr
 
 
+AGAIN = """
+import asyncio, gc, sys
+from safestart_service.computing.helpers.pool import Pool
+sys.path.insert(0, sys.argv[1])
+async def asked():
+    pool = Pool(1)
+    print(await pool(gc.get_freeze_count) > 0)
+    pool.close()
+asyncio.run(asked())
+"""
+FAILS_ONCE = """
+import pathlib
+tried = pathlib.Path(__file__).with_name("tried")
+if not tried.exists():
+    tried.touch()
+    raise MemoryError
+"""
+
+
+@needs_fork
+def test_what_could_not_be_loaded_is_loaded_before_the_next_fork(tmp_path: Path) -> None:
+    """Else every helper loads for itself from then on, in the time of its answers."""
+    (tmp_path / "clarabel.py").write_text(FAILS_ONCE)
+    done = subprocess.run([sys.executable, "-c", AGAIN, str(tmp_path)], capture_output=True, text=True)
+    assert done.stdout == "True\n", done.stderr
+    assert (tmp_path / "tried").exists()
+    assert "MemoryError" in done.stderr, "it is told in the log"
+
+
 def test_no_memory_for_what_an_answer_needs_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     def none_left(settings: Settings) -> None:
         raise MemoryError
