@@ -67,7 +67,8 @@ def question_document(question: Question) -> dict[str, Any]:
             "late_s": failures.late,
             "partial": failures.partial,
             "stuck_s": failures.stuck,
-            "acceleration_m_s2": failures.acceleration,
+            # What no burn does is not stated: a reader would have to know that it means nothing.
+            "acceleration_m_s2": failures.acceleration if failures.stuck > 0.0 else 0.0,
             "misdirected_rad": failures.misdirected,
         },
     }

@@ -16,10 +16,21 @@ from safestart.proofs.abort.wording import lines
 from safestart.proofs.single import Verified
 from safestart.proofs.space import check as space
 from safestart.proofs.space import statement as space_statement
+from safestart.proofs.strict import ProofRejected
 
 
 def check(document: Any) -> Verified:
-    """Check a proof of any schema; raise ``ProofRejected`` when it is malformed or an inequality fails."""
+    """Check a proof of any schema; raise ``ProofRejected`` when it is malformed or an inequality fails.
+
+    Numbers may be so large or small that nothing finite can be computed from them: that is no proof either.
+    """
+    try:
+        return _check(document)
+    except (ArithmeticError, ValueError) as error:
+        raise ProofRejected(f"required numbers from which bounds can be computed ({error})") from None
+
+
+def _check(document: Any) -> Verified:
     schema = document.get("schema") if isinstance(document, Mapping) else None
     if schema == family_statement.SCHEMA:
         return for_all.check(document)

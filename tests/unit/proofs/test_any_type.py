@@ -15,7 +15,22 @@ from tests.fuzzing.documents import KINDS, original
 from tests.fuzzing.mutants import Path, at, paths
 from tests.unit.proofs.forgery import sealed
 
-VALUES: tuple[Any, ...] = ({}, {"kind": "box"}, [], [[]], None, "", "linear", True, 0, -1, 1.5)
+VALUES: tuple[Any, ...] = (
+    {},
+    {"kind": "box"},
+    [],
+    [[]],
+    None,
+    "",
+    "linear",
+    True,
+    0,
+    -1,
+    1.5,
+    1e18,
+    -1e160,
+    5e-324,
+)
 
 
 def places(document: Any) -> Iterator[Path]:
@@ -43,6 +58,17 @@ def test_a_checker_never_breaks(kind: str) -> None:
             except ProofRejected:
                 refused += 1
     assert refused > len(values)
+
+
+def test_an_acceleration_that_no_burn_has_is_refused() -> None:
+    """It is not printed, so two documents with different ones read alike."""
+    document = json.loads(original("abort-lasting"))
+    failures = document["question"]["failures"]
+    assert (failures["stuck_s"], failures["acceleration_m_s2"]) == (0.0, 0.0)
+    assert check(document).verdict == "PROVED"
+    failures["acceleration_m_s2"] = 0.02
+    with pytest.raises(ProofRejected, match="acceleration_m_s2: required 0 where no burn may be stuck on"):
+        check(sealed(document))
 
 
 @pytest.mark.parametrize("document", [None, 0, "x", [], {}, [{}], {"schema": {}}, {"schema": []}])

@@ -148,6 +148,9 @@ def read(document: Any) -> Asked:
     longest = max(late, stuck)
     if any(durations):
         longest = late + max(durations) + stuck
+    acceleration = number(failures, "acceleration_m_s2", 0.0, 100.0)
+    if acceleration > 0 and stuck == 0:
+        raise ProofRejected("acceleration_m_s2: required 0 where no burn may be stuck on")
     if n * longest > LONGEST_PHASE:
         raise ProofRejected("late_s, duration_s, stuck_s: required at most half a radian of the orbit")
     zones = _zones(part(question, "zones", list)) if wide else [_POINT]
@@ -177,7 +180,7 @@ def read(document: Any) -> Asked:
         late=late,
         partial=_flag(failures, "partial"),
         stuck=stuck,
-        acceleration=number(failures, "acceleration_m_s2", 0.0, 100.0),
+        acceleration=acceleration,
         misdirected=number(failures, "misdirected_rad", 0.0, 3.141592653589793),
         least=least,
         events=_events(part(document, "cases", list), len(times), bent, len(zones) if wide else 0),
