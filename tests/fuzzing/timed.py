@@ -1,26 +1,37 @@
-"""Bundles, settings, inputs and query strings changed at random: ``python -m tests.fuzzing.timed --seconds 180``.
+"""Proofs, bundles, settings, inputs, query strings changed at random: ``python -m tests.fuzzing.timed --seconds 180``.
 
-Each is taken or refused in words. Ends with 1 if one raised anything else, or took longer than a second.
+Each is taken or refused in words. Ends with 1 if one raised anything else, or took longer than a second (a proof: four,
+as a missed burn about the Earth takes 1.3 s when it is whole). Whether a proof that is taken is true is another run's
+question (``python -m tests.fuzzing``).
 """
 
 from __future__ import annotations
 
 import argparse
+import atexit
+import json
 import random
 import sys
+import tempfile
 import time
 from collections import Counter
 from collections.abc import Callable
+from functools import cache
+from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
+import safestart
 from safestart.errors import InvalidInput, SafestartError
+from safestart.proofs.strict import ProofRejected
 from safestart.records.bundle import unpack
 from safestart.runtime.settings import Settings, settings
 from tests.contract.records.test_hostile_bundles import EVENT, JOB, RESULT, sealed
+from tests.fuzzing.mutants import known_fields, mutants
 from tests.fuzzing.urls import url
 
 SLOW_S = 1.0
+SLOW_PROOF_S = 4.0
 WORDS: tuple[Any, ...] = (
     *(None, True, -1, 2**63, 1e308, 0.5, "", "\0", "\ud800", "a" * 1000, "../x", "٣", "1_0", "nan", "1e999"),
     *([], {}, [{}], "2026-01-01T00:00:00+00:00", "postgresql://a:b@c/d", "sqlite:///x", "[::1]:99999", "%00"),
@@ -58,6 +69,33 @@ def bundle(draw: random.Random) -> Callable[[], object]:
     return lambda: unpack(data)
 
 
+@cache
+def _proofs() -> tuple[list[str], Path]:
+    """A document of every kind, and a file for what is made of one."""
+    from tests.fuzzing.documents import KINDS, original
+
+    folder = tempfile.TemporaryDirectory()
+    atexit.register(folder.cleanup)
+    return [original(kind) for kind in KINDS], Path(folder.name) / "proof.json"
+
+
+def proof(draw: random.Random) -> Callable[[], object]:
+    """A file with a proof, damaged, with changed parts, or with one field that says something else."""
+    documents, file = _proofs()
+    text = draw.choice(documents)
+    way = draw.randrange(3)
+    if way == 0:
+        data = damaged(text.encode(), draw)
+    elif way == 1:
+        data = json.dumps(changed(json.loads(text), draw)).encode()
+    else:
+        whole = json.loads(text)
+        ((_, mutant),) = mutants(whole, known_fields(whole), draw, 1)
+        data = json.dumps(mutant).encode()
+    file.write_bytes(data)
+    return lambda: safestart.verify(file)
+
+
 def setting(draw: random.Random) -> Callable[[], object]:
     """Variables of the environment with any names and texts."""
     names = [name.upper() for name in (*Settings.model_fields, "config", "colour")]
@@ -81,7 +119,7 @@ def query(draw: random.Random) -> Callable[[], object]:
     return lambda: SPEC.parse(asked)
 
 
-KINDS = {"bundles": bundle, "settings": setting, "queries": query, "urls": url}
+KINDS = {"proofs": proof, "bundles": bundle, "settings": setting, "queries": query, "urls": url}
 
 
 def main() -> int:
@@ -104,6 +142,8 @@ def main() -> int:
             try:
                 ask()
                 outcomes["taken"] += 1
+            except ProofRejected:
+                outcomes["rejected"] += 1
             except SafestartError as error:
                 outcomes["refused" if isinstance(error, InvalidInput) else f"refused as {error.slug}"] += 1
             except Exception as error:
@@ -111,8 +151,9 @@ def main() -> int:
                 wrong += 1
             took = time.process_time() - begun
             worst = max(worst, took)
-            wrong += took > SLOW_S
+            wrong += took > (SLOW_PROOF_S if kind == "proofs" else SLOW_S)
         sys.stdout.write(f"{kind}: longest {worst:.3f} s, {dict(outcomes)}\n")
+        sys.stdout.flush()
     settings.cache_clear()
     return 1 if wrong else 0
 
