@@ -8,6 +8,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import psutil
+
 PATIENCE_S = 300.0
 """What takes longer is broken, however slow or loaded the machine is."""
 
@@ -23,6 +25,14 @@ def until(
             raise AssertionError(f"waited {within_s:g} s for {what}{said}")
         time.sleep(0.02)
     return answer
+
+
+def ended(pid: int) -> bool:
+    """True when the process is gone. A zombie counts: who reaps it is not our matter."""
+    try:
+        return psutil.Process(pid).status() == psutil.STATUS_ZOMBIE
+    except psutil.NoSuchProcess:
+        return True
 
 
 def accepts(port: int) -> bool:

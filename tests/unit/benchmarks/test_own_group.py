@@ -6,11 +6,10 @@ import subprocess
 import sys
 from pathlib import Path
 
-import psutil
 import pytest
 
 from benchmarks.own_group import own_group
-from tests.waiting import until
+from tests.waiting import ended, until
 
 ROOT = Path(__file__).parents[3]
 # Like a service with a helper process: the helper ignores SIGTERM, and says its id.
@@ -21,14 +20,6 @@ from benchmarks.own_group import own_group
 with own_group({FAMILY!r}):
     time.sleep(40)
 """
-
-
-def ended(pid: int) -> bool:
-    """A zombie counts: who reaps it is not our matter."""
-    try:
-        return psutil.Process(pid).status() == psutil.STATUS_ZOMBIE
-    except psutil.NoSuchProcess:
-        return True
 
 
 def test_an_exception_ends_the_helpers_too() -> None:

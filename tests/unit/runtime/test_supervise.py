@@ -9,11 +9,10 @@ import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-import psutil
 import pytest
 
 from safestart.runtime.supervise import describe
-from tests.waiting import PATIENCE_S, until
+from tests.waiting import PATIENCE_S, ended, until
 
 # Writes its pid and that of a child of its own, then waits; ends in order on SIGTERM unless told to be stubborn.
 COMMAND = """
@@ -38,13 +37,7 @@ def pids(file: Path) -> list[int]:
 
 
 def assert_ended(found: list[int]) -> None:
-    def over(pid: int) -> bool:
-        try:
-            return psutil.Process(pid).status() == psutil.STATUS_ZOMBIE
-        except psutil.NoSuchProcess:
-            return True
-
-    until(lambda: all(over(pid) for pid in found), f"the end of {found}")
+    until(lambda: all(map(ended, found)), f"the end of {found}")
 
 
 @pytest.fixture

@@ -6,12 +6,9 @@ import asyncio
 import operator
 import os
 import signal
-import subprocess
-import sys
 import time
 from collections.abc import Awaitable, Callable, Iterator
 from contextlib import suppress
-from pathlib import Path
 from typing import Any
 
 import psutil
@@ -24,7 +21,7 @@ from safestart_service.computing.helpers import nursery, serving, sources
 from safestart_service.computing.helpers.pool import Pool
 from safestart_service.computing.helpers.process import HelperEnded
 from safestart_service.computing.helpers.sources import FORKS, Forked, Source, Spawned
-from tests.waiting import until
+from tests.waiting import ended, until
 
 needs_fork = pytest.mark.skipif(not FORKS, reason="this system cannot fork")
 
@@ -52,13 +49,6 @@ def asked(source: Source, work: Callable[[Pool], Awaitable[None]]) -> None:
             pool.close()
 
     asyncio.run(all_of_it())
-
-
-def gone(pid: int) -> bool:
-    try:
-        return psutil.Process(pid).status() == psutil.STATUS_ZOMBIE
-    except psutil.NoSuchProcess:
-        return True
 
 
 @needs_fork
@@ -91,7 +81,7 @@ def test_a_cancelled_call_ends_its_process_and_the_next_one_is_served(source: So
         with pytest.raises(TimeoutError):
             await asyncio.wait_for(pool(time.sleep, 600), 0.2)
         assert await pool(os.getpid) != first
-        assert until(lambda: gone(first), "the end of the process")
+        assert until(lambda: ended(first), "the end of the process")
 
     asked(source, work)
 
@@ -105,7 +95,7 @@ def test_a_process_that_ends(source: Source) -> None:
             await pool(os._exit, 3)
         first = await pool(os.getpid)
         os.kill(first, signal.SIGKILL)
-        assert until(lambda: gone(first), "the end of the process")
+        assert until(lambda: ended(first), "the end of the process")
         assert await pool(os.getpid) != first
 
     asked(source, work)
@@ -136,7 +126,7 @@ def test_closed_while_one_computes(source: Source) -> None:
             await call
 
     asked(source, work)
-    assert until(lambda: gone(pids[0]), "the end of the process")
+    assert until(lambda: ended(pids[0]), "the end of the process")
 
 
 @needs_fork
@@ -147,7 +137,7 @@ def test_a_nursery_that_ends_is_replaced() -> None:
         assert await pool(abs, -1) == 1
         (pid,) = _nurseries() - others
         os.kill(pid, signal.SIGKILL)
-        assert until(lambda: gone(pid), "the end of the process")
+        assert until(lambda: ended(pid), "the end of the process")
         # The helper that it has forked lives on; two at once need a new one.
         assert await asyncio.gather(pool(_after, 0.3, 5), pool(_after, 0.3, 6)) == [5, 6]
         assert len(_nurseries() - others) == 1
@@ -170,7 +160,7 @@ def test_a_nursery_that_hangs_is_replaced(monkeypatch: pytest.MonkeyPatch) -> No
         (pid,) = _nurseries() - others
         os.kill(pid, signal.SIGSTOP)
         os.kill(first, signal.SIGKILL)
-        assert until(lambda: gone(first), "the end of the process")
+        assert until(lambda: ended(first), "the end of the process")
         assert await pool(abs, -1) == 1
         assert pid not in _nurseries()
 
@@ -202,105 +192,6 @@ def test_no_call_begins_after_the_end(source: Source) -> None:
             await pool(abs, -1)
 
     asked(source, work)
-
-
-ALONE = """
-import asyncio, os, sys, time
-from safestart_service.computing.helpers.pool import Pool
-async def ready():
-    pool = Pool(1)
-    await pool.start()
-    return pool
-async def busy():
-    pool = await ready()
-    asyncio.ensure_future(pool(eval, "__import__('ctypes').PyDLL(None).sleep(600)"))
-    await asyncio.sleep(0.5)
-    return pool
-async def loads():
-    sys.path.insert(0, sys.argv[2])
-    pool = Pool(1)
-    asyncio.ensure_future(pool.start())
-    while not os.path.exists(os.path.join(sys.argv[2], "begun")):
-        await asyncio.sleep(0.05)
-    return pool
-async def wait():
-    pool = await globals()[sys.argv[1]]()
-    print("there", flush=True)
-    await asyncio.sleep(600)
-asyncio.run(wait())
-"""
-HANGS = """
-import ctypes, pathlib
-pathlib.Path(__file__).with_name("begun").touch()
-ctypes.PyDLL(None).sleep(600)  # as a library that keeps the interpreter to itself
-"""
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere it ends when the library returns")
-@pytest.mark.parametrize("when", ["ready", "busy", "loads"])
-def test_no_process_outlives_a_service_that_is_killed(when: str, tmp_path: Path) -> None:
-    (tmp_path / "clarabel.py").write_text(HANGS)
-    service = subprocess.Popen(
-        [sys.executable, "-c", ALONE, when, str(tmp_path)], stdout=subprocess.PIPE, text=True
-    )
-    assert service.stdout is not None
-    assert service.stdout.readline() == "there\n"
-    family = psutil.Process(service.pid).children(recursive=True)
-    assert len(family) >= 1 + (when != "loads")
-    service.kill()
-    service.wait()
-    assert until(lambda: all(gone(one.pid) for one in family), "the end of all processes")
-
-
-NOWHERE = """
-import asyncio, os, sys
-from safestart_service.computing.helpers.pool import Pool
-os.mkdir(sys.argv[1])
-os.chdir(sys.argv[1])
-os.rmdir(sys.argv[1])
-async def asked():
-    pool = Pool(1)
-    print(await pool(os.getcwd))
-    pool.close()
-asyncio.run(asked())
-"""
-
-
-@needs_fork
-def test_a_folder_that_was_deleted_is_left(tmp_path: Path) -> None:
-    """Modules that look where they are could not be loaded, and every exact answer was a 500."""
-    asked = [sys.executable, "-P", "-c", NOWHERE, str(tmp_path / "gone")]
-    done = subprocess.run(asked, capture_output=True, text=True)
-    assert done.stdout == f"{os.path.abspath(os.sep)}\n", done.stderr
-
-
-AGAIN = """
-import asyncio, gc, sys
-from safestart_service.computing.helpers.pool import Pool
-sys.path.insert(0, sys.argv[1])
-async def asked():
-    pool = Pool(1)
-    print(await pool(gc.get_freeze_count) > 0)
-    pool.close()
-asyncio.run(asked())
-"""
-FAILS_ONCE = """
-import pathlib
-tried = pathlib.Path(__file__).with_name("tried")
-if not tried.exists():
-    tried.touch()
-    raise MemoryError
-"""
-
-
-@needs_fork
-def test_what_could_not_be_loaded_is_loaded_before_the_next_fork(tmp_path: Path) -> None:
-    """Else every helper loads for itself from then on, in the time of its answers."""
-    (tmp_path / "clarabel.py").write_text(FAILS_ONCE)
-    done = subprocess.run([sys.executable, "-c", AGAIN, str(tmp_path)], capture_output=True, text=True)
-    assert done.stdout == "True\n", done.stderr
-    assert (tmp_path / "tried").exists()
-    assert "MemoryError" in done.stderr, "it is told in the log"
 
 
 def test_no_memory_for_what_an_answer_needs_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
