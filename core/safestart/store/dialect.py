@@ -177,6 +177,9 @@ def _on_postgresql_connect(connection: Any, _record: Any) -> None:
         cursor.execute(f"SET idle_in_transaction_session_timeout = {int(STOPPED_S * 1000)}")
         # The same limit as for SQLite: a foreign lock must not hang every request.
         cursor.execute(f"SET lock_timeout = {int(BUSY_TIMEOUT_S * 1000)}")
+        # Every job was once accepted and running, and an index keeps those rows until a vacuum. A bitmap scan visits
+        # all of them each time; a plain one marks what is gone and passes over it from then on.
+        cursor.execute("SET enable_bitmapscan = off")
     connection.commit()
 
 
