@@ -62,6 +62,7 @@ def create_app(
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
+        found.open()
         waiting = None
         if not await _migrated(found):
             waiting = asyncio.create_task(_keep_migrating(found))

@@ -49,15 +49,23 @@ class Services:
         self.submitting = Threads("submissions are under way", STORE_THREADS, MOST_SUBMITTED)
         self.packing = Threads("bundles are being packed", 1, MOST_PACKED)  # one at a time: it is in memory
         self.helpers = Helpers(settings)
+        self._pools = (self.light, self.submitting, self.packing, self.helpers)
+        self._closed = False
         self.following = Following(settings.max_followers, self.access)
         self.metrics = Metrics(self.jobs.vitals)
 
+    def open(self) -> None:
+        """Begin; what was closed before begins again."""
+        if self._closed:
+            self._closed = False
+            for pool in self._pools:
+                pool.open()
+
     def close(self) -> None:
         """Close all that was opened."""
-        self.light.close()
-        self.submitting.close()
-        self.packing.close()
-        self.helpers.close()
+        self._closed = True
+        for pool in self._pools:
+            pool.close()
         self.database.close()
 
 

@@ -16,6 +16,7 @@ from safestart.runtime.progress import Context
 from safestart_service.access.gate import caller
 from safestart_service.computing.light import Left
 from safestart_service.computing.limits import LARGE_S, SMALL_BYTES
+from safestart_service.computing.long_answers import place
 from safestart_service.computing.work import Asked, Made, at_once, in_full, one_start
 from safestart_service.http.answers import base_url
 from safestart_service.http.body import read_body
@@ -45,18 +46,18 @@ async def posted(request: Request, process_id: str, **how: Any) -> Response:
 
 async def _heavy(request: Request, cost_s: float, asked: Asked) -> Response:
     helpers = services(request).helpers
-    place = helpers.place()
+    found = place()
     try:
-        made: Made = await helpers(request, cost_s, in_full, asked, place)
-        if made.file is None:
+        made: Made = await helpers(request, cost_s, in_full, asked, found and found.path)
+        if found is None or not made.in_file:
             return _response(made)
         # Open, it outlives its name: it is gone when it has been sent, or when nobody wants it any more.
-        file = await asyncio.to_thread(made.file.open, "rb")
+        file = found.taken()
         headers = made.headers | {"Content-Length": str(os.fstat(file.fileno()).st_size)}
         return _Sent(file, made.status, headers)
     finally:
-        if place is not None:
-            place.unlink(missing_ok=True)
+        if found is not None:
+            found.close()
 
 
 class _Sent(StreamingResponse):

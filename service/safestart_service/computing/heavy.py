@@ -4,12 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import shutil
-import tempfile
 from collections.abc import Callable
 from contextlib import suppress
-from itertools import count
-from pathlib import Path
 from typing import Any, TypeVar
 
 from fastapi import Request
@@ -33,6 +29,9 @@ MOST_HEAVY = 100
 START_S = 60.0
 """An answer waits so long for a helper process that starts, beside its own time."""
 
+STARTS = 3
+"""A process that was killed while it loaded is started again."""
+
 log = logging.getLogger("safestart.service")
 
 
@@ -43,9 +42,12 @@ class Helpers:
         self._settings = settings
         self.callers = Callers("heavy answers are asked for", MOST_HEAVY)
         self.line = Line(settings.answer_processes)
-        self._pool = Pool(settings.answer_processes)
-        self._folder = _folder()
-        self._numbers = count()
+        self.open()
+
+    def open(self) -> None:
+        """Begin, or begin again after :meth:`close`."""
+        self._pool = Pool(self._settings.answer_processes)
+        self._loop: asyncio.AbstractEventLoop | None = None
         self._warming: asyncio.Task[None] | None = None
         self._leaving = asyncio.Event()
 
@@ -61,6 +63,7 @@ class Helpers:
         limit_s = self._settings.answer_timeout_s
         if cost_s > limit_s:
             raise too_long(limit_s, cost_s)
+        self._move_here()
         with self.callers.place(request):
             # Either ends the wait for an answer.
             left = asyncio.ensure_future(leaves(request))
@@ -68,12 +71,7 @@ class Helpers:
             try:
                 # A process starts for seconds, and for minutes where no kernels are kept. An answer that paid for that
                 # with its own time would be ended with its process, and the next one would begin anew.
-                warm = self.warm()
-                await asyncio.wait(
-                    {warm, left, leaving}, timeout=START_S, return_when=asyncio.FIRST_COMPLETED
-                )
-                _require_there(left, leaving)
-                if not warm.done():
+                if not await self._warm(left, leaving):
                     raise Unavailable(
                         "the process that computes such answers still starts: it loads and compiles its kernels; "
                         "required patience, or a job",
@@ -104,25 +102,42 @@ class Helpers:
             try:
                 return await self._pool(inside.call, function, self._settings, *arguments)
             except HelperEnded:
-                log.exception("a helper process ended while it computed an answer")
+                log.error("a helper process ended while it computed an answer")
                 raise Unavailable(
                     "the process that computes the answer ended: it was killed, or this machine has no room for it; "
                     "required the same request later; a smaller question or a job, where that ends it again",
                     required="the same request later, a smaller question, or a job",
                 ) from None
 
-    def place(self) -> Path | None:
-        """A name for a file of this request's; None where nothing can be written."""
-        return None if self._folder is None else self._folder / str(next(self._numbers))
+    async def _warm(self, *ends: asyncio.Future[Any]) -> bool:
+        """Whether a process is there, or none can start, within the time for that; until then any end is one."""
+        clock = asyncio.get_running_loop().time
+        until = clock() + START_S
+        for _ in range(STARTS):
+            warm = self.warm()
+            await asyncio.wait({warm, *ends}, timeout=until - clock(), return_when=asyncio.FIRST_COMPLETED)
+            _require_there(*ends)
+            if not warm.done():
+                return False
+            if self._pool.ready():
+                break
+        return True
 
     def warm(self) -> asyncio.Task[None]:
         """Start a helper process, unless one is there or starts; heavy answers wait for it.
 
         Where the process that forks them has ended too, the next one loads, in nobody's time for an answer.
         """
+        self._move_here()
         if self._warming is None or (self._warming.done() and not self._pool.ready()):
             self._warming = asyncio.ensure_future(self._start())
         return self._warming
+
+    def _move_here(self) -> None:
+        """Leave the tasks of another event loop alone: a test client without a lifespan has one for each request."""
+        loop = asyncio.get_running_loop()
+        if self._loop is not loop:
+            self._loop, self._warming, self._leaving = loop, None, asyncio.Event()
 
     def leave(self) -> None:
         """The service stops: answers that are not there yet are refused."""
@@ -133,10 +148,8 @@ class Helpers:
             await self._pool.start()
 
     def close(self) -> None:
-        """End the processes and remove their files."""
+        """End the processes."""
         self._pool.close()
-        if self._folder is not None:
-            shutil.rmtree(self._folder, ignore_errors=True)
 
 
 def _require_there(left: asyncio.Future[Any], leaving: asyncio.Future[Any]) -> None:
@@ -147,12 +160,3 @@ def _require_there(left: asyncio.Future[Any], leaving: asyncio.Future[Any]) -> N
         raise Unavailable(
             "the service stops; required the same request later", required="the same request later"
         )
-
-
-def _folder() -> Path | None:
-    """Where long answers are; None where nothing can be written: then they take the way through a pipe."""
-    try:
-        return Path(tempfile.mkdtemp(prefix="safestart-"))
-    except OSError as error:
-        log.warning("no place for temporary files (%s): long answers take more memory", error)
-        return None

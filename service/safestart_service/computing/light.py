@@ -29,7 +29,12 @@ class Threads:
 
     def __init__(self, what: str, threads: int, most: int) -> None:
         self.callers = Callers(what, most)
-        self._pool = ThreadPoolExecutor(threads, what.split()[0])
+        self._threads, self._name = threads, what.split()[0]
+        self.open()
+
+    def open(self) -> None:
+        """Begin, or begin again after :meth:`close`."""
+        self._pool = ThreadPoolExecutor(self._threads, self._name)
 
     async def __call__(self, request: Request, work: Callable[[Left], Answer]) -> Answer:
         """Do the work in a thread.

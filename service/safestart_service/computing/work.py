@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -17,6 +16,7 @@ from safestart.processes.registry import process
 from safestart.runtime.access import Caller, Role
 from safestart.runtime.progress import Context
 from safestart_service.computing.limits import too_long
+from safestart_service.computing.long_answers import write
 from safestart_service.computing.store import Store
 from safestart_service.documents.execution import (
     ExecuteRequest,
@@ -66,8 +66,8 @@ class Made:
     body: bytes
     status: int = 200
     headers: dict[str, str] = field(default_factory=dict)
-    file: Path | None = None
-    """Where the body is instead."""
+    in_file: bool = False
+    """Whether the body is in the file that the caller named."""
 
 
 def one_start(store: Store, context: Context, asked: OneStart) -> dict[str, Any]:
@@ -93,13 +93,11 @@ def at_once(store: Store, context: Context, asked: Asked) -> Made | float:
 def in_full(store: Store, context: Context, asked: Asked, place: Path | None = None) -> Made:
     """The answer, whatever it costs; raises ``AnswerTimeout`` for one that would take too long.
 
-    A long body goes into a file at ``place``: on its way through a pipe it would be in memory four times.
+    A long body goes into the file ``place``, or, where that is full or gone, the long way.
     """
     made = _in_full(store, context, asked)
-    if place is not None and len(made.body) > LONG_BYTES:
-        with suppress(OSError):  # a full disk: then it takes the long way
-            place.write_bytes(made.body)
-            return replace(made, body=b"", file=place)
+    if len(made.body) > LONG_BYTES and write(place, made.body):
+        return replace(made, body=b"", in_file=True)
     return made
 
 

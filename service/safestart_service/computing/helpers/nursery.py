@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+import select
 import signal
 import socket
 import sys
@@ -18,7 +19,6 @@ import traceback
 import warnings
 from contextlib import suppress
 from multiprocessing.connection import Connection
-from queue import SimpleQueue
 
 from safestart_service.computing.helpers.serving import serve
 
@@ -29,11 +29,11 @@ def main(control: socket.socket) -> None:
     """Load, then fork a helper for every connection that comes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # at Ctrl-C the service ends its answers, and then us
     _end_with_parent()
-    ends: SimpleQueue[int] = SimpleQueue()
-    threading.Thread(target=_receive, args=(control, ends), daemon=True).start()
+    threading.Thread(target=_end_without, args=(control,), daemon=True).start()
     loaded = load()
-    while True:
-        end = ends.get()
+    # One end at a time: a helper that was forked with the end of another one would keep that connection open, and
+    # nobody would see that the other one has ended.
+    while (end := _received(control)) is not None:
         loaded = loaded or load()
         _bury()
         try:
@@ -47,16 +47,21 @@ def main(control: socket.socket) -> None:
         os.close(end)
 
 
-def _receive(control: socket.socket, ends: SimpleQueue[int]) -> None:
-    """Hand on the ends that come; without a service the process ends, whatever it does."""
-    while True:
-        try:
-            _, found, _, _ = socket.recv_fds(control, 1, 1)
-        except OSError:
-            found = []
-        if not found:
-            os._exit(0)
-        ends.put(found[0])
+def _received(control: socket.socket) -> int | None:
+    """The next end of a connection; None when the other end of ``control`` is closed."""
+    try:
+        _, found, _, _ = socket.recv_fds(control, 1, 1)
+    except OSError:
+        return None
+    return found[0] if found else None
+
+
+def _end_without(control: socket.socket) -> None:
+    """Without a service the process ends, whatever it does."""
+    watched = select.poll()
+    watched.register(control, getattr(select, "POLLRDHUP", 0))  # elsewhere a hang-up is told unasked
+    watched.poll()
+    os._exit(0)
 
 
 def load() -> bool:

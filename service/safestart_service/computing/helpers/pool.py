@@ -25,6 +25,7 @@ class Pool:
 
     def __init__(self, most: int, source: Source | None = None) -> None:
         self._source = source or (Forked() if FORKS else Spawned())
+        self._most = most
         self._threads = ThreadPoolExecutor(most + 1, "helper")  # one more starts the first helper
         self._idle: list[Helper] = []
         self._busy: set[Helper] = set()
@@ -34,8 +35,9 @@ class Pool:
         self._idle.append(await self._helper())
 
     def ready(self) -> bool:
-        """Whether a call would begin at once."""
-        return self._source.ready() or not all(helper.ended() for helper in self._idle)
+        """Whether a call would begin at once, or when another one ends."""
+        there = not all(helper.ended() for helper in self._idle) or len(self._busy) >= self._most
+        return there or self._source.ready()
 
     async def __call__(self, function: Callable[..., Answer], *arguments: Any) -> Answer:
         """``function(*arguments)`` in a helper; raises what it raises, and ``HelperEnded``."""

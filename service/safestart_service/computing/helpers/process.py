@@ -13,8 +13,8 @@ from typing import Any
 
 from safestart_service.computing.helpers import serving
 
-DYING_S = 0.1
-"""A process that was killed takes calls until all its threads have ended."""
+DYING_S = 1.0
+"""A process that was killed takes calls until all its threads have ended, which takes longer beside others."""
 KILL = getattr(signal, "SIGKILL", signal.SIGTERM)
 
 

@@ -86,6 +86,8 @@ class Forked:
                 raise HelperEnded
             if self._control is None or self._process is None or self._process.poll() is not None:
                 self._end()
+                if not sys.executable:  # embedded in another program
+                    raise HelperEnded("no Python to start")
                 self._control, theirs = socket.socketpair()
                 # It finds the modules that we find, and no others in the folder where we happen to run.
                 environment = os.environ | {"PYTHONPATH": os.pathsep.join(map(str, sys.path))}

@@ -1,0 +1,133 @@
+"""The application in other programs: made before a fork, started twice, never started, without a place for files."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+from fastapi import FastAPI
+from fastapi.testclient import TestClient
+
+from safestart.runtime.settings import Settings
+from safestart_service.app import create_app
+from safestart_service.computing import heavy
+from tests.contract.api.service_client import url_of
+from tests.waiting import PATIENCE_S, accepts, ended, free_port, until
+
+BASE = "http://127.0.0.1:8000"
+MANY = [{"x_m": 1e-4 * k, "y_m": 40.0} for k in range(20_000)]
+# Long enough for a helper process, and its answer for a file.
+HEAVY = {"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "method": "paper", "states": MANY}
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Where files of long answers are made, and nothing else."""
+    found = tmp_path / "files"
+    found.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(found))
+    monkeypatch.setattr(heavy, "START_S", PATIENCE_S)
+    return found
+
+
+def app_of(tmp_path: Path) -> FastAPI:
+    return create_app(Settings(database_url=url_of(tmp_path), answer_timeout_s=PATIENCE_S))
+
+
+def asked(client: Any, **more: Any) -> httpx.Response:
+    answer: httpx.Response = client.post("/go-no-go", json=HEAVY | more, timeout=PATIENCE_S)
+    return answer
+
+
+def test_an_application_that_ended_begins_again(tmp_path: Path, folder: Path) -> None:
+    app = app_of(tmp_path)
+    for _ in range(2):
+        with TestClient(app, base_url=BASE, client=("127.0.0.1", 1)) as client:
+            assert client.get("/go-no-go?omega_t_deg_s=3&a_max_m_s2=0.1&x_m=0&y_m=40").status_code == 200
+            assert asked(client).status_code == 200
+            assert client.get("/jobs").status_code == 200
+            app.state.services.helpers.leave()  # as a service does that stops
+    assert not list(folder.iterdir())
+
+
+def test_an_application_that_never_began_answers(tmp_path: Path, folder: Path) -> None:
+    app = app_of(tmp_path)
+    client = TestClient(app, base_url=BASE, client=("127.0.0.1", 1))  # an event loop for each request
+    try:
+        assert [asked(client).status_code for _ in range(3)] == [200, 200, 200]
+        assert not list(folder.iterdir())
+    finally:
+        app.state.services.close()
+
+
+@pytest.mark.parametrize("how", ["gone", "a file", "not to be written"])
+def test_a_long_answer_needs_no_place_for_files(tmp_path: Path, folder: Path, how: str) -> None:
+    with TestClient(app_of(tmp_path), base_url=BASE, client=("127.0.0.1", 1)) as client:
+        whole = asked(client)
+        assert whole.status_code == 200
+        assert len(whole.content) > 1_000_000
+        folder.rmdir()
+        if how == "a file":
+            folder.touch()
+        elif how == "not to be written":
+            folder.symlink_to("/proc")
+        again = asked(client)
+        assert again.status_code == 200
+        assert again.content == whole.content
+
+
+PREFORKED = """
+import os, socket, sys
+import uvicorn
+from safestart.runtime.settings import Settings
+from safestart_service.app import create_app
+app = create_app(Settings(database_url=sys.argv[1], answer_timeout_s=300))
+children = []
+for port in sys.argv[2:]:
+    child = os.fork()
+    if child == 0:
+        uvicorn.run(app, host="127.0.0.1", port=int(port), log_level="warning")
+        os._exit(0)
+    children.append(child)
+print(*children, flush=True)
+for child in children:
+    os.waitpid(child, 0)
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system cannot fork")
+def test_services_that_were_forked_from_one_answer_their_own_clients(tmp_path: Path) -> None:
+    """Both gave their files the same names: one client got the answer of the other's."""
+    ports = [free_port(), free_port()]
+    command = [sys.executable, "-c", PREFORKED, url_of(tmp_path), *map(str, ports)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as parent:
+        assert parent.stdout is not None
+        children = [int(pid) for pid in parent.stdout.readline().split()]
+        try:
+            rates = dict(zip(ports, (3.0, 5.0), strict=True))
+            for port in ports:
+                until(lambda port=port: accepts(port), f"a service at {port}")
+
+            def answer(port: int) -> Any:
+                base = f"http://127.0.0.1:{port}"
+                with httpx.Client(base_url=base, trust_env=False) as client:
+                    found = asked(client, omega_t_deg_s=rates[port])
+                assert found.status_code == 200, found.text[:500]
+                return found.content
+
+            alone = [answer(port) for port in ports]
+            assert alone[0] != alone[1]
+            with ThreadPoolExecutor(2) as threads:
+                for _ in range(8):
+                    assert list(threads.map(answer, ports)) == alone
+        finally:
+            for pid in children:
+                os.kill(pid, 15)
+    until(lambda: all(map(ended, children)), "the end of both")
