@@ -8,6 +8,7 @@ import os
 import signal
 import time
 from collections.abc import Awaitable, Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from typing import Any
 
@@ -18,10 +19,11 @@ from safestart.errors import Unavailable
 from safestart.runtime.settings import Settings
 from safestart_service.computing import inside
 from safestart_service.computing.helpers import nursery, serving, sources
+from safestart_service.computing.helpers import pool as pool_module
 from safestart_service.computing.helpers.pool import Pool
 from safestart_service.computing.helpers.process import HelperEnded
 from safestart_service.computing.helpers.sources import FORKS, Forked, Source, Spawned
-from tests.waiting import ended, until
+from tests.waiting import PATIENCE_S, ended, until
 
 needs_fork = pytest.mark.skipif(not FORKS, reason="this system cannot fork")
 
@@ -172,7 +174,32 @@ def test_a_nursery_that_hangs_is_replaced(monkeypatch: pytest.MonkeyPatch) -> No
 
 
 @needs_fork
-def test_a_call_that_stops_when_nobody_waits_keeps_its_process(source: Source) -> None:
+def test_the_end_of_each_helper_is_seen_that_was_asked_for_with_others() -> None:
+    """One that was forked with the ends of those that still waited kept them open: the pool gave calls to the dead."""
+    others, source = _nurseries(), Forked()
+    try:
+        first = source.helper()
+        (pid,) = _nurseries() - others
+        os.kill(pid, signal.SIGSTOP)
+        with ThreadPoolExecutor(4) as threads:
+            asked_for = [threads.submit(source.helper) for _ in range(4)]
+            time.sleep(0.3)
+            os.kill(pid, signal.SIGCONT)
+            helpers = [one.result() for one in asked_for]
+        for killed in (*helpers[1:], helpers[0], first):
+            assert not killed.ended()
+            killed.kill()
+            assert until(killed.ended, "the end of a helper", 20.0)
+    finally:
+        source.close()
+
+
+@needs_fork
+def test_a_call_that_stops_when_nobody_waits_keeps_its_process(
+    source: Source, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(pool_module, "GRACE_S", PATIENCE_S)  # beside others it takes a while to stop
+
     async def work(pool: Pool) -> None:
         first = await pool(os.getpid)
         for _ in range(3):

@@ -11,7 +11,7 @@ import psutil
 import pytest
 
 from safestart_service.computing.helpers.sources import FORKS
-from tests.waiting import ended, until
+from tests.waiting import PATIENCE_S, ended, until
 
 needs_fork = pytest.mark.skipif(not FORKS, reason="this system cannot fork")
 
@@ -112,3 +112,42 @@ def test_what_could_not_be_loaded_is_loaded_before_the_next_fork(tmp_path: Path)
     assert done.stdout == "True\n", done.stderr
     assert (tmp_path / "tried").exists()
     assert "MemoryError" in done.stderr, "it is told in the log"
+
+
+KILLED = """
+import asyncio, os, sys, threading, time
+sys.path.insert(0, sys.argv[1])
+import psutil
+from fastapi.testclient import TestClient
+from safestart.runtime.settings import Settings
+from safestart_service.app import create_app
+from safestart_service.computing import heavy
+heavy.START_S = 300
+def kill():
+    for number in range(2):
+        while not os.path.exists(os.path.join(sys.argv[1], f"begun{number}")):
+            time.sleep(0.05)
+        for one in psutil.Process().children():
+            one.kill()
+app = create_app(Settings(database_url="sqlite:///" + os.path.join(sys.argv[1], "store"), answer_timeout_s=6))
+threading.Thread(target=kill).start()
+with TestClient(app, base_url="http://127.0.0.1", client=("127.0.0.1", 1)) as client:
+    states = [{"x_m": 1e-4 * k, "y_m": 40} for k in range(5000)]
+    body = {"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "method": "paper", "states": states}
+    print(client.post("/go-no-go", json=body).status_code)
+"""
+SLOW = """
+import pathlib, time
+number = len(list(pathlib.Path(__file__).parent.glob("begun*")))
+pathlib.Path(__file__).with_name(f"begun{number}").touch()
+time.sleep(600 if number < 2 else 10)  # killed; longer than an answer may take
+"""
+
+
+@needs_fork
+def test_an_answer_waits_for_the_next_process_where_one_is_killed_while_it_loads(tmp_path: Path) -> None:
+    """Twice here. Else the next one loads in the answer's own time."""
+    (tmp_path / "clarabel.py").write_text(SLOW)
+    command = [sys.executable, "-c", KILLED, str(tmp_path)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE_S)
+    assert done.stdout == "200\n", done.stderr[-2000:]
