@@ -61,6 +61,7 @@ _WHY = {
     422: "An input is invalid; the problem names it.",
     429: "Too many requests or streams with this key, or too many jobs wait; Retry-After says when.",
     500: "An unexpected error.",
+    501: "The body has a transfer coding other than chunked.",
     503: "The database does not answer, or the service is full; Retry-After says when.",
     504: "The answer would take too long, or was not there in time; make a job of it.",
 }
@@ -142,7 +143,7 @@ def _add_access(document: dict[str, Any]) -> None:
         for method, operation in operations.items():
             role = needed_role(method.upper(), path)
             queues = path.endswith("/execution")
-            statuses = {400, 421} | ({408} if "requestBody" in operation else set())
+            statuses = {400, 421} | ({408, 501} if "requestBody" in operation else set())
             if role is None:
                 operation["security"] = []
             else:
