@@ -62,7 +62,7 @@ _WHY = {
     429: "Too many requests or streams with this key, or too many jobs wait; Retry-After says when.",
     500: "An unexpected error.",
     501: "The body has a transfer coding other than chunked.",
-    503: "The database does not answer, or the service is full; Retry-After says when.",
+    503: "The database does not answer, or the service or its machine is full; Retry-After says when.",
     504: "The answer would take too long, or was not there in time; make a job of it.",
 }
 
@@ -98,9 +98,9 @@ def content(media_type: str, schema: dict[str, Any], text: str, **headers: str) 
 
 
 def refusals(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    """Problem responses of a route; every route can refuse a query, or one that is too long, and can fail."""
+    """Problem responses of a route; every route can refuse a query, fail, and find no room."""
     found: dict[int | str, dict[str, Any]] = {}
-    for status in sorted({*statuses, 414, 422, 500}):
+    for status in sorted({*statuses, 414, 422, 500, 503}):
         if status == 304:
             found[status] = {"description": _WHY[status]}
         else:

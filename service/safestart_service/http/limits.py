@@ -1,4 +1,4 @@
-"""The outermost layer, pure ASGI: request id, security headers, access, caps on body and query, the last-resort 500.
+"""The outermost layer, pure ASGI: request id, security headers, access, caps on body and query, the last resorts.
 
 It precedes every answer, the instant ones too, so it does little per request: it encodes headers once, reads them
 in one pass, and wraps ``receive`` only when a body is announced.
@@ -24,6 +24,7 @@ from safestart_service.computing.budget import Budget, Share
 from safestart_service.documents import problems
 from safestart_service.errors import BodyTooLarge, Busy, QueryTooLong, RequestTimeout
 from safestart_service.http import head
+from safestart_service.shortage import shortage
 
 MAX_QUERY_BYTES = 8192
 CSP = (
@@ -102,12 +103,20 @@ class Limits:
             await self.app(scope, receive, send_with_headers)
         except ClientDisconnect:
             log.info("the caller left", extra=about(request=request_id.decode()))
-        except Exception:
-            log.exception("%s %s", scope["method"], scope["path"], extra=about(request=request_id.decode()))
+        except Exception as error:
+            about_it, no_room = about(request=request_id.decode()), shortage(error)
             if started:  # too late for a problem document: the server cuts the connection
+                log.exception("%s %s", scope["method"], scope["path"], extra=about_it)
                 raise
-            self.refused(500)
-            await _answer(send_with_headers, problems.unexpected(scope["path"], request_id.decode()))
+            if no_room is None:
+                log.exception("%s %s", scope["method"], scope["path"], extra=about_it)
+                self.refused(500)
+                await _answer(send_with_headers, problems.unexpected(scope["path"], request_id.decode()))
+            else:  # where it happened says nothing
+                log.warning("%s %s: %s", scope["method"], scope["path"], no_room.detail, extra=about_it)
+                self.refused(no_room.status)
+                problem = problems.of_error(no_room, scope["path"], request_id.decode())
+                await _answer(send_with_headers, problem, problems.headers_of(no_room))
         finally:
             if share is not None:
                 share.end()
