@@ -32,6 +32,7 @@ from safestart_service.routes import (
     provenance,
     results,
 )
+from safestart_service.shortage import shortage
 from safestart_service.state import Services, attach
 
 if TYPE_CHECKING:
@@ -55,8 +56,9 @@ def create_app(
     """Build the application.
 
     Without ``database`` it opens the one of the settings. It migrates the database at start. While the database is
-    unavailable, ``/readyz`` reports it and instant answers work; the migration follows when it is back. Raises
-    ``InvalidInput`` for an invalid URL. ``warm`` starts a helper process before the first heavy answer.
+    unavailable, or the machine has no room to ask it, ``/readyz`` reports it and instant answers work; the migration
+    follows later. Raises ``InvalidInput`` for an invalid URL. ``warm`` starts a helper process before the first heavy
+    answer.
     """
     found = Services(settings or process_settings(), database)
 
@@ -128,8 +130,11 @@ def create_app(
 async def _migrated(found: Services) -> bool:
     try:
         await asyncio.to_thread(found.database.migrate)
-    except Unavailable as error:
-        log.error("%s", error.detail)
+    except Exception as error:
+        refused = error if isinstance(error, Unavailable) else shortage(error)
+        if refused is None:
+            raise
+        log.error("%s", refused.detail)
         return False
     return True
 

@@ -131,6 +131,14 @@ class HeadTooLarge(SafestartError):
     title = "Headers too large"
 
 
+class UnknownCoding(SafestartError):
+    """The body comes in a transfer coding that the service does not undo."""
+
+    status = 501
+    slug = "not-implemented"
+    title = "Not implemented"
+
+
 class UnsupportedMediaType(SafestartError):
     """The body's content type is not JSON, or the body is compressed."""
 

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 
 from safestart.errors import SafestartError
 from safestart.runtime.access import key_digest
+from safestart_service.shortage import shortage
 
 if TYPE_CHECKING:
     from safestart.store.access.keys import KeyRepository
@@ -102,3 +103,9 @@ class Keyring:
             await asyncio.get_running_loop().run_in_executor(reader, self.load)
         except SafestartError as error:
             log.warning("keys not read: %s", error.detail)
+        except Exception as error:  # else nobody would read them again, and an ended key would pass for ever
+            no_room = shortage(error)
+            if no_room is None:
+                log.exception("keys not read")
+            else:
+                log.warning("keys not read: %s", no_room.detail)

@@ -9,14 +9,14 @@ from __future__ import annotations
 import asyncio
 import threading
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from typing import TypeVar
 
 from fastapi import Request
 from starlette.requests import ClientDisconnect
 
-from safestart.errors import Cancelled, SafestartError, Unavailable
+from safestart.errors import Cancelled, SafestartError
 from safestart_service.access.callers import Callers
 
 Answer = TypeVar("Answer")
@@ -39,7 +39,8 @@ class Threads:
     async def __call__(self, request: Request, work: Callable[[Left], Answer]) -> Answer:
         """Do the work in a thread.
 
-        Raises ``RateLimited`` where too much is in line and ``ClientDisconnect`` when the client has left.
+        Raises ``RateLimited`` where too much is in line, ``ClientDisconnect`` when the client has left, and what
+        :mod:`safestart_service.shortage` knows where there is no thread.
         """
         left = threading.Event()
 
@@ -58,13 +59,26 @@ class Threads:
                 watch.cancel()
 
     def _begun(self, work: Callable[[], Answer]) -> asyncio.Future[Answer]:
+        """The work, in line for a thread. Where the system gives us none, it is refused and never begun.
+
+        A pool that cannot start another thread has queued the work all the same: a thread that it already has would
+        do later what was refused, and submit a job.
+        """
+        done: Future[Answer] = Future()
+
+        def do() -> None:
+            if done.set_running_or_notify_cancel():
+                try:
+                    done.set_result(work())
+                except BaseException as error:  # whoever waits gets it
+                    done.set_exception(error)
+
         try:
-            return asyncio.get_running_loop().run_in_executor(self._pool, work)
-        except RuntimeError as error:  # the system gives us no thread, or this is closed
-            raise Unavailable(
-                f"this machine has no thread for the answer ({error}); required the same request later",
-                required="the same request later",
-            ) from None
+            self._pool.submit(do).add_done_callback(lambda queued: queued.cancelled() and done.cancel())
+        except RuntimeError:  # no thread, or this is closed
+            if done.cancel():
+                raise
+        return asyncio.wrap_future(done)
 
     def close(self) -> None:
         """Begin nothing more."""

@@ -61,7 +61,8 @@ _WHY = {
     422: "An input is invalid; the problem names it.",
     429: "Too many requests or streams with this key, or too many jobs wait; Retry-After says when.",
     500: "An unexpected error.",
-    503: "The database does not answer, or the service is full; Retry-After says when.",
+    501: "The body has a transfer coding other than chunked.",
+    503: "The database does not answer, or the service or its machine is full; Retry-After says when.",
     504: "The answer would take too long, or was not there in time; make a job of it.",
 }
 
@@ -97,9 +98,9 @@ def content(media_type: str, schema: dict[str, Any], text: str, **headers: str) 
 
 
 def refusals(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    """Problem responses of a route; every route can refuse a query, or one that is too long, and can fail."""
+    """Problem responses of a route; every route can refuse a query, fail, and find no room."""
     found: dict[int | str, dict[str, Any]] = {}
-    for status in sorted({*statuses, 414, 422, 500}):
+    for status in sorted({*statuses, 414, 422, 500, 503}):
         if status == 304:
             found[status] = {"description": _WHY[status]}
         else:
@@ -142,7 +143,7 @@ def _add_access(document: dict[str, Any]) -> None:
         for method, operation in operations.items():
             role = needed_role(method.upper(), path)
             queues = path.endswith("/execution")
-            statuses = {400, 421} | ({408} if "requestBody" in operation else set())
+            statuses = {400, 421} | ({408, 501} if "requestBody" in operation else set())
             if role is None:
                 operation["security"] = []
             else:

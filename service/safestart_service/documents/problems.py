@@ -131,7 +131,7 @@ def headers_of(error: SafestartError) -> dict[str, str]:
     """Header fields that belong to an error's status."""
     if error.status == 401:
         return {"WWW-Authenticate": CHALLENGE}
-    if error.status in (408, 413):  # the rest of the body stays unread
+    if error.status in (408, 413, 501):  # the rest of the body stays unread
         return {"Connection": "close"}
     if error.status in (429, 503):
         return {"Retry-After": "1" if error.slug == "rate-limited" else "5"}

@@ -73,6 +73,12 @@ def link(href: str, rel: str, title: str, media_type: str = "application/json") 
     return {"href": href, "rel": rel, "type": media_type, "title": title}
 
 
+def all_lines(request: Request, name: str) -> str | None:
+    """A header field that is a list, which may come in several lines (RFC 9110, 5.3); None without one."""
+    lines = request.headers.getlist(name)
+    return ", ".join(lines) if lines else None
+
+
 def entity_tag(sha256: str) -> str:
     """Strong entity tag of content with this digest."""
     return f'"{sha256}"'
@@ -80,7 +86,7 @@ def entity_tag(sha256: str) -> str:
 
 def not_modified(request: Request, tag: str) -> Response | None:
     """304 if the caller has this content already (If-None-Match, weak comparison)."""
-    known = request.headers.get("if-none-match")
+    known = all_lines(request, "if-none-match")
     if known is None:
         return None
     tags = {part.strip().removeprefix("W/") for part in known.split(",")}

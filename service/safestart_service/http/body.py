@@ -16,6 +16,7 @@ from safestart.model.places import placed
 from safestart.model.validation import refusal
 from safestart.runtime.plain_json import NameTwice, TooManyNames, require_unique_names
 from safestart_service.errors import MalformedBody, UnsupportedMediaType
+from safestart_service.http.answers import all_lines
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -36,8 +37,8 @@ async def read_body(request: Request) -> bytes:
             required="application/json",
             received=received or None,
         )
-    coding = request.headers.get("content-encoding", "identity")
-    if coding.strip().lower() not in ("", "identity"):
+    coding = all_lines(request, "content-encoding") or ""
+    if any(one.strip().lower() not in ("", "identity") for one in coding.split(",")):
         raise UnsupportedMediaType(
             f"Content-Encoding: required none, received {coding}",
             field="Content-Encoding",

@@ -1,4 +1,4 @@
-"""The outermost layer, pure ASGI: request id, security headers, access, caps on body and query, the last-resort 500.
+"""The outermost layer, pure ASGI: request id, security headers, access, caps on body and query, the last resorts.
 
 It precedes every answer, the instant ones too, so it does little per request: it encodes headers once, reads them
 in one pass, and wraps ``receive`` only when a body is announced.
@@ -22,7 +22,9 @@ from safestart_service.access.gate import Access
 from safestart_service.access.proxies import FIELDS, Proxies
 from safestart_service.computing.budget import Budget, Share
 from safestart_service.documents import problems
-from safestart_service.errors import BodyTooLarge, Busy, MalformedRequest, QueryTooLong, RequestTimeout
+from safestart_service.errors import BodyTooLarge, Busy, QueryTooLong, RequestTimeout
+from safestart_service.http import head
+from safestart_service.shortage import shortage
 
 MAX_QUERY_BYTES = 8192
 CSP = (
@@ -36,14 +38,6 @@ SECURITY_HEADERS: tuple[tuple[bytes, bytes], ...] = (
     (b"referrer-policy", b"no-referrer"),
     (b"cross-origin-resource-policy", b"same-origin"),
 )
-_ONCE = {
-    name.lower().encode(): name
-    for name in (
-        *("Host", "Content-Length", "Content-Type", "Authorization", "X-API-Key"),
-        *("Idempotency-Key", "Last-Event-ID"),
-    )
-}
-_READ = frozenset({*_ONCE, *FIELDS, b"transfer-encoding", b"x-request-id"})
 _SAFE_ID = re.compile(rb"[A-Za-z0-9._-]{1,64}")
 
 log = logging.getLogger("safestart.service")
@@ -79,7 +73,7 @@ class Limits:
             return
         if scope["method"] == "HEAD" and not scope["path"].endswith("/events"):
             scope = {**scope, "method": "GET"}  # the server sends only the head of the answer
-        headers, twice = _single(scope)
+        headers, unread = head.read(scope)
         request_id = headers.get(b"x-request-id", b"")
         if not _SAFE_ID.fullmatch(request_id):
             request_id = self._prefix + b"%x" % next(self._numbers)
@@ -95,7 +89,7 @@ class Limits:
                 message["headers"].extend(extra[1:] if own else extra)
             await send(message)
 
-        refusal = twice or self._misplaced(scope, headers) or self._refusal(scope, headers)
+        refusal = unread or self._misplaced(scope, headers) or self._refusal(scope, headers)
         if refusal is not None:
             self.refused(refusal.status)
             problem = problems.of_error(refusal, scope["path"], request_id.decode())
@@ -109,12 +103,20 @@ class Limits:
             await self.app(scope, receive, send_with_headers)
         except ClientDisconnect:
             log.info("the caller left", extra=about(request=request_id.decode()))
-        except Exception:
-            log.exception("%s %s", scope["method"], scope["path"], extra=about(request=request_id.decode()))
+        except Exception as error:
+            about_it, no_room = about(request=request_id.decode()), shortage(error)
             if started:  # too late for a problem document: the server cuts the connection
+                log.exception("%s %s", scope["method"], scope["path"], extra=about_it)
                 raise
-            self.refused(500)
-            await _answer(send_with_headers, problems.unexpected(scope["path"], request_id.decode()))
+            if no_room is None:
+                log.exception("%s %s", scope["method"], scope["path"], extra=about_it)
+                self.refused(500)
+                await _answer(send_with_headers, problems.unexpected(scope["path"], request_id.decode()))
+            else:  # where it happened says nothing
+                log.warning("%s %s: %s", scope["method"], scope["path"], no_room.detail, extra=about_it)
+                self.refused(no_room.status)
+                problem = problems.of_error(no_room, scope["path"], request_id.decode())
+                await _answer(send_with_headers, problem, problems.headers_of(no_room))
         finally:
             if share is not None:
                 share.end()
@@ -192,24 +194,6 @@ class Limits:
             required=required,
             received=total,
         )
-
-
-def _single(scope: Scope) -> tuple[dict[bytes, bytes], MalformedRequest | None]:
-    """The header fields of :data:`_READ`.
-
-    Refuses a repeated single-valued field: one layer would use its first value and another its last.
-    """
-    found: dict[bytes, bytes] = {}
-    refusal = None
-    for name, value in scope["headers"]:
-        if name in _READ:
-            if name in found and name in _ONCE:
-                shown = _ONCE[name]
-                refusal = MalformedRequest(
-                    f"{shown}: required once, received twice", field=shown, required="once"
-                )
-            found[name] = value
-    return found, refusal
 
 
 async def _answer(send: Send, problem: dict[str, object], more: dict[str, str] | None = None) -> None:

@@ -119,7 +119,7 @@ class Protocol(Read):
 
     def on_message_complete(self) -> None:
         """The request is complete, unless an offer of another protocol only makes it look so."""
-        if not self.parser.should_upgrade():
+        if self._is_whole():
             self._message = Message.BETWEEN
             self._received = 0
         super().on_message_complete()

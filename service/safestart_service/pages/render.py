@@ -17,7 +17,7 @@ from fastapi import Request
 from fastapi.responses import HTMLResponse, Response
 from starlette.exceptions import HTTPException
 
-from safestart_service.http.answers import entity_tag, not_modified
+from safestart_service.http.answers import all_lines, entity_tag, not_modified
 from safestart_service.pages.openapi_operations import api_operations
 
 if TYPE_CHECKING:
@@ -90,7 +90,7 @@ def docs(description: dict[str, Any], root: str) -> Response:
 
 def wanted(request: Request) -> bool:
     """Whether a browser asks for a page, not a program for a document."""
-    return request.method in ("GET", "HEAD") and "text/html" in request.headers.get("accept", "")
+    return request.method in ("GET", "HEAD") and "text/html" in (all_lines(request, "accept") or "")
 
 
 def missing(request: Request, root: str) -> HTMLResponse:

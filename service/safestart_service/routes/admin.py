@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import asyncio
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Query, Request
 from fastapi.responses import Response
 from pydantic import BaseModel, ConfigDict, Field
+from starlette.concurrency import run_in_threadpool
 
 from safestart.errors import Conflict
 from safestart.store.records import ApiKey, AuditEntry
@@ -76,7 +76,8 @@ async def create(request: Request) -> Response:
         found.keyring.load()
         return Json({**key_document(record), "key": key}, 201, headers=_NO_STORE)
 
-    return await asyncio.to_thread(respond)
+    # Without a thread this never begins; asyncio's pool would make the key later, for nobody.
+    return await run_in_threadpool(respond)
 
 
 @router.delete(

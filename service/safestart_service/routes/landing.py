@@ -39,7 +39,7 @@ CLASSES = (
 async def landing(request: Request) -> Response:
     """Links to everything; a browser is sent to the dashboard."""
     base = base_url(request)
-    if "text/html" in request.headers.get("accept", ""):
+    if pages.wanted(request):
         return RedirectResponse(f"{base}/dashboard", 303, headers={"Vary": "Accept"})
     links = [
         link(f"{base}/", "self", "this page"),

@@ -14,7 +14,7 @@ from safestart_service.documents.formats.base import Format
 from safestart_service.documents.formats.registry import BY_NAME, BY_TYPE, FORMATS, tag_of
 from safestart_service.documents.jobs_view import known_job, result_document
 from safestart_service.documents.openapi import REF, content, refusals
-from safestart_service.http.answers import Json, base_url, entity_tag, not_modified
+from safestart_service.http.answers import Json, all_lines, base_url, entity_tag, not_modified
 from safestart_service.http.negotiation import chosen
 from safestart_service.http.strict import StrictRoute
 from safestart_service.routes.jobs import JobId
@@ -75,7 +75,7 @@ def results(
     ] = None,
 ) -> Response:
     """The stored result; 404 ``result-not-ready`` until the job is successful."""
-    form = BY_NAME[format] if format else BY_TYPE[chosen(request.headers.get("accept"), list(BY_TYPE))]
+    form = BY_NAME[format] if format else BY_TYPE[chosen(all_lines(request, "accept"), list(BY_TYPE))]
     found = services(request)
     known_job(found, jobID)
     record = result_document(found, jobID, base_url(request))

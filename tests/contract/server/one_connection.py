@@ -63,6 +63,11 @@ class Peer:
         with suppress(BrokenPipeError, ConnectionResetError):
             await self._loop.sock_sendall(self._end, data)
 
+    def end(self) -> None:
+        """Say no more: the other end closes when it has read everything."""
+        with suppress(OSError):
+            self._end.shutdown(socket.SHUT_WR)
+
     async def hear(self, most: int = 65536) -> bytes:
         """What is there, at most so many bytes; nothing when the other end has closed."""
         try:

@@ -17,7 +17,6 @@ NO_HTTP = {
     "unknown method": b"B@D / HTTP/1.1\r\n" + HOST + b"\r\n",
     "unknown version": b"GET / HTTP/9.9\r\n" + HOST + b"\r\n",
     "HTTP/2 preface": b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n",
-    "CONNECT": b"CONNECT example:443 HTTP/1.1\r\n" + HOST + b"\r\n",
     "bare LF": b"GET / HTTP/1.1\nHost: localhost\n\n",
     "header without colon": b"GET / HTTP/1.1\r\n" + HOST + b"banana\r\n\r\n",
     "NUL in header": b"GET / HTTP/1.1\r\n" + HOST + b"X-A: \x00\r\n\r\n",
