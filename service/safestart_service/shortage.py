@@ -48,7 +48,9 @@ def _reason(error: BaseException | None) -> str | None:
         return error.strerror or "no room"  # never str(error): it may name a file
     if isinstance(error, RuntimeError) and any(words in str(error) for words in _OF_THREADS):
         return str(error)
-    if isinstance(error, ImportError) and any(words in str(error).lower() for words in _OF_LIBRARIES):
+    if isinstance(error, ImportError | OSError) and any(
+        words in str(error).lower() for words in _OF_LIBRARIES
+    ):
         return "no memory to load a library"
     if isinstance(error, BaseExceptionGroup):
         reasons = [_reason(one) for one in error.exceptions]

@@ -21,6 +21,7 @@ from safestart.runtime.progress import Context
 from safestart.runtime.settings import Settings
 from safestart_service.computing.helpers import serving
 from safestart_service.computing.store import Store
+from safestart_service.shortage import shortage
 
 MOST_BYTES = 768 * 1024**2
 """Data of a helper process. Numba takes 130 MiB of it, the largest legal question less than half of the rest."""
@@ -59,8 +60,9 @@ def call(function: Callable[..., Any], settings: Settings, *arguments: Any) -> A
             f"the answer takes more than {MOST_BYTES >> 20} MiB; required a smaller question, or a job",
             required="a smaller question, or a job",
         ) from None
-    except Exception:
-        raise Failed(traceback.format_exc()) from None
+    except Exception as error:
+        no_room = shortage(error)
+        raise Failed(traceback.format_exc()) if no_room is None else no_room from None
     finally:
         if monotonic() - begun > _SHORT_S:
             _return_memory()

@@ -9,7 +9,7 @@ from __future__ import annotations
 import asyncio
 import threading
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from typing import TypeVar
 
@@ -18,6 +18,7 @@ from starlette.requests import ClientDisconnect
 
 from safestart.errors import Cancelled, SafestartError
 from safestart_service.access.callers import Callers
+from safestart_service.computing.in_thread import begun
 
 Answer = TypeVar("Answer")
 Left = Callable[[], bool]
@@ -52,33 +53,11 @@ class Threads:
         with self.callers.place(request):
             watch = asyncio.create_task(_watch(request, left))
             try:
-                return await self._begun(wanted)
+                return await begun(self._pool, wanted)
             except Cancelled:
                 raise ClientDisconnect from None
             finally:
                 watch.cancel()
-
-    def _begun(self, work: Callable[[], Answer]) -> asyncio.Future[Answer]:
-        """The work, in line for a thread. Where the system gives us none, it is refused and never begun.
-
-        A pool that cannot start another thread has queued the work all the same: a thread that it already has would
-        do later what was refused, and submit a job.
-        """
-        done: Future[Answer] = Future()
-
-        def do() -> None:
-            if done.set_running_or_notify_cancel():
-                try:
-                    done.set_result(work())
-                except BaseException as error:  # whoever waits gets it
-                    done.set_exception(error)
-
-        try:
-            self._pool.submit(do).add_done_callback(lambda queued: queued.cancelled() and done.cancel())
-        except RuntimeError:  # no thread, or this is closed
-            if done.cancel():
-                raise
-        return asyncio.wrap_future(done)
 
     def close(self) -> None:
         """Begin nothing more."""

@@ -20,6 +20,7 @@ import pytest
 from safestart.errors import Unavailable
 from safestart.store.jobs.repository import JobRepository
 from safestart_service.access.keyring import Keyring
+from safestart_service.computing.in_thread import begun
 from safestart_service.computing.light import Threads
 from safestart_service.shortage import shortage
 from tests.contract.api.service_client import assert_problem, service, url_of
@@ -119,23 +120,23 @@ def test_no_memory(client, monkeypatch):
 
 def test_what_was_refused_is_not_done_later(monkeypatch):
     """A pool queues work before it starts a thread for it: a thread that is there already would do it."""
-    begun: list[str] = []
+    done: list[str] = []
     go_on = threading.Event()
-    threads = Threads("answers are being computed", 2, 4)
+    threads = ThreadPoolExecutor(2)
 
     async def ask() -> None:
-        first = threads._begun(go_on.wait)
+        first = begun(threads, go_on.wait)
         with monkeypatch.context() as patch:
             patch.setattr(threading.Thread, "start", _refuse)
             with pytest.raises(RuntimeError, match="new thread"):
-                threads._begun(lambda: begun.append("refused"))
+                begun(threads, lambda: done.append("refused"))
         go_on.set()
         await first
-        await threads._begun(lambda: begun.append("asked"))
+        await begun(threads, lambda: done.append("asked"))
 
     asyncio.run(ask())
-    threads.close()
-    assert begun == ["asked"]
+    threads.shutdown()
+    assert done == ["asked"]
 
 
 def test_who_waits_when_it_closes_is_told():
@@ -143,7 +144,7 @@ def test_who_waits_when_it_closes_is_told():
     threads = Threads("answers are being computed", 1, 4)
 
     async def ask() -> None:
-        first, second = threads._begun(go_on.wait), threads._begun(go_on.wait)
+        first, second = begun(threads._pool, go_on.wait), begun(threads._pool, go_on.wait)
         threads.close()
         go_on.set()
         await first

@@ -9,10 +9,12 @@ import asyncio
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
+from functools import partial
 from typing import Any, TypeVar
 
 from safestart_service.computing.helpers.process import Helper, HelperEnded, NotBegun
 from safestart_service.computing.helpers.sources import FORKS, Forked, Source, Spawned
+from safestart_service.computing.in_thread import begun
 
 Answer = TypeVar("Answer")
 GRACE_S = 0.5
@@ -86,7 +88,7 @@ class Pool:
 
     def _in_thread(self, work: Callable[..., Answer], *arguments: Any) -> asyncio.Future[Answer]:
         try:
-            future = asyncio.get_running_loop().run_in_executor(self._threads, work, *arguments)
+            future = begun(self._threads, partial(work, *arguments))
         except RuntimeError as error:  # the system gives us no thread, or this is closed
             raise HelperEnded from error
         # Cancelled, nobody waits for its end any more, and nobody needs to know how it ended.
