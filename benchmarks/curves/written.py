@@ -23,7 +23,7 @@ def write(folder: Path, names: Sequence[str] = (), *, say: Callable[[str], Any])
     for name in names:
         if name not in CURVES:
             raise invalid("curve", " or ".join(CURVES), name)
-    folder.mkdir(parents=True, exist_ok=True)
+    folder.mkdir(exist_ok=True)
     path = folder / "curves.json"
     found: dict[str, Any] = json.loads(path.read_text())["curves"] if path.exists() else {}
     for name in names or CURVES:

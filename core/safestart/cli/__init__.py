@@ -8,8 +8,8 @@ from importlib import import_module
 
 import typer
 
-from safestart.cli.once import each_once
 from safestart.cli.streams import patient_streams
+from safestart.cli.strict import strictly
 from safestart.runtime.own_process import exit_code, own_configuration
 from safestart.runtime.variables import require_known
 
@@ -57,7 +57,7 @@ def build(asked: str = "") -> typer.Typer:
 
         for point in sorted(entry_points(group=COMMAND_GROUP), key=lambda p: p.name):
             point.load()(app)
-    each_once(app)
+    strictly(app)
     return app
 
 

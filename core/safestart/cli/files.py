@@ -6,7 +6,7 @@ import json
 import os
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from stat import S_ISREG
 from typing import Any, BinaryIO
@@ -67,15 +67,14 @@ class Target:
 
 @contextmanager
 def target(option: str, path: Path | None) -> Iterator[Target | None]:
-    """Open ``path`` for the block and create its directory; None for None. Raises ``InvalidInput``.
+    """Open ``path`` for the block; None for None. Raises ``InvalidInput``, also where its directory is missing.
 
-    The block removes a new file when it fails.
+    A misspelt directory that were made would hide the result. The block removes a new file when it fails.
     """
     if path is None:
         yield None
         return
     with writable(option, path):
-        path.parent.mkdir(parents=True, exist_ok=True)
         new = not path.exists()
         file = path.open("ab", buffering=0)
     try:
@@ -84,6 +83,27 @@ def target(option: str, path: Path | None) -> Iterator[Target | None]:
     except BaseException:
         if new:
             path.unlink(missing_ok=True)
+        raise
+
+
+@contextmanager
+def folder(option: str, path: Path | None) -> Iterator[None]:
+    """Make the directory ``path`` for the block, before its work; its parent must be there. Raises ``InvalidInput``.
+
+    The block removes a new directory when it fails and left nothing in it.
+    """
+    if path is None:
+        yield
+        return
+    with _refused(option, "a directory, or a name for one in a directory that is there", path):
+        new = not path.is_dir()
+        path.mkdir(exist_ok=True)
+    try:
+        yield
+    except BaseException:
+        if new:
+            with suppress(OSError):
+                path.rmdir()
         raise
 
 

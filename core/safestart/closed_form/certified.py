@@ -98,25 +98,18 @@ def _arrays(rates: Rates, faces: Faces, place: Floats) -> tuple[Floats, Ints, In
 
 
 def _block(rates: Rates, faces: Faces, place: Floats) -> tuple[Floats, Ints, Ints, Floats]:
-    count = place.shape[1]
-    # BLAS sums a matrix times one column in another order: a lone start is taken twice, to have the bits that it has
-    # among others.
-    if count == 1:
-        place = np.repeat(place, 2, axis=1)
     start = faces.room(place)
     # Outside the corridor no manoeuvre helps, so the margin is the start's own.
     margin, binding = start.min(axis=0), start.argmin(axis=0)
     member, drop = np.full(len(margin), BRAKE), np.zeros(len(margin))
     inside = np.flatnonzero(margin > ROUNDING)
-    if len(inside) == 1:
-        inside = np.repeat(inside, 2)
     place, start = place[:, inside], start[:, inside]
     found = _Best.of(offers(rates, faces, place, start))
     lost = found.binding < 0
     margin[inside] = np.where(lost, _shortfall(rates, place), found.margin)
     binding[inside] = np.where(lost, len(faces.names), found.binding)
     member[inside], drop[inside] = found.member, found.drop
-    return margin[:count] - ROUNDING, binding[:count], member[:count], drop[:count]
+    return margin - ROUNDING, binding, member, drop
 
 
 def certify_grid(scenario: Scenario, grid: Grid, rest: Rest = Rest.LVLH) -> CertifiedMap:
@@ -184,4 +177,7 @@ def longest_range(rates: Rates) -> float:
 
 def _shortfall(rates: Rates, place: Floats) -> Floats:
     """Metres, at most 0, by which the start is farther away than :func:`longest_range`."""
-    return np.asarray(np.minimum(longest_range(rates) - np.sqrt((place * place).sum(axis=0)), 0.0))
+    square = place[0] * place[0] + place[1] * place[1]
+    if len(place) == 3:
+        square += place[2] * place[2]
+    return np.asarray(np.minimum(longest_range(rates) - np.sqrt(square), 0.0))

@@ -1,8 +1,8 @@
 """`certified` for one start in plain floats: NumPy's fixed cost per call is several times the arithmetic of one start.
 
 Values that depend only on the scenario are computed once and cached. The arithmetic is that of
-:func:`safestart.closed_form.certified.certify`; it may round differently, by less than 1e-9 m, and
-:data:`~safestart.closed_form.certified.ROUNDING` covers both.
+:func:`safestart.closed_form.certified.certify`, operation by operation: both give the same bits. So products of
+complex numbers and squares are written out: the first may be fused, ``**`` calls the C library's ``pow``.
 """
 
 from __future__ import annotations
@@ -92,22 +92,20 @@ def certify_point(given: Prepared, x: float, y: float, z: float = 0.0) -> PointC
     rho = math.inf if sway >= 1.0 else radius * rates.scale / math.sqrt(1.0 - sway * sway)
     best, binding, member, drop = -math.inf, -1, BRAKE, 0.0
     if rates.omega == 0.0:
-        if (3.0 * x * rates.sway) ** 2 + sway * sway <= 1.0:
+        pull = 3.0 * x * rates.sway
+        if pull * pull + sway * sway <= 1.0:
             best, binding = least, room.index(least)
     elif rho <= rates.brake_limit:
         best, binding = _stop(given, room, x, y, z, rho)
     choices = [(rho, False)]
     if z != 0.0 and sway < 1.0:
         choices.append((math.sqrt(square + z * z) * rates.scale / (1.0 - sway), True))
-    place = complex(x, y)
     for value, draw in choices:
         k = bisect_left(given.reach, value)
         if k == len(given.reach):
             continue
         lost = given.drop[k] if draw else 0.0
-        found = _turned(
-            given, room, [place * h for h in given.inner[k]], [z - z * lost * s for s in _STEP], best
-        )
+        found = _turned(given, room, (x, y), given.inner[k], [z - z * lost * s for s in _STEP], best)
         if found:
             (best, binding), member, drop = found, k, lost
     if binding < 0:
@@ -123,7 +121,8 @@ def _stop(given: Prepared, room: list[float], x: float, y: float, z: float, rho:
     beta = 0.0
     if rates.speed > 0.0:
         spare = 1.0 - rates.lost * rho
-        squared = spare * spare - (rates.across * rho) ** 2
+        across = rates.across * rho
+        squared = spare * spare - across * across
         speed = rates.speed * rates.speed
         rest = math.sqrt(max(squared - 2.0 * rates.turning * speed * (rho * rho), 0.0))
         beta = speed * rho / (math.sqrt(squared) + rest)
@@ -137,14 +136,22 @@ def _stop(given: Prepared, room: list[float], x: float, y: float, z: float, rho:
 
 
 def _turned(
-    given: Prepared, room: list[float], turned: list[complex], heights: list[float], floor: float
+    given: Prepared,
+    room: list[float],
+    place: tuple[float, float],
+    inner: list[complex],
+    heights: list[float],
+    floor: float,
 ) -> tuple[float, int] | None:
-    """Least room and its face over the control points; None if it is at most ``floor``."""
+    """Least room and its face over the control points, ``place`` times ``inner``; None if it is at most ``floor``."""
     best, binding = math.inf, 0
+    x, y = place
     # Written out: a loop over the five points takes twice as long.
-    p, q, r, s, t = turned
-    px, qx, rx, sx, tx = p.real, q.real, r.real, s.real, t.real
-    py, qy, ry, sy, ty = p.imag, q.imag, r.imag, s.imag, t.imag
+    p, q, r, s, t = inner
+    pr, qr, rr, sr, tr = p.real, q.real, r.real, s.real, t.real
+    pi, qi, ri, si, ti = p.imag, q.imag, r.imag, s.imag, t.imag
+    px, qx, rx, sx, tx = x * pr - y * pi, x * qr - y * qi, x * rr - y * ri, x * sr - y * si, x * tr - y * ti
+    py, qy, ry, sy, ty = x * pi + y * pr, x * qi + y * qr, x * ri + y * rr, x * si + y * sr, x * ti + y * tr
     pz, qz, rz, sz, tz = heights
     for i, (_, offset, a, b, c) in enumerate(given.faces):
         outward = max(

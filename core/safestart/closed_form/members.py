@@ -1,4 +1,9 @@
-"""The manoeuvres for arrays of starts: whether thrust suffices for each, and the room it leaves to each face."""
+"""The manoeuvres for arrays of starts: whether thrust suffices for each, and the room it leaves to each face.
+
+Every sum and product is written out over whole arrays, in the order of :mod:`~safestart.closed_form.certified_point`.
+A matrix product would round by the processor and the number of starts, NumPy's complex product may fuse; near a face
+the verdict would then depend on who asks.
+"""
 
 from __future__ import annotations
 
@@ -16,6 +21,8 @@ Ints = np.ndarray[tuple[int, ...], np.dtype[np.int64]]
 BRAKE = -1
 """Member number of the manoeuvre that only brakes; members from 0 are the family's."""
 
+_FEW = 64
+"""Up to so many starts all faces are computed at once: the same bits by fewer calls, which are most of the time."""
 _INNER_STEP = SMOOTH_STEP[1:DEGREE, None]
 
 
@@ -39,12 +46,28 @@ class Faces:
 
     def room(self, place: Floats) -> Floats:
         """Distances (F, M) of points (d, M); negative outside."""
-        return self.offsets - self.normals @ place
+        return self.least_room(place[:, None])
 
     def least_room(self, places: Floats) -> Floats:
         """The least distances (F, M) over the middle axis of ``places`` (d, J, M)."""
-        outward = self.normals @ places.reshape(len(places), -1)
-        return np.asarray(self.offsets - outward.reshape(len(outward), *places.shape[1:]).max(axis=1))
+        if places.shape[2] <= _FEW:
+            outward = self.normals[:, 0, None, None] * places[0]
+            for factor, axis in zip(self.normals.T[1:, :, None, None], places[1:], strict=True):
+                outward += factor * axis
+            return np.asarray(self.offsets - outward.max(axis=1))
+        found = np.empty((len(self.offsets), places.shape[2]))
+        for face, normal, (offset,) in zip(found, self.normals.tolist(), self.offsets.tolist(), strict=True):
+            np.subtract(offset, _outward(normal, places).max(axis=0), out=face)
+        return found
+
+
+def _outward(normal: list[float], place: Floats) -> Floats:
+    """a x + b y + c z over ``place`` (d, ...), from the left; terms of coefficient 0 change no bit."""
+    terms = [(factor, axis) for factor, axis in zip(normal, place, strict=True) if factor != 0.0]
+    found: Floats = terms[0][0] * terms[0][1]
+    for factor, axis in terms[1:]:
+        found += factor * axis
+    return found
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +95,7 @@ def offers(rates: Rates, faces: Faces, place: Floats, start: Floats) -> list[Off
         held = np.sqrt(square) * rates.scale
         return [_brake(rates, faces, start, place, held), _turn_in(rates, faces, start, place, held)]
     height = place[2] * place[2]
-    sway = np.sqrt(height) * rates.sway
+    sway = np.abs(place[2]) * rates.sway
     # The rest of the thrust disk after n^2 z of it holds z; without a rest nothing can be flown.
     left = np.sqrt(np.maximum(1.0 - sway * sway, 1e-200))
     held = np.sqrt(square) * rates.scale / left
@@ -104,7 +127,8 @@ def _brake(rates: Rates, faces: Faces, start: Floats, place: Floats, rho: Floats
 def stopping_angle(rates: Rates, rho: Floats) -> Floats:
     """Beta: the distance to the stop over the range, for rho <= brake_limit."""
     spare = 1.0 - rates.lost * rho
-    square = spare * spare - (rates.across * rho) ** 2
+    across = rates.across * rho
+    square = spare * spare - across * across
     speed = rates.speed * rates.speed
     rest = np.sqrt(np.maximum(square - 2.0 * rates.turning * speed * (rho * rho), 0.0))
     return np.asarray(speed * rho / (np.sqrt(square) + rest))
@@ -118,11 +142,14 @@ def _turn_in(
     member = family.reach.searchsorted(rho)
     flyable = member < len(family.reach)
     member = np.minimum(member, len(family.reach) - 1)
-    turned = family.inner.take(member, axis=1) * (place[0] + 1j * place[1])
-    places = np.empty((len(place), *turned.shape))
-    places[0], places[1] = turned.real, turned.imag
+    real, imag = family.inner.real.take(member, axis=1), family.inner.imag.take(member, axis=1)
+    places = np.empty((len(place), *real.shape))
+    np.multiply(place[0], real, out=places[0])
+    places[0] -= place[1] * imag
+    np.multiply(place[0], imag, out=places[1])
+    places[1] += place[1] * real
     drop: Floats | float = 0.0
     if len(place) == 3:
         drop = family.drop.take(member) if draw else 0.0
-        places[2] = place[2] * (1.0 - _INNER_STEP * drop)
+        places[2] = place[2] - place[2] * drop * _INNER_STEP
     return Offer(flyable, np.minimum(start, faces.least_room(places)), member, drop)

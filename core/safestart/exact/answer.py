@@ -108,6 +108,14 @@ class Answer:
         """Width of the bracket in metres."""
         return self.upper - self.lower
 
+    @property
+    def proved_m(self) -> float:
+        """``margin_m`` of a GO or a NO_GO, which is proved; NaN when UNDECIDED.
+
+        What we tell others: the middle of a bracket that holds 0 is no bound, and may even be positive.
+        """
+        return math.nan if self.verdict is Verdict.UNDECIDED else self.margin_m
+
 
 @dataclass(frozen=True, slots=True)
 class Evidence:

@@ -37,7 +37,7 @@ class Exported:
 
     def write(self, folder: Path) -> None:
         """Write every file into ``folder``, which is made where it is missing."""
-        folder.mkdir(parents=True, exist_ok=True)
+        folder.mkdir(exist_ok=True)
         for name, data in self.files.items():
             (folder / name).write_bytes(data)
 
@@ -115,11 +115,16 @@ def verify(folder: Path) -> int:
         found = sha256((folder / Path(name).name).read_bytes()).hexdigest()
         if found != digest:
             raise invalid(name, f"SHA-256 {digest}", found)
-    header = (folder / "safestart_table.h").read_text()
+    header = (folder / "safestart_table.h").read_text(errors="replace")
     for name in ("safestart_table.c", "proofs.json"):
         if listed[name] not in header:
             raise invalid("safestart_table.h", f"the SHA-256 of {name}", "another")
-    proofs = loads((folder / "proofs.json").read_bytes())
+    try:
+        proofs = loads((folder / "proofs.json").read_bytes())
+    except (ValueError, RecursionError):
+        proofs = None
+    if not isinstance(proofs, list):
+        raise invalid("proofs.json", "a list of proofs", "something else")
     for document in proofs:
         check(document)
     return len(proofs)

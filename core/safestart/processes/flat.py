@@ -12,11 +12,13 @@ from pydantic.fields import FieldInfo
 
 from safestart.errors import invalid
 from safestart.model.places import placed
+from safestart.model.plain_numbers import require_plain
 from safestart.model.validation import refusal
 from safestart.processes.base import WireModel
 from safestart.runtime.plain_json import NameTwice, NoNumber, loads
 
 M = TypeVar("M", bound=WireModel)
+_NUMBERS = (int, float, int | None, float | None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +68,11 @@ class Flat(Generic[M]):
             if not model.model_fields[name].is_required()
             and any(item.is_required() for item in inner.__pydantic_fields__.values())
         ]
+        self._numbers = {
+            name
+            for name, one in self.parameters.items()
+            if not one.json_text and one.field.annotation in _NUMBERS
+        }
         # Opened fields are not parameters themselves.
         self._special: dict[str, Parameter | None] = dict.fromkeys(opened)
         self._special |= {name: one for name, one in self.parameters.items() if one.within or one.json_text}
@@ -74,6 +81,8 @@ class Flat(Generic[M]):
         """Validate flat values, which may be texts; raises ``InvalidInput`` under the flat name."""
         top: dict[str, Any] = {name: {} for name in self._opened}
         for name, value in values.items():
+            if isinstance(value, str) and name in self._numbers:
+                require_plain(name, value)
             if name not in self._special:
                 top[name] = value
                 continue

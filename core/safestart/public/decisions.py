@@ -151,15 +151,14 @@ def decide(
     if after_arrival not in get_args(AfterArrival):
         raise invalid("after_arrival", "stay, hold or any", after_arrival)
     (answer,) = with_arrival(after_arrival, asked, [state], [decide_start(asked, state)])
-    decided = answer.verdict is not Verdict.UNDECIDED
     return Decision(
         scenario,
         point,
         rest,
         answer.verdict.value,
-        answer.margin_m if decided else float("nan"),
+        answer.proved_m,
         sentence(asked, answer),
-        proof_of(asked, state, answer) if decided else None,
+        None if answer.verdict is Verdict.UNDECIDED else proof_of(asked, state, answer),
     )
 
 

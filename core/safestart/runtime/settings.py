@@ -5,7 +5,7 @@ from __future__ import annotations
 import ipaddress
 import os
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from difflib import get_close_matches
 from errno import ENOENT
 from functools import cache
@@ -199,9 +199,29 @@ def _file(kind: type[BaseSettings]) -> TomlConfigSettingsSource:
     if named and not os.path.isfile(named):  # Path raises on a name that is too long
         raise invalid("SAFESTART_CONFIG", "the path of a TOML file", named)
     try:
-        return TomlConfigSettingsSource(kind, toml_file=path or ())
+        source = TomlConfigSettingsSource(kind, toml_file=path or ())
+    except RecursionError:
+        raise invalid(str(path), "a readable TOML file in UTF-8", "one nested too deeply") from None
     except (OSError, ValueError) as error:  # invalid TOML or UTF-8 is a ValueError
         raise invalid(str(path), "a readable TOML file in UTF-8", str(error)) from None
+    _require_kinds(kind, source.toml_data)
+    return source
+
+
+_KINDS: dict[Any, str] = {int: "an integer", float: "a number", bool: "true or false"}
+
+
+def _require_kinds(kind: type[BaseSettings], given: Mapping[str, Any]) -> None:
+    """Raise ``InvalidInput`` where a file has a text or a boolean for a number: TOML, unlike a variable, has all three.
+
+    Pydantic, which also reads variables, would take them: ``port = true`` was port 1.
+    """
+    for name, field in kind.model_fields.items():
+        required, value = _KINDS.get(field.annotation), given.get(name)
+        if required and isinstance(value, bool | str) and type(value) is not field.annotation:
+            raise invalid(f"settings.{name}", required, value)
+        if field.annotation is bool and not isinstance(value, bool | None):
+            raise invalid(f"settings.{name}", _KINDS[bool], value)
 
 
 def _place(of_user: Callable[[str], Path]) -> Path | None:

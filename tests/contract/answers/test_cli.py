@@ -131,7 +131,7 @@ def test_run_writes_document_picture_and_arrays(tmp_path: Path) -> None:
     inputs.write_text(
         json.dumps({"omega_t_deg_s": [1, 3], "a_max_m_s2": [0.1], "grid": {"nx": 41, "ny": 41}})
     )
-    output = tmp_path / "out" / "coverage.json"
+    output = tmp_path / "coverage.json"
     assert printed("run", "coverage", "--input", str(inputs), "--output", str(output)) == ""
     written = json.loads(output.read_text())
     assert set(written) >= {"inputs", "outputs", "provenance"}

@@ -86,12 +86,47 @@ def test_a_wrong_variable_is_named_with_what_was_required_and_what_came(
         (b"port = = 9", r"required a readable TOML file in UTF-8, received 'Invalid value \(at line 1"),
         (b"host = '\xff'", "required a readable TOML file in UTF-8"),
         (b"port = [9]", "settings.port: required an integer"),
+        (b"a = " + b"[" * 100_000, "required a readable TOML file in UTF-8, received 'one nested too deeply"),
+        (
+            b"a = " + b"{a = " * 50_000,
+            "required a readable TOML file in UTF-8, received 'one nested too deeply",
+        ),
     ],
 )
 def test_a_wrong_file_is_refused_with_the_reason(file: Path, content: bytes, said: str) -> None:
     file.write_bytes(content)
     with pytest.raises(InvalidInput, match=said):
         settings()
+
+
+NUMBERS = [name for name, field in Settings.model_fields.items() if field.annotation in (int, float)]
+
+
+@pytest.mark.parametrize("name", NUMBERS)
+@pytest.mark.parametrize("value", ["true", "false", "'18540'", "''", "'1.0'"])
+def test_a_file_has_numbers_for_numbers(file: Path, name: str, value: str) -> None:
+    """TOML has texts and booleans of its own: `port = true` was port 1."""
+    file.write_text(f"{name} = {value}\n")
+    with pytest.raises(InvalidInput, match=f"settings.{name}: required (an integer|a number), received"):
+        settings()
+
+
+def test_every_setting_of_a_file_is_of_a_kind_that_is_checked() -> None:
+    """Texts are checked by pydantic; another kind of setting needs a rule of its own."""
+    others = {
+        name for name, field in Settings.model_fields.items() if field.annotation not in (int, float, str)
+    }
+    assert others == {"warm_up", "log_format"}
+
+
+def test_a_file_may_write_a_whole_number_with_a_point(file: Path) -> None:
+    file.write_text("port = 8001.0\nlease_s = 30\n")
+    assert (settings().port, settings().lease_s) == (8001, 30.0)
+
+
+def test_variables_are_texts(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SAFESTART_PORT", "18540")
+    assert settings().port == 18540
 
 
 @pytest.mark.parametrize("place", ["database_url", "database"])

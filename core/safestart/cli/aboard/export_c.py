@@ -8,8 +8,9 @@ from typing import Annotated
 import typer
 
 from safestart.cli.console import Json, err, out, print_json, reporting
-from safestart.cli.files import readable, writable
+from safestart.cli.files import folder, readable, writable
 from safestart.errors import invalid
+from safestart.model.plain_numbers import require_plain
 from safestart.model.scenario import MAX_MEAN_MOTION, Chaser, CorridorShape, Scenario, number
 
 
@@ -18,7 +19,9 @@ def register(app: typer.Typer) -> None:
 
     @app.command("export-c")
     def export_c(
-        output: Annotated[Path, typer.Option(help="Folder for the files; made where it is missing.")],
+        output: Annotated[
+            Path, typer.Option(help="Folder for the files; made where it is missing, its parent is not.")
+        ],
         omega_t_deg_s: Annotated[
             str, typer.Option(help="Tumble rates of the target, deg/s, with commas.")
         ] = "",
@@ -61,10 +64,11 @@ def register(app: typer.Typer) -> None:
         steps = round(seconds("--horizon-s", horizon_s) / DT_S)
         if precision not in ("float64", "float32"):
             raise invalid("--precision", "float64 or float32", precision)
-        with reporting("export-c") as context:
-            made = table.export(table.points_of(scenarios, steps, DT_S, y_max_m, context), precision)
-        with writable("--output", output):
-            made.write(output)
+        with folder("--output", output):
+            with reporting("export-c") as context:
+                made = table.export(table.points_of(scenarios, steps, DT_S, y_max_m, context), precision)
+            with writable("--output", output):
+                made.write(output)
         if as_json:
             print_json(made.manifest)
             return
@@ -80,8 +84,11 @@ def register(app: typer.Typer) -> None:
 
 
 def _numbers(option: str, text: str) -> list[float]:
+    parts = text.split(",")
+    for part in parts:
+        require_plain(option, part)
     try:
-        found = [float(part) for part in text.split(",")]
+        found = [float(part) for part in parts]
     except ValueError:
         raise invalid(option, "numbers with commas between them", text) from None
     if len(set(found)) != len(found):

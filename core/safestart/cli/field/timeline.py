@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from safestart.cli.console import Json, err, out, print_json, reporting
-from safestart.cli.files import target, writable
+from safestart.cli.files import folder, target, writable
 from safestart.errors import invalid
 from safestart.processes.execute import Execution
 from safestart.processes.side_by_side import execute_side_by_side
@@ -64,7 +64,11 @@ def register(app: typer.Typer) -> None:
             Path | None, typer.Option(help="Where to write the document; picture and table go beside it.")
         ] = None,
         proofs: Annotated[
-            Path | None, typer.Option(help="Directory for the proofs at the ends of the intervals.")
+            Path | None,
+            typer.Option(
+                help="Directory for the proofs at the ends of the intervals; made where it is missing, its "
+                "parent is not."
+            ),
         ] = None,
         as_json: Json = False,
     ) -> None:
@@ -88,14 +92,14 @@ def register(app: typer.Typer) -> None:
             inputs["spin"] = {"rate_deg_s": spin, "phase_deg": phase}
         if corridor:
             inputs["corridors"] = [_corridor(text) for text in corridor]
-        with target("--output", output) as file:
+        with target("--output", output) as file, folder("--proofs", proofs):
             with reporting("commit-timeline") as context:
                 result = execute_side_by_side("commit-timeline", inputs, context, _workers(inputs))
             if file is not None:
                 file.write_json(result.document, indent=2)
                 _beside(file.path, result)
-        if proofs is not None:
-            _write_proofs(proofs, result)
+            if proofs is not None:
+                _write_proofs(proofs, result)
         print_json(result.document) if as_json else _show(result.document["outputs"])
 
 
@@ -142,7 +146,6 @@ def _write_proofs(directory: Path, result: Execution) -> None:
     (kept,) = (artifact for artifact in result.artifacts if artifact.name == "proofs.json")
     found = json.loads(kept.data)
     with writable("--proofs", directory):
-        directory.mkdir(parents=True, exist_ok=True)
         for number, one in enumerate(result.document["outputs"]["intervals"], 1):
             for end in ("begin", "end"):
                 digest = one[f"{end}_proof"]

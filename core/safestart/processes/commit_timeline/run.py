@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from safestart.exact.answer import Verdict
 from safestart.interchange.epochs import SECOND, Nanoseconds, shortened, text_of
 from safestart.interchange.tables.columns import csv_of
 from safestart.processes.base import Artifact, ProcessOutput
@@ -68,7 +69,8 @@ def _instants(
 
 
 def _run(corridor: str, run: Sequence[Instant], proofs: Sequence[str | None]) -> dict[str, Any]:
-    bounds = [one.margin for one in run if not math.isnan(one.margin)]
+    decided = run[0].verdict != Verdict.UNDECIDED  # else the margin is a bracket's middle, and proves nothing
+    bounds = [one.margin for one in run if decided and not math.isnan(one.margin)]
     return {
         "corridor": corridor,
         "verdict": run[0].verdict,

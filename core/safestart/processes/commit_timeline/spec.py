@@ -104,7 +104,7 @@ class Interval(WireModel):
     end_s: float
     instants: int = Field(description="Instants that were asked in the interval.")
     margin_m: float | None = Field(
-        description="The proved bound nearest to 0 in the interval, m: GO from below, NO_GO from above."
+        description="The proved bound nearest to 0 in the interval, m: GO from below, NO_GO from above; null: none."
     )
     model_error_m: float = Field(
         description="About how far a flight of the linear model may be from the true one, m; the largest of the "

@@ -63,7 +63,7 @@ def best_flight(
     when, face = np.unravel_index(int(np.argmin(distance)), distance.shape)
     return {
         "verdict": answer.verdict.value,
-        "margin_m": finite(answer.margin_m),
+        "margin_m": finite(answer.proved_m),
         "time_s": times.tolist(),
         "body_m": body.tolist(),
         "lvlh_m": states[:, :d].tolist(),

@@ -49,7 +49,7 @@ def run(inputs: FlightInSpaceInputs, context: Context) -> ProcessOutput:
     return ProcessOutput(
         {
             "verdict": answer.verdict.value,
-            "margin_m": finite(answer.margin_m),
+            "margin_m": finite(answer.proved_m),
             "model_error_m": model_error(question, state),
             "flown_by": inputs.flown_by,
             "faces": [face.name for face in question.faces],

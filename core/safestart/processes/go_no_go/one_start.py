@@ -45,7 +45,8 @@ class GoNoGoAnswer(WireModel):
     verdict: Literal["GO", "NO_GO", "UNDECIDED"]
     decided_by: str | None = Field(description=DECIDED_BY)
     margin_m: float | None = Field(
-        description="certified, exact, atlas: the proved bound, m. paper: smallest margin, m; its GO needs it positive."
+        description="certified, exact, atlas: the proved bound, m; null when UNDECIDED. paper: smallest margin, m; its "
+        "GO needs it positive."
     )
     range_margin_m: float | None = Field(
         description="The paper's conditions (not sound): r_sync minus range, m; null without a limit."

@@ -78,8 +78,8 @@ class GoNoGoOutputs(WireModel):
     decided_by: list[str | None] = Field(description=DECIDED_BY)
     margin_m: list[float | None] = Field(
         description="certified, exact, atlas: proved bound on the margin (distance to every face; limits in metres, "
-        "see docs), from below for GO, from above for NO_GO. paper: smallest margin of each state, m; its GO needs it "
-        "positive."
+        "see docs), from below for GO, from above for NO_GO, null when UNDECIDED. paper: smallest margin of each "
+        "state, m; its GO needs it positive."
     )
     face_margins_m: list[list[float]] = Field(
         description="The paper's conditions (not sound): margin after erosion per state and face, m."

@@ -69,7 +69,7 @@ def run(inputs: SpaceInputs, context: Context) -> ProcessOutput:
             "faces": list(watch.names),
             "verdict": [answer.verdict.value for answer in answers],
             "decided_by": deciders,
-            "margin_m": [finite(answer.margin_m) for answer in answers],
+            "margin_m": [finite(answer.proved_m) for answer in answers],
             "model_error_m": errors,
             "violated_faces": [
                 [name for name, distance in zip(watch.names, row, strict=True) if distance < 0.0]

@@ -159,7 +159,7 @@ class SpaceOutputs(WireModel):
     decided_by: list[str | None] = Field(description=DECIDED_BY)
     margin_m: list[float | None] = Field(
         description="Proved bound on the margin (distance to every face; limits in metres, see docs), m: from below "
-        "for GO, from above for NO_GO."
+        "for GO, from above for NO_GO, null when UNDECIDED."
     )
     model_error_m: list[float] = Field(
         description="Estimate of what two bodies with J2 would change over the horizon, m; where it exceeds the "

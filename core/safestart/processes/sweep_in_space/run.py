@@ -45,7 +45,7 @@ def run(inputs: SweepInSpaceInputs, context: Context) -> ProcessOutput:
                 "position_m": states[case, :3].tolist(),
                 "velocity_m_s": states[case, 3:].tolist(),
                 "exact": answer.verdict.value,
-                "exact_margin_m": finite(answer.margin_m),
+                "exact_margin_m": finite(answer.proved_m),
                 "flown_margin_m": float(flight.margin[0]),
                 "violated_at_s": finite(float(flight.violated_at[0])),
                 "delta_v_m_s": float(flight.delta_v[0]),

@@ -79,5 +79,5 @@ def flown_answer(flight: Taken, exact: Answer) -> dict[str, Any]:
         "least_violation_m": finite(flight.violation) if flight.violation > 0.0 else None,
         "delta_v_m_s": DT_S * float(np.linalg.norm(flight.thrust, axis=1).sum()) if flown else None,
         "exact_verdict": exact.verdict.value,
-        "exact_margin_m": finite(exact.margin_m),
+        "exact_margin_m": finite(exact.proved_m),
     }

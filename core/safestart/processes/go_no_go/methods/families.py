@@ -88,7 +88,7 @@ def _member(example: Example) -> dict[str, Any]:
     d = example.question.dimensions
     return {
         "verdict": example.answer.verdict.value,
-        "margin_m": finite(example.answer.margin_m),
+        "margin_m": finite(example.answer.proved_m),
         "omega_t_deg_s": math.degrees(target.tumble_rate),
         "a_max_m_s2": chaser.max_acceleration,
         "mean_motion_rad_s": target.mean_motion,

@@ -57,7 +57,7 @@ def prove(inputs: GoNoGoInputs, solve: Solve, context: Context) -> Verdicts:
         reasons = [asked.sentence(question, answer) for answer in answers]
     return Verdicts(
         [answer.verdict.value for answer in answers],
-        [finite(answer.margin_m) for answer in answers],
+        [finite(answer.proved_m) for answer in answers],
         reasons,
         end_s=[_end(question, answer) for answer in answers] if question.goal else None,
         hold_after=asked.hold_after(inputs, question, answers),

@@ -71,7 +71,7 @@ def decide(inputs: GoNoGoInputs, _: Conditions, context: Context) -> Verdicts:
         answer = answer if by == "tracking" else exact
         verdicts.append(verdict.value)
         row = {
-            "margin_m": finite(answer.margin_m) if by else None,
+            "margin_m": finite(answer.proved_m) if by else None,
             "reason": flown.sentence(
                 flight, exact, asked.sentence(question, exact), inputs.within_s, stays=stays
             ),
