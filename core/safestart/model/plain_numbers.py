@@ -9,12 +9,12 @@ import re
 
 from safestart.errors import invalid
 
-_GROUPED = re.compile(r"\d_\d")
+GROUPED = re.compile(r"\d_\d")
 
 
 def require_plain(name: str, value: str) -> None:
     """Raise ``InvalidInput`` for a number with ``_``, a plus sign, spaces or digits other than 0 to 9."""
-    if _GROUPED.search(value):
+    if GROUPED.search(value):
         raise invalid(name, "a number without _ between its digits", value)
     if value != value.strip() or value.startswith("+"):
         raise invalid(name, "a number without spaces and without a plus sign", value)

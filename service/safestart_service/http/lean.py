@@ -16,8 +16,8 @@ from fastapi.routing import APIRoute
 from starlette.types import Receive, Scope, Send
 
 from safestart.errors import invalid
+from safestart.model.plain_numbers import GROUPED, require_plain
 from safestart_service.http.answers import send_json
-from safestart_service.http.strict import GROUPED, require_plain
 
 Query = TypeVar("Query")
 

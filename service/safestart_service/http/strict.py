@@ -5,7 +5,6 @@ Otherwise a misspelt parameter or the first of two values would silently not cou
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Coroutine, Iterator
 from typing import Any, get_args, get_origin
 from urllib.parse import parse_qsl, urlencode
@@ -16,10 +15,10 @@ from fastapi.routing import APIRoute
 from pydantic import BaseModel
 
 from safestart.errors import invalid
+from safestart.model.plain_numbers import require_plain
 
 _FORM = "f"
 """Clients of OGC APIs ask for JSON with it; that is what they get in any case."""
-GROUPED = re.compile(r"\d_\d")
 
 
 class StrictRoute(APIRoute):
@@ -36,14 +35,6 @@ class StrictRoute(APIRoute):
             return await handle(request)
 
         return strict
-
-
-def require_plain(name: str, value: str) -> None:
-    """Raise ``InvalidInput`` for a number with ``_``, a plus sign or spaces, which pydantic takes and JSON does not."""
-    if GROUPED.search(value):
-        raise invalid(name, "a number without _ between its digits", value)
-    if value != value.strip() or value.startswith("+"):
-        raise invalid(name, "a number without spaces and without a plus sign", value)
 
 
 def is_number(annotation: Any) -> bool:
