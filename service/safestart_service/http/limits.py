@@ -18,12 +18,12 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from safestart.errors import SafestartError
 from safestart.runtime.logs import about
+from safestart_service.access import head
 from safestart_service.access.gate import Access
 from safestart_service.access.proxies import FIELDS, Proxies
 from safestart_service.computing.budget import Budget, Share
 from safestart_service.documents import problems
 from safestart_service.errors import BodyTooLarge, Busy, QueryTooLong, RequestTimeout
-from safestart_service.http import head
 from safestart_service.shortage import shortage
 
 MAX_QUERY_BYTES = 8192
