@@ -7,13 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from inspect import signature
-from typing import Any, ClassVar, get_args
+from typing import Any, ClassVar
 
 import typer
 from typer.core import TyperCommand
 
 from safestart.errors import invalid
-from safestart.model.plain_numbers import require_plain
+from safestart.model.plain_numbers import is_number, require_plain
 
 
 class Strict(TyperCommand):
@@ -53,11 +53,7 @@ def _numbers(function: Callable[..., Any] | None) -> frozenset[str]:
     if function is None:
         return frozenset()
     parameters = signature(function, eval_str=True).parameters
-    return frozenset(name for name, one in parameters.items() if _is_number(one.annotation))
-
-
-def _is_number(annotation: Any) -> bool:
-    return annotation in (int, float) or any(_is_number(part) for part in get_args(annotation))
+    return frozenset(name for name, one in parameters.items() if is_number(one.annotation))
 
 
 def _may_repeat(option: Any) -> bool:

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import re
+from typing import Any, get_args
 
 from safestart.errors import invalid
 
@@ -20,3 +21,8 @@ def require_plain(name: str, value: str) -> None:
         raise invalid(name, "a number without spaces and without a plus sign", value)
     if not value.isascii():
         raise invalid(name, "a number in the digits 0 to 9", value)
+
+
+def is_number(annotation: Any) -> bool:
+    """Whether a parameter of this type is a number, several of them, or none."""
+    return annotation in (int, float) or any(is_number(part) for part in get_args(annotation))

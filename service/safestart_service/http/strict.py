@@ -6,7 +6,7 @@ Otherwise a misspelt parameter or the first of two values would silently not cou
 from __future__ import annotations
 
 from collections.abc import Callable, Coroutine, Iterator
-from typing import Any, get_args, get_origin
+from typing import Any, get_origin
 from urllib.parse import parse_qsl, urlencode
 
 from fastapi import Request
@@ -15,7 +15,7 @@ from fastapi.routing import APIRoute
 from pydantic import BaseModel
 
 from safestart.errors import invalid
-from safestart.model.plain_numbers import require_plain
+from safestart.model.plain_numbers import is_number, require_plain
 
 _FORM = "f"
 """Clients of OGC APIs ask for JSON with it; that is what they get in any case."""
@@ -35,11 +35,6 @@ class StrictRoute(APIRoute):
             return await handle(request)
 
         return strict
-
-
-def is_number(annotation: Any) -> bool:
-    """Whether a parameter of this type is a number, several of them, or none."""
-    return annotation in (int, float) or any(is_number(part) for part in get_args(annotation))
 
 
 def _check(request: Request, known: dict[str, Any]) -> None:

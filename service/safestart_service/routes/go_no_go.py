@@ -10,6 +10,7 @@ from fastapi.responses import Response
 from starlette.types import Scope
 
 from safestart.errors import NotFound
+from safestart.model.plain_numbers import is_number
 from safestart.processes import door
 from safestart.processes.door import OneStart
 from safestart.processes.flat import described
@@ -27,7 +28,7 @@ from safestart_service.documents.openapi import REF, content, json_body, refusal
 from safestart_service.http.answers import Json, root_path
 from safestart_service.http.body import read_body
 from safestart_service.http.lean import query_route
-from safestart_service.http.strict import StrictRoute, is_number
+from safestart_service.http.strict import StrictRoute
 
 if TYPE_CHECKING:
     from pydantic import BaseModel as GoNoGoQuery
