@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 from uuid import uuid4
@@ -16,7 +16,7 @@ from safestart.processes.registry import process
 from safestart.runtime.access import Caller, Role
 from safestart.runtime.progress import Context
 from safestart_service.computing.limits import too_long
-from safestart_service.computing.long_answers import write
+from safestart_service.computing.long_answers import put
 from safestart_service.computing.store import Store
 from safestart_service.documents.execution import (
     ExecuteRequest,
@@ -27,13 +27,12 @@ from safestart_service.documents.execution import (
     selected,
 )
 from safestart_service.documents.jobs_view import job_detail
+from safestart_service.documents.pieces import pieces
 from safestart_service.errors import Forbidden
 from safestart_service.http.body import MOST_PARTS, PARTS_PER_STATE, parse_body
 
 LIGHT_S = 0.03
 """An answer that costs more than this is heavy."""
-LONG_BYTES = 1_000_000
-"""A body longer than this goes through a file."""
 
 
 def _nothing(_: Any) -> dict[str, str]:
@@ -95,13 +94,6 @@ def in_full(store: Store, context: Context, asked: Asked, place: Path | None = N
 
     A long body goes into the file ``place``, or, where that is full or gone, the long way.
     """
-    made = _in_full(store, context, asked)
-    if len(made.body) > LONG_BYTES and write(place, made.body):
-        return replace(made, body=b"", in_file=True)
-    return made
-
-
-def _in_full(store: Store, context: Context, asked: Asked) -> Made:
     request = _parsed(store, asked)
     spec = process(asked.process_id)
     if asked.queued:
@@ -109,7 +101,7 @@ def _in_full(store: Store, context: Context, asked: Asked) -> Made:
     cost, limit = spec.cost(request.inputs), store.settings.answer_timeout_s
     if cost > limit:
         raise too_long(limit, cost)
-    return _answer(spec, request, context, asked)
+    return _answer(spec, request, context, asked, place)
 
 
 def _parsed(store: Store, asked: Asked) -> ExecuteRequest:
@@ -124,13 +116,16 @@ def _parsed(store: Store, asked: Asked) -> ExecuteRequest:
     return request
 
 
-def _answer(spec: ProcessSpec, request: ExecuteRequest, context: Context, asked: Asked) -> Made:
-    return _made(run_now(spec, request.inputs, context), request, asked)
+def _answer(
+    spec: ProcessSpec, request: ExecuteRequest, context: Context, asked: Asked, place: Path | None = None
+) -> Made:
+    return _made(run_now(spec, request.inputs, context), request, asked, place)
 
 
-def _made(document: dict[str, Any], request: ExecuteRequest, asked: Asked) -> Made:
-    body = orjson.dumps(document if asked.bare else selected(document, request))
-    return Made(body, headers=asked.announced(request.inputs))
+def _made(document: dict[str, Any], request: ExecuteRequest, asked: Asked, place: Path | None = None) -> Made:
+    headers = asked.announced(request.inputs)
+    body, in_file = put(place, pieces(document if asked.bare else selected(document, request)))
+    return Made(body, headers=headers, in_file=in_file)
 
 
 def _submitted(store: Store, spec: ProcessSpec, request: ExecuteRequest, asked: Asked) -> Made:

@@ -37,6 +37,7 @@ class Answer(NamedTuple):
     def document(self) -> dict[str, Any]:
         """``GoNoGoOutputs``: arrays over the starts."""
         inputs, found, said = self
+        rows = found.face_margin
         limit = finite(found.limit)
         return {
             "method": inputs.method,
@@ -48,7 +49,7 @@ class Answer(NamedTuple):
             "verdict": said.verdict,
             "decided_by": self.decided_by(),
             "margin_m": said.margin_m,
-            "face_margins_m": found.face_margin,
+            "face_margins_m": rows if isinstance(rows, list) else rows.tolist(),
             "range_margin_m": [finite(value) for value in found.range_margin],
             "binding": found.binding,
             "violated_faces": found.violated,
