@@ -124,7 +124,10 @@ def _answer(
 
 def _made(document: dict[str, Any], request: ExecuteRequest, asked: Asked, place: Path | None = None) -> Made:
     headers = asked.announced(request.inputs)
-    body, in_file = put(place, pieces(document if asked.bare else selected(document, request)))
+    chosen = document if asked.bare else selected(document, request)
+    if place is None:
+        return Made(orjson.dumps(chosen), headers=headers)
+    body, in_file = put(place, pieces(chosen))
     return Made(body, headers=headers, in_file=in_file)
 
 

@@ -20,7 +20,7 @@ import warnings
 from contextlib import suppress
 from multiprocessing.connection import Connection
 
-from safestart_service.computing.allocator import keep_little
+from safestart_service.computing.allocator import MEGABYTE, keep_little
 from safestart_service.computing.helpers.serving import serve
 
 MOST_GROWN = 16 * 1024**2
@@ -32,7 +32,7 @@ def main(control: socket.socket) -> None:
     """Load, then fork a helper for every connection that comes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # at Ctrl-C the service ends its answers, and then us
     end_with_parent()
-    keep_little()
+    keep_little(MEGABYTE)
     threading.Thread(target=_end_without, args=(control,), daemon=True).start()
     loaded = load()
     # One end at a time: a helper that was forked with the end of another one would keep that connection open, and
