@@ -17,6 +17,7 @@ from safestart.runtime.access import Caller, Role
 from safestart.runtime.progress import Context
 from safestart_service.computing.limits import too_long
 from safestart_service.computing.long_answers import put
+from safestart_service.computing.pieces import pieces
 from safestart_service.computing.store import Store
 from safestart_service.documents.execution import (
     ExecuteRequest,
@@ -27,7 +28,6 @@ from safestart_service.documents.execution import (
     selected,
 )
 from safestart_service.documents.jobs_view import job_detail
-from safestart_service.documents.pieces import pieces
 from safestart_service.errors import Forbidden
 from safestart_service.http.body import MOST_PARTS, PARTS_PER_STATE, parse_body
 

@@ -12,7 +12,7 @@ import orjson
 import pytest
 
 from safestart_service.computing.long_answers import LONG_BYTES, put
-from safestart_service.documents.pieces import BLOCK, pieces
+from safestart_service.computing.pieces import BLOCK, pieces
 
 DOCUMENTS: list[Any] = [
     {},
