@@ -56,6 +56,8 @@ class Asked:
     idempotency_key: str | None = None
     announced: Callable[[Any], dict[str, str]] = field(default=_nothing)
     """Further header fields of an answer, from the inputs."""
+    job_id: str = field(default_factory=lambda: str(uuid4()))
+    """Of the job that it makes: where a helper dies the work is done again, and makes no second one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,7 +143,6 @@ def _submitted(store: Store, spec: ProcessSpec, request: ExecuteRequest, asked: 
             received=request.priority,
         )
     spec.require_possible(request.inputs)
-    new = str(uuid4())
     job = store.jobs.submit(
         spec.id,
         request.inputs.model_dump(mode="json"),
@@ -152,7 +153,7 @@ def _submitted(store: Store, spec: ProcessSpec, request: ExecuteRequest, asked: 
         max_queued=store.settings.max_queued,
         submitter=by.key_id or "",
         by=by,
-        job_id=new,
+        job_id=asked.job_id,
         labels=request.labels(),
     )
     document = job_detail(store, job, asked.base)
@@ -161,6 +162,6 @@ def _submitted(store: Store, spec: ProcessSpec, request: ExecuteRequest, asked: 
     headers = {"Location": f"{asked.base}/jobs/{job.id}"}
     if asked.wants_async:
         headers["Preference-Applied"] = "respond-async"
-    if job.id != new:
+    if job.id != asked.job_id:
         headers["Idempotency-Replayed"] = "true"
     return Made(orjson.dumps(document), 201, headers)

@@ -11,11 +11,14 @@ from typing import Any
 import pytest
 
 from safestart.errors import (
+    Conflict,
     IdempotencyMismatch,
     InvalidInput,
     NotFound,
     QueueFull,
 )
+from safestart.runtime.access import Caller, Role
+from safestart.store.access.audit import AuditLog
 from safestart.store.database import Database
 from safestart.store.jobs.filters import JobFilter
 from safestart.store.jobs.repository import JobRepository
@@ -206,3 +209,19 @@ def test_the_same_key_of_two_submitters_is_two_jobs(jobs: JobRepository) -> None
     one, two = (submit(jobs, submitter=name, idempotency_key="k") for name in "ab")
     assert one.id != two.id
     assert submit(jobs, submitter="a", idempotency_key="k").id == one.id
+
+
+def test_the_same_id_is_the_same_job(jobs: JobRepository, database: Database) -> None:
+    """A submission is repeated whose answer was lost: the queue is full by then, and its key used."""
+    by = Caller(None, "me", Role.SUBMIT, None)
+    how: dict[str, Any] = {"job_id": "one", "idempotency_key": "k", "max_queued": 1, "by": by}
+    first = submit(jobs, **how)
+    before = [event.kind for event in jobs.events("one")]
+    assert submit(jobs, **how) == first
+    assert claimed(jobs).job_id == "one"
+    assert submit(jobs, **how).status is JobStatus.RUNNING, "it may have begun meanwhile"
+    assert (jobs.counts()["accepted"], jobs.counts()["running"]) == (0, 1)
+    assert [event.kind for event in jobs.events("one")][: len(before)] == before
+    assert len(AuditLog(database).entries().entries) == 1
+    with pytest.raises(Conflict, match="job one is another request"):
+        submit(jobs, **how, inputs={"a": 2})

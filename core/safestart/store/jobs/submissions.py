@@ -46,7 +46,8 @@ class Submissions(Labelling):
 
         The audit log records the caller ``by``. A new job gets ``job_id``, or a fresh id. The same
         ``idempotency_key`` of the same submitter with the same process and inputs returns the first job; with
-        another process or inputs it raises ``IdempotencyMismatch``. Raises ``QueueFull`` when ``max_queued`` jobs
+        another process or inputs it raises ``IdempotencyMismatch``. A repeated ``job_id`` returns that job, and nothing
+        else happens; with another process or inputs it raises ``Conflict``. Raises ``QueueFull`` when ``max_queued`` jobs
         wait already, and ``InvalidInput`` when the inputs are not JSON.
         """
         request = request_hash(process_id, inputs)
@@ -60,6 +61,9 @@ class Submissions(Labelling):
         with self._database.session(write=True) as session:
             # Otherwise two submissions at once would both find room, an unused key and the same turn.
             lock_queue(session.connection())
+            again = None if job_id is None else session.scalar(select(JobRow).where(JobRow.id == job_id))
+            if again is not None:
+                return _repeated(again, request)
             first = _by_key(session, idempotency_key)
             if first is not None:
                 return _same(first, request)
@@ -173,6 +177,17 @@ def _same(first: JobRow, request: str) -> Job:
             required="the same request body, or a new key",
         )
     return first.record()
+
+
+def _repeated(job: JobRow, request: str) -> Job:
+    if job.request_sha256 != request:
+        raise Conflict(
+            f"job {job.id} is another request; required the same process and inputs, or a new id",
+            field="jobID",
+            required="the same process and inputs, or a new id",
+            received=job.id,
+        )
+    return job.record()
 
 
 def _require_room(session: Session, most: int) -> None:
