@@ -13,6 +13,8 @@ QUICK_S = 1.0
 
 @dataclass(eq=False, slots=True)
 class _Waiting:
+    """``turn`` is done by :meth:`Line._serve`, or where whoever waits for it has left."""
+
     name: str | None
     quick: bool
     turn: asyncio.Future[None]
@@ -57,7 +59,9 @@ class Line:
 
     def _serve(self) -> None:
         while self._held.total() < self.slots:
-            able = [one for one in self._waiting if one.quick or self._long < self._long_slots]
+            # Who has left in this turn of the loop is still in line, until its own task goes on.
+            waiting = [one for one in self._waiting if not one.turn.done()]
+            able = [one for one in waiting if one.quick or self._long < self._long_slots]
             if not able:
                 return
             entry = min(able, key=lambda one: self._held[one.name])

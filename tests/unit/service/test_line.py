@@ -62,3 +62,31 @@ def test_a_budget_is_shared() -> None:
     two.end()
     two.end()
     assert budget.taken == 0
+
+
+def test_who_leaves_in_the_turn_in_which_a_slot_is_free_harms_nobody() -> None:
+    """Whoever gave the slot back got an error instead of the answer, and the slot was lost."""
+
+    async def run() -> None:
+        line, answered = Line(1), asyncio.Event()
+
+        async def holds() -> str:
+            async with line.slot("a", 9.0):
+                await answered.wait()
+            return "answer"
+
+        async def waits(name: str) -> str:
+            async with line.slot(name, 9.0):
+                return name
+
+        tasks = [asyncio.create_task(call) for call in (holds(), waits("b"), waits("c"), waits("d"))]
+        await asyncio.sleep(0)
+        answered.set()
+        tasks[1].cancel()
+        tasks[2].cancel()
+        found = await asyncio.gather(*tasks, return_exceptions=True)
+        assert (found[0], found[3]) == ("answer", "d")
+        assert all(isinstance(one, asyncio.CancelledError) for one in found[1:3])
+        assert (line._held.total(), line._long, line._waiting) == (0, 0, [])
+
+    asyncio.run(run())
