@@ -8,13 +8,14 @@ from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from threading import Lock
 
-from sqlalchemy import Connection, Engine, create_engine
+from sqlalchemy import Connection, Engine, Pool, create_engine
 from sqlalchemy.engine import URL
 from sqlalchemy.exc import ArgumentError, DBAPIError, OperationalError, SQLAlchemyError
 from sqlalchemy.exc import TimeoutError as NoConnection
 from sqlalchemy.orm import Session
 
 from safestart.errors import Away, Unavailable
+from safestart.runtime.forks import Forkable
 from safestart.store import schema
 from safestart.store.dialect import BUSY_TIMEOUT_S, prepare
 from safestart.store.same_file import SameFile
@@ -40,7 +41,7 @@ _REFUSALS = (
 )
 
 
-class Database:
+class Database(Forkable):
     """An SQLAlchemy URL with sessions; connecting happens at first use."""
 
     def __init__(self, url: str) -> None:
@@ -52,6 +53,8 @@ class Database:
         # Same pool; with this option SQLite takes the write lock at the start of the transaction.
         self._writer = self._engine.execution_options(safestart_write=True)
         self._writing = Lock()
+        self._parents: list[Pool] = []
+        self.tell_of_forks()
 
     @contextmanager
     def session(self, *, write: bool = False) -> Iterator[Session]:
@@ -102,6 +105,18 @@ class Database:
     def close(self) -> None:
         """Close every pooled connection."""
         self._engine.dispose()
+
+    def forking(self) -> None:
+        """Leave no open connection to the child: what SQLite knows of its own locks would not be true there."""
+        self._engine.dispose()
+
+    def forked(self) -> None:
+        """Connect anew. Those of a session that was under way stay open: to close them would end the parent's."""
+        self._parents.append(self._engine.pool)
+        self._engine.dispose(close=False)
+        self._writing = Lock()
+        if self._watched is not None:
+            self._watched.forked()
 
     @contextmanager
     def _turn(self) -> Iterator[None]:

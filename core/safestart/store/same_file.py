@@ -42,6 +42,10 @@ class SameFile:
         event.listen(engine, "do_connect", self._connect)
         event.listen(engine, "checkout", self._check)
 
+    def forked(self) -> None:
+        """This process is a child: a thread of the parent may have held the lock."""
+        self._lock = Lock()
+
     def make(self) -> None:
         """Make an empty file where none is and none was; a path that cannot be is reported by the connection."""
         if self._known is None:

@@ -7,17 +7,19 @@ from contextlib import contextmanager
 
 from fastapi import Request
 
+from safestart.runtime.forks import Forkable
 from safestart_service.access.gate import caller
 from safestart_service.errors import RateLimited
 from safestart_service.http.places import Places
 
 
-class Callers:
+class Callers(Forkable):
     """Places for one kind of call; refusals call it ``what``."""
 
     def __init__(self, what: str, most: int) -> None:
         self._what = what
         self._places = Places(most)
+        self.tell_of_forks()
 
     @property
     def now(self) -> int:
@@ -31,6 +33,10 @@ class Callers:
             return name
         required = f"at most {self._places.most} at once, {self._places.share} of them with one key"
         raise RateLimited(f"too many {self._what}; required {required}", required=required)
+
+    def forked(self) -> None:
+        """Nobody is being served here."""
+        self._places = Places(self._places.most)
 
     def leave(self, name: str | None) -> None:
         """Give a place back."""

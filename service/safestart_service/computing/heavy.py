@@ -12,6 +12,7 @@ from fastapi import Request
 from starlette.requests import ClientDisconnect
 
 from safestart.errors import Unavailable
+from safestart.runtime.forks import Forkable
 from safestart.runtime.settings import Settings
 from safestart_service.access.callers import Callers
 from safestart_service.access.gate import caller
@@ -36,19 +37,20 @@ STARTS = 3
 log = logging.getLogger("safestart.service")
 
 
-class Helpers:
+class Helpers(Forkable):
     """The helper processes of one application; ``source``: where those of its first life come from."""
 
     def __init__(self, settings: Settings, source: Source | None = None) -> None:
         self._settings = settings
         self._source = source
         self.callers = Callers("heavy answers are asked for", MOST_HEAVY)
-        self.line = Line(settings.answer_processes)
         self.open()
+        self.tell_of_forks()
 
     def open(self) -> None:
         """Begin, or begin again after :meth:`close`."""
         self._pool = Pool(self._settings.answer_processes, self._source)
+        self.line = Line(self._settings.answer_processes)
         self._source = None  # closed with the pool
         self._loop: asyncio.AbstractEventLoop | None = None
         self._warming: asyncio.Task[None] | None = None
@@ -149,6 +151,11 @@ class Helpers:
     async def _start(self) -> None:
         with suppress(HelperEnded):
             await self._pool.start()
+
+    def forked(self) -> None:
+        """Have processes of our own: what the parent's answer is for the parent."""
+        self._pool.forget()
+        self.open()
 
     def close(self) -> None:
         """End the processes."""

@@ -17,6 +17,7 @@ from fastapi import Request
 from starlette.requests import ClientDisconnect
 
 from safestart.errors import Cancelled, SafestartError
+from safestart.runtime.forks import Forkable
 from safestart_service.access.callers import Callers
 from safestart_service.computing.in_thread import begun
 
@@ -25,13 +26,14 @@ Left = Callable[[], bool]
 """Whether the client has left."""
 
 
-class Threads:
+class Threads(Forkable):
     """``threads`` threads for one class of work, which is called ``what`` in refusals; ``most`` callers at once."""
 
     def __init__(self, what: str, threads: int, most: int) -> None:
         self.callers = Callers(what, most)
         self._threads, self._name = threads, what.split()[0]
         self.open()
+        self.tell_of_forks()
 
     def open(self) -> None:
         """Begin, or begin again after :meth:`close`."""
@@ -58,6 +60,10 @@ class Threads:
                 raise ClientDisconnect from None
             finally:
                 watch.cancel()
+
+    def forked(self) -> None:
+        """Have threads of this process."""
+        self.open()
 
     def close(self) -> None:
         """Begin nothing more."""

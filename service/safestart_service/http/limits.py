@@ -17,6 +17,7 @@ from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from safestart.errors import SafestartError
+from safestart.runtime.forks import Forkable
 from safestart.runtime.logs import about
 from safestart_service.access import head
 from safestart_service.access.gate import Access
@@ -43,7 +44,7 @@ _SAFE_ID = re.compile(rb"[A-Za-z0-9._-]{1,64}")
 log = logging.getLogger("safestart.service")
 
 
-class Limits:
+class Limits(Forkable):
     """ASGI middleware around the whole application."""
 
     def __init__(
@@ -63,8 +64,15 @@ class Limits:
         self.timeout_s = timeout_s
         self.bodies = Budget(max(max_bodies_bytes, max_body_bytes))
         self.refused = refused  # told the status of what no route answers
-        self._prefix = secrets.token_hex(4).encode() + b"-"
+        self._prefix = b""
         self._numbers = itertools.count(1)
+        self.forked()
+        self.tell_of_forks()
+
+    def forked(self) -> None:
+        """Number requests unlike the parent, and count none of its bodies."""
+        self._prefix = secrets.token_hex(4).encode() + b"-"
+        self.bodies = Budget(self.bodies.most)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Serve one request."""

@@ -131,3 +131,52 @@ def test_services_that_were_forked_from_one_answer_their_own_clients(tmp_path: P
             for pid in children:
                 os.kill(pid, 15)
     until(lambda: all(map(ended, children)), "the end of both")
+
+
+USED_THEN_FORKED = """
+import asyncio, os, sys
+import httpx
+from safestart.runtime.settings import Settings
+from safestart_service.app import create_app
+from safestart_service.computing import heavy
+heavy.START_S = 300
+QUESTION = "/go-no-go?omega_t_deg_s=2&a_max_m_s2=0.05&method=exact&"
+GO, NO_GO = "x_m=5&y_m=40", "x_m=9.364&y_m=81.044"
+app = create_app(Settings(database_url=sys.argv[1], answer_timeout_s=60))
+app.state.services.database.migrate()
+app.state.services.keyring.load()
+async def verdicts(start):
+    here = httpx.ASGITransport(app=app, client=("127.0.0.1", 1))
+    async with httpx.AsyncClient(transport=here, base_url="http://127.0.0.1", timeout=300) as client:
+        found = []
+        for _ in range(4):
+            answers = await asyncio.gather(*(client.get(QUESTION + start) for _ in range(3)))
+            found += [one.json().get("verdict", one.status_code) for one in answers]
+        jobs = await client.get("/jobs")
+        return [*sorted(set(found)), jobs.status_code]
+def tell(who, start):
+    print(who, *asyncio.run(verdicts(start)), flush=True)
+tell("parent", GO)
+children = []
+for start in (GO, NO_GO):
+    child = os.fork()
+    if child == 0:
+        tell("child", start)
+        app.state.services.close()
+        os._exit(0)
+    children.append(child)
+tell("parent", NO_GO)
+assert [os.waitpid(child, 0)[1] for child in children] == [0, 0]
+tell("parent", GO)
+app.state.services.close()
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system cannot fork")
+def test_an_application_that_has_answered_is_forked(tmp_path: Path) -> None:
+    """The children asked the parent's helper process: one child got the verdict of the other's question."""
+    command = [sys.executable, "-c", USED_THEN_FORKED, url_of(tmp_path)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE_S)
+    told = sorted(done.stdout.splitlines())
+    expected = ["child GO 200", "child NO_GO 200", "parent GO 200", "parent GO 200", "parent NO_GO 200"]
+    assert told == expected, done.stderr[-3000:]

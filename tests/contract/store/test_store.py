@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import gc
+import os
 import subprocess
 import sys
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -137,3 +140,34 @@ def test_what_somebody_else_has_locked_is_not_waited_for_without_end(
             submit(JobRepository(hasty))
     submit(JobRepository(hasty))
     hasty.close()
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system cannot fork")
+def test_a_forked_process_has_connections_of_its_own(jobs: JobRepository, database: Database) -> None:
+    """Otherwise both speak on one, and what SQLite knows of its own locks is not true in the child."""
+    first = submit(jobs)
+    with database.session(write=True) as under_way:
+        under_way.connection()
+        child = os.fork()
+        if child == 0:
+            found = 1
+            with suppress(BaseException):
+                found = 0 if jobs.get(first.id) == first else 2
+                gc.collect()
+            os._exit(found)
+        assert os.waitpid(child, 0)[1] == 0
+        under_way.connection().exec_driver_sql("SELECT 1")
+    assert submit(jobs).id != first.id
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere no folder shows the open files")
+def test_a_forked_process_inherits_no_idle_connection(jobs: JobRepository, database: Database) -> None:
+    submit(jobs)
+    child = os.fork()
+    if child == 0:
+        found = 1
+        with suppress(BaseException):
+            held = [os.readlink(one) for one in Path("/proc/self/fd").iterdir() if one.is_symlink()]
+            found = int(database.file is not None and any(str(database.file) in one for one in held))
+        os._exit(found)
+    assert os.waitpid(child, 0)[1] == 0

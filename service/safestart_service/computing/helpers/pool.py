@@ -99,6 +99,12 @@ class Pool:
         future.add_done_callback(lambda done: None if done.cancelled() else done.exception())
         return future
 
+    def forget(self) -> None:
+        """Let go of the processes, which are those of the process that forked this one."""
+        self._source.forget()
+        for helper in (*self._idle, *self._busy):
+            helper.forget()
+
     def close(self) -> None:
         """End all processes, and with them the threads that wait for one."""
         self._source.close()

@@ -69,6 +69,11 @@ class Helper:
                 self._connection.send(serving.STOP)
             self._sending.release()
 
+    def forget(self) -> None:
+        """Let go of it in a process that is not its service: its service still has the connection."""
+        with suppress(OSError):
+            self._connection.close()
+
     def kill(self) -> None:
         """End the process, whatever it does; one that has just answered ends when its connection is dropped."""
         if not self.ended():

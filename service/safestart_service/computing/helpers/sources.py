@@ -34,6 +34,9 @@ class Source(Protocol):
     def close(self) -> None:
         """Make no more."""
 
+    def forget(self) -> None:
+        """Let go of what makes them, in a child of the process whose it is."""
+
 
 class Process(Protocol):
     """What we need of a ``subprocess.Popen``."""
@@ -134,6 +137,11 @@ class Forked:
             self._end()
         self._starter.shutdown(wait=False)
 
+    def forget(self) -> None:
+        """Let go of the process that forks; no lock is taken, which a thread of the parent may have held."""
+        if self._control is not None:
+            self._control.close()
+
     def _end(self) -> None:
         if self._control is not None:
             self._control.close()
@@ -173,6 +181,9 @@ class Spawned:
 
     def close(self) -> None:
         """Nothing is left to end."""
+
+    def forget(self) -> None:
+        """Nothing is held."""
 
 
 def _loaded(connection: Connection) -> None:
