@@ -126,6 +126,7 @@ def create_app(
         access=found.access,
         timeout_s=found.settings.request_timeout_s,
         max_bodies_bytes=found.settings.max_bodies_bytes,
+        answers=found.answers,
         refused=found.metrics.refused,
         proxies=Proxies(found.settings, found.access.hosts, {route.path.split("/")[1] for route in routes}),
     )

@@ -9,6 +9,7 @@ from fastapi import FastAPI, Request
 from safestart.runtime.settings import Settings
 from safestart_service.access.gate import Access
 from safestart_service.access.keyring import Keyring
+from safestart_service.computing.budget import Budget
 from safestart_service.computing.heavy import Helpers
 from safestart_service.computing.helpers.sources import Source
 from safestart_service.computing.light import Threads
@@ -52,6 +53,7 @@ class Services:
         self.submitting = Threads("submissions are under way", STORE_THREADS, MOST_SUBMITTED)
         self.packing = Threads("bundles are being packed", 1, MOST_PACKED)  # one at a time: it is in memory
         self.helpers = Helpers(settings, source)
+        self.answers = Budget(settings.max_answers_bytes)
         self._pools = (self.light, self.submitting, self.packing, self.helpers)
         self._closed = False
         self.following = Following(settings.max_followers, self.access)

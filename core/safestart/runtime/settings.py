@@ -134,6 +134,12 @@ class Settings(BaseSettings):
     max_bodies_bytes: int = Field(
         96_000_000, ge=1000, description="Most bytes of all request bodies in flight together."
     )
+    max_answers_bytes: int = Field(
+        192_000_000,
+        ge=1000,
+        description="Most bytes of all long answers together that their clients have not read yet; one API key may "
+        "hold half of them.",
+    )
     max_connections: int = Field(
         800,
         ge=2,

@@ -25,7 +25,7 @@ NAMES = (
     *("poll_s", "job_timeout_s", "max_attempts", "silence_s", "keep_days", "log_format", "max_body_bytes"),
     *("max_states", "max_queued", "allowed_hosts", "root_path", "trusted_proxies", "rate_per_s"),
     *("submit_rate_per_s", "request_timeout_s", "answer_timeout_s", "answer_processes", "max_bodies_bytes"),
-    *("max_connections", "max_followers"),
+    *("max_answers_bytes", "max_connections", "max_followers"),
 )
 """The fields of :class:`safestart.runtime.settings.Settings` (a test compares)."""
 _OTHERS = ("SAFESTART_TEST_POSTGRESQL", "SAFESTART_CHROMIUM", "SAFESTART_SCREENSHOTS")

@@ -156,6 +156,12 @@ def caller(request: Request) -> Caller:
     return Caller(key.id, key.name, key.role, address, request_id)
 
 
+def caller_id(scope: Scope) -> str | None:
+    """The id of the caller's key; None without one."""
+    key: ApiKey | None = scope.get("safestart.key")
+    return None if key is None else key.id
+
+
 def require_own(by: Caller, submitter: str | None) -> None:
     """Raise ``Forbidden`` unless ``by`` submitted the job, is an administrator, or no keys are in use."""
     if by.key_id is None or by.role is Role.ADMIN or by.key_id == submitter:

@@ -14,15 +14,15 @@ from starlette.types import Receive, Scope, Send
 from safestart.processes.door import OneStart
 from safestart.runtime.progress import Context
 from safestart_service.access.gate import caller
+from safestart_service.computing.budget import Share
 from safestart_service.computing.light import Left
 from safestart_service.computing.limits import LARGE_S, SMALL_BYTES
 from safestart_service.computing.long_answers import place
+from safestart_service.computing.unsent import PIECE, full
 from safestart_service.computing.work import Asked, Made, at_once, in_full, one_start
 from safestart_service.http.answers import base_url
 from safestart_service.http.body import read_body
 from safestart_service.state import services
-
-_PIECE = 262_144
 
 
 async def posted(request: Request, process_id: str, **how: Any) -> Response:
@@ -53,28 +53,38 @@ async def _heavy(request: Request, cost_s: float, asked: Asked) -> Response:
             return _response(made)
         # Open, it outlives its name: it is gone when it has been sent, or when nobody wants it any more.
         file = found.taken()
-        headers = made.headers | {"Content-Length": str(os.fstat(file.fileno()).st_size)}
-        return _Sent(file, made.status, headers)
+        return _Sent(request, file, made)
     finally:
         if found is not None:
             found.close()
 
 
 class _Sent(StreamingResponse):
-    """A JSON document from an open file, which is closed at its end."""
+    """A JSON document from an open file, which is closed at its end; raises ``Busy`` where it has no room.
 
-    def __init__(self, file: BinaryIO, status: int, headers: dict[str, str]) -> None:
-        super().__init__(_pieces(file), status, headers, media_type="application/json")
-        self._file = file
+    Its folder may be in memory, and is not without end elsewhere.
+    """
+
+    def __init__(self, request: Request, file: BinaryIO, made: Made) -> None:
+        size, budget = os.fstat(file.fileno()).st_size, services(request).answers
+        self._file, self._share = file, Share(budget, caller(request).key_id)
+        if not self._share.grow(size):
+            file.close()
+            raise full(budget)
+        headers = made.headers | {"Content-Length": str(size)}
+        super().__init__(_pieces(file), made.status, headers, media_type="application/json")
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Send it."""
-        with self._file:
-            await super().__call__(scope, receive, send)
+        try:
+            with self._file:
+                await super().__call__(scope, receive, send)
+        finally:
+            self._share.end()
 
 
 async def _pieces(file: BinaryIO) -> AsyncIterator[bytes]:
-    while piece := await asyncio.to_thread(file.read, _PIECE):
+    while piece := await asyncio.to_thread(file.read, PIECE):
         yield piece
 
 

@@ -10,9 +10,10 @@ import orjson
 from fastapi import Request
 from fastapi.responses import Response
 from starlette._utils import get_route_path
-from starlette.types import Send
+from starlette.types import Receive, Scope, Send
 
 from safestart_service.access.proxies import HOST
+from safestart_service.computing.unsent import PIECE
 
 _HOST = re.compile(r"[A-Za-z0-9._-]+(:\d{1,5})?|\[[0-9A-Fa-f:.]+\](:\d{1,5})?")
 
@@ -25,6 +26,19 @@ class Json(Response):
     def render(self, content: Any) -> bytes:
         """Encode a document."""
         return orjson.dumps(content)
+
+
+class Shared(Response):
+    """An answer whose body is in memory once, for everybody: a connection holds a piece of it."""
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Send it, each piece when the client has taken the one before."""
+        del scope, receive
+        await send({"type": "http.response.start", "status": self.status_code, "headers": self.raw_headers})
+        body = bytes(self.body)
+        for first in range(0, len(body), PIECE):
+            await send({"type": "http.response.body", "body": body[first : first + PIECE], "more_body": True})
+        await send({"type": "http.response.body", "body": b""})
 
 
 async def send_json(send: Send, document: Any) -> None:

@@ -20,9 +20,10 @@ from safestart.errors import SafestartError
 from safestart.runtime.forks import Forkable
 from safestart.runtime.logs import about
 from safestart_service.access import head
-from safestart_service.access.gate import Access
+from safestart_service.access.gate import Access, caller_id
 from safestart_service.access.proxies import FIELDS, Proxies
 from safestart_service.computing.budget import Budget, Share
+from safestart_service.computing.unsent import Unsent, full, is_long
 from safestart_service.documents import problems
 from safestart_service.errors import BodyTooLarge, Busy, QueryTooLong, RequestTimeout
 from safestart_service.shortage import shortage
@@ -56,6 +57,7 @@ class Limits(Forkable):
         refused: Callable[[int], None] = lambda _: None,
         max_bodies_bytes: int = 96_000_000,
         proxies: Proxies | None = None,
+        answers: Budget | None = None,
     ) -> None:
         self.app = app
         self.proxies = proxies
@@ -63,6 +65,7 @@ class Limits(Forkable):
         self.access = access
         self.timeout_s = timeout_s
         self.bodies = Budget(max(max_bodies_bytes, max_body_bytes))
+        self.answers = answers
         self.refused = refused  # told the status of what no route answers
         self._prefix = b""
         self._numbers = itertools.count(1)
@@ -70,9 +73,8 @@ class Limits(Forkable):
         self.tell_of_forks()
 
     def forked(self) -> None:
-        """Number requests unlike the parent, and count none of its bodies."""
+        """Number requests unlike the parent."""
         self._prefix = secrets.token_hex(4).encode() + b"-"
-        self.bodies = Budget(self.bodies.most)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Serve one request."""
@@ -88,20 +90,29 @@ class Limits(Forkable):
         scope["safestart.request_id"] = request_id.decode("ascii")
         extra = (*SECURITY_HEADERS, (b"x-request-id", request_id))
         started = False
+        unsent: Unsent | None = None
+        held: Share | None = None
 
         async def send_with_headers(message: Message) -> None:
-            nonlocal started
+            nonlocal started, unsent, held
             if message["type"] == "http.response.start":
                 started = True
                 own = any(name == b"content-security-policy" for name, _ in message["headers"])
                 message["headers"].extend(extra[1:] if own else extra)
-            await send(message)
+                if self.answers is not None and is_long(message["headers"]):
+                    held = Share(self.answers, caller_id(scope))
+                    unsent = Unsent(held, send, refuse_answer)
+            await (unsent or send)(message)
+
+        async def refuse_answer() -> None:
+            nonlocal unsent
+            unsent = None
+            assert self.answers is not None
+            await self._refuse(scope, request_id, full(self.answers), send_with_headers)
 
         refusal = unread or self._misplaced(scope, headers) or self._refusal(scope, headers)
         if refusal is not None:
-            self.refused(refusal.status)
-            problem = problems.of_error(refusal, scope["path"], request_id.decode())
-            await _answer(send_with_headers, problem, problems.headers_of(refusal))
+            await self._refuse(scope, request_id, refusal, send_with_headers)
             return
         share = None
         if b"transfer-encoding" in headers or b"content-length" in headers:
@@ -122,12 +133,16 @@ class Limits(Forkable):
                 await _answer(send_with_headers, problems.unexpected(scope["path"], request_id.decode()))
             else:  # where it happened says nothing
                 log.warning("%s %s: %s", scope["method"], scope["path"], no_room.detail, extra=about_it)
-                self.refused(no_room.status)
-                problem = problems.of_error(no_room, scope["path"], request_id.decode())
-                await _answer(send_with_headers, problem, problems.headers_of(no_room))
+                await self._refuse(scope, request_id, no_room, send_with_headers)
         finally:
-            if share is not None:
-                share.end()
+            for one in (share, held):
+                if one is not None:
+                    one.end()
+
+    async def _refuse(self, scope: Scope, request_id: bytes, error: SafestartError, send: Send) -> None:
+        self.refused(error.status)
+        problem = problems.of_error(error, scope["path"], request_id.decode())
+        await _answer(send, problem, problems.headers_of(error))
 
     def _misplaced(self, scope: Scope, headers: dict[bytes, bytes]) -> SafestartError | None:
         if self.proxies is None or not (self.proxies.root or not FIELDS.isdisjoint(headers)):

@@ -17,7 +17,7 @@ from fastapi import Request
 from fastapi.responses import HTMLResponse, Response
 from starlette.exceptions import HTTPException
 
-from safestart_service.http.answers import all_lines, entity_tag, not_modified
+from safestart_service.http.answers import Shared, all_lines, entity_tag, not_modified
 from safestart_service.pages.openapi_operations import api_operations
 
 if TYPE_CHECKING:
@@ -122,4 +122,4 @@ def static(request: Request, name: str) -> Response:
     data, media_type, tag = _static_file(name)
     # Browsers ask each time and get a 304, so that no page runs an old script after an upgrade.
     headers = {"Cache-Control": "no-cache", "ETag": tag}
-    return not_modified(request, tag) or Response(data, media_type=media_type, headers=headers)
+    return not_modified(request, tag) or Shared(data, media_type=media_type, headers=headers)

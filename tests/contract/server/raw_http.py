@@ -21,7 +21,9 @@ Address = tuple[str, int]
 
 
 @contextmanager
-def small_server(folder: Path, streams: int = STREAMS) -> Iterator[Address]:
+def small_server(
+    folder: Path, streams: int = STREAMS, unread_s: float = 1.0, **more: Any
+) -> Iterator[Address]:
     """A server with few places and little patience for heads and readers, but much for bodies.
 
     Its helper process starts with the first heavy answer, which most of its tests never ask for.
@@ -32,12 +34,13 @@ def small_server(folder: Path, streams: int = STREAMS) -> Iterator[Address]:
         "max_connections": PLACES,
         "max_followers": streams,
         "request_timeout_s": 3600.0,
+        **more,
     }
     code = (
         "import safestart_service.http.wire as wire, safestart_service.http.unread as unread;"
         "import safestart_service.app as app; make = app.create_app;"
         "app.create_app = lambda *given, warm, source: make(*given, source=source);"
-        "wire.HEAD_S = 5.0; unread.UNREAD_S = 1.0;"
+        f"wire.HEAD_S = 5.0; unread.UNREAD_S = {unread_s!r};"
         f"import safestart_service.commands as c; c._serve({chosen!r})"
     )
     process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)

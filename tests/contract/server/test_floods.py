@@ -19,7 +19,7 @@ from safestart_service.http.open_files import make_room
 from safestart_service.http.places import Places
 from safestart_service.http.wire import MOST_AHEAD, holder
 from tests.contract.api.service_client import HEAVY, POINT, assert_problem, service
-from tests.contract.server.raw_http import HOST, PLACES, STREAMS, problem_in, said
+from tests.contract.server.raw_http import HOST, PLACES, STREAMS, problem_in, said, small_server
 from tests.waiting import PATIENCE_S, until
 
 ASKED = b"GET /nothing HTTP/1.1\r\n" + HOST + b"\r\n"
@@ -249,3 +249,28 @@ def test_too_few_files_for_anything_say_what_the_system_has_to_allow(monkeypatch
         InvalidInput, match=r"a system that lets this process open 234 files, not 64 \(ulimit -n\)"
     ):
         make_room(10)
+
+
+def test_long_answers_that_nobody_reads_are_not_collected_without_end(tmp_path):
+    """80 bytes ask for a certificate of 25 MB, and 800 connections that read nothing held 20 GB."""
+    body = json.dumps({**POINT, "grid": {"nx": 1000, "ny": 1000, "y_max_m": 150}}).encode()
+    head = b"POST /certificates HTTP/1.1\r\n" + HOST + b"Content-Type: application/json\r\n"
+    asked = head + b"Content-Length: %d\r\n\r\n" % len(body) + body
+
+    def status(connection: socket.socket) -> bytes:
+        connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 2048)
+        connection.sendall(asked)
+        return connection.recv(12)
+
+    with ExitStack() as held, small_server(tmp_path, unread_s=600.0, max_answers_bytes=60_000_000) as address:
+
+        def another() -> bytes:
+            return status(held.enter_context(socket.create_connection(address, timeout=PATIENCE_S)))
+
+        assert another() == b"HTTP/1.1 200"
+        told = [another() for _ in range(3)]
+        assert b"HTTP/1.1 503" in told
+        assert well(address)
+        held.close()
+        with socket.create_connection(address, timeout=PATIENCE_S) as connection:
+            assert until(lambda: status(connection) == b"HTTP/1.1 200", "room again")

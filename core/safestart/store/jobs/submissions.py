@@ -46,9 +46,9 @@ class Submissions(Labelling):
 
         The audit log records the caller ``by``. A new job gets ``job_id``, or a fresh id. The same
         ``idempotency_key`` of the same submitter with the same process and inputs returns the first job; with
-        another process or inputs it raises ``IdempotencyMismatch``. A repeated ``job_id`` returns that job, and nothing
-        else happens; with another process or inputs it raises ``Conflict``. Raises ``QueueFull`` when ``max_queued`` jobs
-        wait already, and ``InvalidInput`` when the inputs are not JSON.
+        another process or inputs it raises ``IdempotencyMismatch``. A repeated ``job_id`` returns that job, and
+        nothing else happens; with another process or inputs it raises ``Conflict``. Raises ``QueueFull`` when
+        ``max_queued`` jobs wait already, and ``InvalidInput`` when the inputs are not JSON.
         """
         request = request_hash(process_id, inputs)
         if idempotency_key is not None and not 1 <= len(idempotency_key) <= 255:
