@@ -5,7 +5,8 @@ from __future__ import annotations
 import asyncio
 import os
 from collections.abc import AsyncIterator
-from typing import Any, BinaryIO
+from io import FileIO
+from typing import Any
 
 from fastapi import Request
 from fastapi.responses import Response, StreamingResponse
@@ -48,7 +49,7 @@ async def _heavy(request: Request, cost_s: float, asked: Asked) -> Response:
     helpers = services(request).helpers
     found = place()
     try:
-        made: Made = await helpers(request, cost_s, in_full, asked, found and found.path)
+        made: Made = await helpers(request, cost_s, in_full, asked, found and found.where)
         if found is None or not made.in_file:
             return _response(made)
         # Open, it outlives its name: it is gone when it has been sent, or when nobody wants it any more.
@@ -65,7 +66,7 @@ class _Sent(StreamingResponse):
     Its folder may be in memory, and is not without end elsewhere.
     """
 
-    def __init__(self, request: Request, file: BinaryIO, made: Made) -> None:
+    def __init__(self, request: Request, file: FileIO, made: Made) -> None:
         size, budget = os.fstat(file.fileno()).st_size, services(request).answers
         self._file, self._share = file, Share(budget, caller(request).key_id)
         if not self._share.grow(size):
@@ -83,7 +84,7 @@ class _Sent(StreamingResponse):
             self._share.end()
 
 
-async def _pieces(file: BinaryIO) -> AsyncIterator[bytes]:
+async def _pieces(file: FileIO) -> AsyncIterator[bytes]:
     while piece := await asyncio.to_thread(file.read, PIECE):
         yield piece
 

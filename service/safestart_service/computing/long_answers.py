@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import logging
 import os
+import secrets
 import tempfile
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
+from dataclasses import dataclass
 from functools import cache
 from io import FileIO
 from itertools import chain
 from pathlib import Path
-from typing import BinaryIO
+from typing import cast
 
 LONG_BYTES = 1_000_000
 """A body longer than this goes through a file."""
@@ -19,19 +21,38 @@ LONG_BYTES = 1_000_000
 log = logging.getLogger("safestart.service")
 
 
-class Place:
-    """An open file of one request, which the helper process finds by its name.
+@dataclass(frozen=True, slots=True)
+class Where:
+    """Where a helper process finds a file, which begins with ``mark``.
 
-    The name is new, also beside services that were forked from this one, and goes before the answer is sent: what is
-    killed then leaves nothing behind.
+    The number of an open file is given to another one when it is closed: a helper that comes late finds the file of
+    another answer there, and lets it alone.
+    """
+
+    path: Path
+    mark: bytes
+
+
+class Place:
+    """An open file of one request, for its helper process.
+
+    On Linux it has no name, so that nothing is left of it when the service is killed, and a helper finds it among the
+    open files of the service. Elsewhere its name is new, and goes before the answer is sent.
     """
 
     def __init__(self) -> None:
-        number, name = tempfile.mkstemp(prefix="safestart-")
-        self.path = Path(name)
-        self._file: BinaryIO | None = os.fdopen(number, "rb")
+        opened, self._named = _opened()
+        self._file: FileIO | None = opened
+        here = Path(f"/proc/{os.getpid()}/fd/{opened.fileno()}")
+        self.where = Where(self._named or here, secrets.token_bytes(16))
+        try:
+            opened.write(self.where.mark)
+        except OSError:
+            self.close()
+            raise
+        opened.seek(0)
 
-    def taken(self) -> BinaryIO:
+    def taken(self) -> FileIO:
         """The open file, which is the caller's from here on."""
         found, self._file = self._file, None
         assert found is not None
@@ -41,8 +62,21 @@ class Place:
         """Remove the name, and the file where nobody has taken it."""
         if self._file is not None:
             self._file.close()
-        with suppress(OSError):  # somebody else has removed it, or its folder
-            self.path.unlink()
+        self._remove()
+
+    def _remove(self) -> None:
+        if self._named is not None:
+            with suppress(OSError):  # somebody else has removed it, or its folder
+                self._named.unlink()
+            self._named = None
+
+
+def _opened() -> tuple[FileIO, Path | None]:
+    """A new file, and its name where it has one."""
+    if Path("/proc/self/fd").is_dir():
+        return cast(FileIO, tempfile.TemporaryFile(buffering=0)), None
+    number, name = tempfile.mkstemp(prefix="safestart-")
+    return os.fdopen(number, "r+b", buffering=0), Path(name)
 
 
 def place() -> Place | None:
@@ -59,11 +93,11 @@ def _say(why: str) -> None:
     log.warning("no place for temporary files (%s): long answers take more memory", why)
 
 
-def put(path: Path | None, parts: Iterable[bytes]) -> tuple[bytes, bool]:
-    """All parts as one, or nothing, and whether they are in the file of this name instead, which must be there.
+def put(where: Where | None, parts: Iterable[bytes]) -> tuple[bytes, bool]:
+    """All parts as one, or nothing, and whether they are in this file instead, which must be there.
 
-    Up to :data:`LONG_BYTES` need no file; more go without where there is none, or it is full. Nobody waits for an
-    answer whose file is gone.
+    Up to :data:`LONG_BYTES` need no file; more go without where there is none, it may not be opened, or is full.
+    Nobody waits for an answer whose file is gone.
     """
     parts, held, length = iter(parts), [], 0
     for part in parts:
@@ -71,9 +105,11 @@ def put(path: Path | None, parts: Iterable[bytes]) -> tuple[bytes, bool]:
         length += len(part)
         if length > LONG_BYTES:
             break
-    if length > LONG_BYTES and path is not None:
-        with suppress(OSError), path.open("r+b", buffering=0) as file:
-            return _written(file, chain(held, parts))
+    if length > LONG_BYTES and where is not None:
+        with suppress(OSError), where.path.open("r+b", buffering=0) as file:
+            if file.read(len(where.mark) + 1) == where.mark:
+                file.seek(0)
+                return _written(file, chain(held, parts))
     return b"".join(chain(held, parts)), False
 
 

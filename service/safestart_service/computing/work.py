@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 from uuid import uuid4
 
@@ -16,7 +15,7 @@ from safestart.processes.registry import process
 from safestart.runtime.access import Caller, Role
 from safestart.runtime.progress import Context
 from safestart_service.computing.limits import too_long
-from safestart_service.computing.long_answers import put
+from safestart_service.computing.long_answers import Where, put
 from safestart_service.computing.pieces import pieces
 from safestart_service.computing.store import Store
 from safestart_service.documents.execution import (
@@ -91,7 +90,7 @@ def at_once(store: Store, context: Context, asked: Asked) -> Made | float:
     return cost if document is None else _made(document, request, asked)
 
 
-def in_full(store: Store, context: Context, asked: Asked, place: Path | None = None) -> Made:
+def in_full(store: Store, context: Context, asked: Asked, place: Where | None = None) -> Made:
     """The answer, whatever it costs; raises ``AnswerTimeout`` for one that would take too long.
 
     A long body goes into the file ``place``, or, where that is full or gone, the long way.
@@ -119,12 +118,14 @@ def _parsed(store: Store, asked: Asked) -> ExecuteRequest:
 
 
 def _answer(
-    spec: ProcessSpec, request: ExecuteRequest, context: Context, asked: Asked, place: Path | None = None
+    spec: ProcessSpec, request: ExecuteRequest, context: Context, asked: Asked, place: Where | None = None
 ) -> Made:
     return _made(run_now(spec, request.inputs, context), request, asked, place)
 
 
-def _made(document: dict[str, Any], request: ExecuteRequest, asked: Asked, place: Path | None = None) -> Made:
+def _made(
+    document: dict[str, Any], request: ExecuteRequest, asked: Asked, place: Where | None = None
+) -> Made:
     headers = asked.announced(request.inputs)
     chosen = document if asked.bare else selected(document, request)
     if place is None:

@@ -5,13 +5,15 @@ from __future__ import annotations
 import os
 import resource
 import signal
+import sys
+import tempfile
 from pathlib import Path
 from typing import Any
 
 import orjson
 import pytest
 
-from safestart_service.computing.long_answers import LONG_BYTES, put
+from safestart_service.computing.long_answers import LONG_BYTES, Place, Where, put
 from safestart_service.computing.pieces import BLOCK, pieces
 
 DOCUMENTS: list[Any] = [
@@ -42,29 +44,83 @@ def test_a_large_list_is_never_one_piece() -> None:
 SHORT, LONG = [b"ab", b"c"], [b"x" * 400_000, b"y" * 700_000, b"z" * 3_000_000]
 
 
-def test_short_ones_need_no_file(tmp_path: Path) -> None:
-    place = tmp_path / "place"
-    place.touch()
-    assert put(place, SHORT) == (b"abc", False)
-    assert place.read_bytes() == b""
+MARK = b"0123456789abcdef"
+
+
+@pytest.fixture
+def marked(tmp_path: Path) -> Where:
+    path = tmp_path / "place"
+    path.write_bytes(MARK)
+    return Where(path, MARK)
+
+
+def test_short_ones_need_no_file(marked: Where) -> None:
+    assert put(marked, SHORT) == (b"abc", False)
+    assert marked.path.read_bytes() == MARK
     assert sum(map(len, LONG)) > LONG_BYTES
-    assert put(place, LONG) == (b"", True)
-    assert place.read_bytes() == b"".join(LONG)
+    assert put(marked, LONG) == (b"", True)
+    assert marked.path.read_bytes() == b"".join(LONG)
 
 
 @pytest.mark.parametrize("where", [None, "gone"])
 def test_without_a_file_they_come_whole(where: str | None, tmp_path: Path) -> None:
-    assert put(where and tmp_path / where, iter(LONG)) == (b"".join(LONG), False)
+    place = where and Where(tmp_path / where, MARK)
+    assert put(place, iter(LONG)) == (b"".join(LONG), False)
     assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("most", [0, 1000, 400_000, 1_000_000, 1_100_000, 4_000_000])
-def test_a_file_that_becomes_full_loses_nothing(most: int, tmp_path: Path) -> None:
-    place = tmp_path / "place"
-    place.touch()
+def test_a_file_that_becomes_full_loses_nothing(most: int, marked: Where) -> None:
     child = os.fork()
     if child == 0:
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
-        os._exit(0 if put(place, iter(LONG)) == (b"".join(LONG), False) else 1)
+        os._exit(0 if put(marked, iter(LONG)) == (b"".join(LONG), False) else 1)
     assert os.waitpid(child, 0)[1] == 0
+
+
+def in_another_process(where: Where) -> tuple[bool, bool]:
+    """Whether the answer came whole, and whether it is in the file."""
+    child = os.fork()
+    if child == 0:
+        os.closerange(3, 1000)  # a helper has none of the service's files
+        body, in_file = put(where, iter(LONG))
+        os._exit(2 * (body == b"".join(LONG)) + in_file)
+    found = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+    return bool(found & 2), bool(found & 1)
+
+
+@pytest.mark.parametrize("nameless", [True, False])
+def test_nothing_is_left_where_a_service_is_killed(
+    nameless: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On Linux a file has no name at any time: a service that was killed left one behind for every answer."""
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    if nameless and sys.platform != "linux":
+        pytest.skip("the open files of a process are nowhere to be found")
+    if not nameless:
+        monkeypatch.setattr(Path, "is_dir", lambda _: False)
+    found = Place()
+    assert len(list(tmp_path.iterdir())) == (not nameless)
+    assert in_another_process(found.where) == (False, True)
+    taken = found.taken()
+    found.close()
+    assert not list(tmp_path.iterdir())
+    with taken:
+        assert taken.read() == b"".join(LONG)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere a file has a name of its own")
+def test_who_comes_late_lets_the_file_of_another_answer_alone(tmp_path: Path) -> None:
+    late = Place()
+    late.close()
+    other = Place()
+    assert other.where.path == late.where.path, "the number is given again"
+    assert in_another_process(late.where) == (True, False)
+    assert in_another_process(other.where) == (False, True)
+    other.close()
+    (tmp_path / "any").write_bytes(b"what somebody else has opened")
+    with (tmp_path / "any").open("r+b") as file:
+        assert str(file.fileno()) == late.where.path.name
+        assert in_another_process(late.where) == (True, False)
+    assert (tmp_path / "any").read_bytes() == b"what somebody else has opened"
