@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Callable
-from contextlib import suppress
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from typing import Any, TypeVar
 
 from fastapi import Request
@@ -53,6 +54,7 @@ class Helpers(Forkable):
         self.line = Line(self._settings.answer_processes)
         self._source = None  # closed with the pool
         self._loop: asyncio.AbstractEventLoop | None = None
+        self._under_way, self._moving = 0, threading.Lock()
         self._warming: asyncio.Task[None] | None = None
         self._leaving = asyncio.Event()
 
@@ -68,8 +70,7 @@ class Helpers(Forkable):
         limit_s = self._settings.answer_timeout_s
         if cost_s > limit_s:
             raise too_long(limit_s, cost_s)
-        self._move_here()
-        with self.callers.place(request):
+        with self.callers.place(request), self._here():
             # Either ends the wait for an answer.
             left = asyncio.ensure_future(leaves(request))
             leaving = asyncio.ensure_future(self._leaving.wait())
@@ -103,7 +104,7 @@ class Helpers(Forkable):
         self, name: str | None, cost_s: float, function: Callable[..., Answer], arguments: tuple[Any, ...]
     ) -> Answer:
         async with self.line.slot(name, cost_s):
-            await asyncio.shield(self.warm())
+            await asyncio.shield(self._warm_here())
             try:
                 return await self._pool(inside.call, function, self._settings, *arguments)
             except HelperEnded:
@@ -119,7 +120,7 @@ class Helpers(Forkable):
         clock = asyncio.get_running_loop().time
         until = clock() + START_S
         for _ in range(STARTS):
-            warm = self.warm()
+            warm = self._warm_here()
             await asyncio.wait({warm, *ends}, timeout=until - clock(), return_when=asyncio.FIRST_COMPLETED)
             _require_there(*ends)
             if not warm.done():
@@ -133,16 +134,38 @@ class Helpers(Forkable):
 
         Where the process that forks them has ended too, the next one loads, in nobody's time for an answer.
         """
-        self._move_here()
+        with self._here():
+            return self._warm_here()
+
+    def _warm_here(self) -> asyncio.Task[None]:
         if self._warming is None or (self._warming.done() and not self._pool.ready()):
             self._warming = asyncio.ensure_future(self._start())
         return self._warming
 
-    def _move_here(self) -> None:
-        """Leave the tasks of another event loop alone: a test client without a lifespan has one for each request."""
+    @contextmanager
+    def _here(self) -> Iterator[None]:
+        """Work in this event loop; raises ``Unavailable`` while another one, in another thread, waits for answers.
+
+        A test client without a lifespan has a loop for each request. The tasks of one that has ended are left alone.
+        """
         loop = asyncio.get_running_loop()
-        if self._loop is not loop:
-            self._loop, self._warming, self._leaving = loop, None, asyncio.Event()
+        with self._moving:
+            if self._loop is not loop:
+                if self._under_way and self._loop is not None and self._loop.is_running():
+                    raise Unavailable(
+                        "this application computes answers for another event loop of this program; required one "
+                        "event loop at a time, or an application for each",
+                        required="one event loop at a time, or an application for each",
+                    )
+                self._loop, self._warming, self._leaving = loop, None, asyncio.Event()
+                self._under_way, self.line = 0, Line(self._settings.answer_processes)
+            self._under_way += 1
+        try:
+            yield
+        finally:
+            with self._moving:
+                if self._loop is loop:
+                    self._under_way -= 1
 
     def leave(self) -> None:
         """The service stops: answers that are not there yet are refused."""

@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 import tempfile
+import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -180,3 +181,24 @@ def test_an_application_that_has_answered_is_forked(tmp_path: Path) -> None:
     told = sorted(done.stdout.splitlines())
     expected = ["child GO 200", "child NO_GO 200", "parent GO 200", "parent GO 200", "parent NO_GO 200"]
     assert told == expected, done.stderr[-3000:]
+
+
+def test_an_application_in_two_threads_at_once_says_that_it_has_one_loop(
+    tmp_path: Path, folder: Path
+) -> None:
+    """A second event loop made the first one wait for its deadline: 504."""
+    app = app_of(tmp_path)
+    try:
+        with ThreadPoolExecutor(4) as threads:
+            clients = [TestClient(app, base_url=BASE, client=("127.0.0.1", 1)) for _ in range(4)]
+            assert asked(clients[0]).status_code == 200
+            begun = time.monotonic()
+            answers = [one for _ in range(4) for one in threads.map(asked, clients)]
+        assert {one.status_code for one in answers} == {200, 503}
+        refused = next(one for one in answers if one.status_code == 503)
+        assert "event loop" in refused.json()["detail"]
+        assert time.monotonic() - begun < PATIENCE_S / 2, "nobody waits for a deadline"
+        assert asked(clients[1]).status_code == 200
+        assert app.state.services.helpers.line._held.total() == 0
+    finally:
+        app.state.services.close()
