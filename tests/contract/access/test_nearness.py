@@ -54,6 +54,28 @@ STRANGERS = [
     ("Via", "1.1 localhost"),
     ("Via", ""),
     ("CDN-Loop", "cloudflare"),
+    ("X-Forwarded-For", "127.0.0.1%eth0"),
+    ("X-Forwarded-For", "::1%8.8.8.8"),
+    ("X-Forwarded-For", "[::1%1]:80"),
+    ("X-Forwarded-For", "[::1]:99999"),
+    ("X-Forwarded-For", "127.0.0.1:65536"),
+    ("Forwarded", 'for="[::1%25eth0]"'),
+    ("Proxy-Client-IP", "203.0.113.5"),
+    ("WL-Proxy-Client-IP", "203.0.113.5"),
+    ("X-ProxyUser-Ip", "203.0.113.5"),
+    ("X-Vercel-Forwarded-For", "203.0.113.5"),
+    ("DO-Connecting-IP", "203.0.113.5"),
+    ("Incap-Client-IP", "203.0.113.5"),
+    ("X_Forwarded_For", "203.0.113.5"),
+    ("X_Real_IP", "203.0.113.5"),
+    ("X-Forwarded-Server", "proxy.example"),
+    ("X-Forwarded-Port", "443"),
+    ("X-Forwarded-By", "127.0.0.1"),
+    ("Proxy-Connection", "keep-alive"),
+    ("X-Original-Host", "safestart.example"),
+    ("CF-Ray", "8f0000000000-FRA"),
+    ("X-Amz-Cf-Id", "x"),
+    ("X-Azure-Ref", "x"),
 ]
 NEIGHBOURS = [
     ("X-Forwarded-For", "127.0.0.1"),
@@ -65,7 +87,28 @@ NEIGHBOURS = [
     ("X-Forwarded-Proto", "https"),
     ("X-Forwarded", "for=127.0.0.1"),
     ("Forwarded-For", "127.0.0.1"),
+    ("X-Forwarded-For", "[::1]:65535"),
+    ("X-Forwarded-Host", "localhost"),
+    ("X-Client-Data", "of a browser"),
 ]
+BROWSER = {
+    "sec-ch-ua": '"Chromium";v="130", "Not?A_Brand";v="99"',
+    "sec-ch-ua-mobile": "?0",
+    "sec-ch-ua-platform": '"Linux"',
+    "Upgrade-Insecure-Requests": "1",
+    "Sec-Fetch-Site": "same-origin",
+    "Sec-Fetch-Mode": "navigate",
+    "Sec-Fetch-User": "?1",
+    "Sec-Fetch-Dest": "document",
+    "Sec-Purpose": "prefetch",
+    "Priority": "u=0, i",
+    "DNT": "1",
+    "Sec-GPC": "1",
+    "TE": "trailers",
+    "If-None-Match": '"x"',
+    "Cookie": "via=1; x-forwarded-for=203.0.113.5",
+    "Last-Event-ID": "1",
+}
 
 
 @pytest.fixture(scope="module")
@@ -92,6 +135,17 @@ def test_who_comes_through_a_proxy_is_a_stranger(base, name, value):
 def test_who_comes_through_a_proxy_from_here_is_a_neighbour(base, name, value):
     with httpx.Client(base_url=base, timeout=PATIENCE_S, headers={name: value}) as client:
         assert client.get("/jobs").status_code == 200
+
+
+def test_a_browser_on_this_machine_is_a_neighbour(base):
+    assert httpx.get(f"{base}/jobs", headers=BROWSER, timeout=PATIENCE_S).status_code == 200
+
+
+def test_a_proxy_here_that_says_all_about_itself_names_its_client(base):
+    said = {"X-Forwarded-Host": "localhost", "X-Forwarded-Server": "localhost", "X-Forwarded-Port": "80"}
+    for client, status in (("127.0.0.1", 200), ("203.0.113.5", 401)):
+        headers = {**said, "X-Forwarded-For": client}
+        assert httpx.get(f"{base}/jobs", headers=headers, timeout=PATIENCE_S).status_code == status
 
 
 def test_one_of_two_lines_names_a_stranger(base):
