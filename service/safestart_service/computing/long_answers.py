@@ -13,7 +13,6 @@ from functools import cache
 from io import FileIO
 from itertools import chain
 from pathlib import Path
-from typing import cast
 
 LONG_BYTES = 1_000_000
 """A body longer than this goes through a file."""
@@ -74,7 +73,7 @@ class Place:
 def _opened() -> tuple[FileIO, Path | None]:
     """A new file, and its name where it has one."""
     if Path("/proc/self/fd").is_dir():
-        return cast(FileIO, tempfile.TemporaryFile(buffering=0)), None
+        return tempfile.TemporaryFile(buffering=0), None
     number, name = tempfile.mkstemp(prefix="safestart-")
     return os.fdopen(number, "r+b", buffering=0), Path(name)
 
