@@ -21,8 +21,8 @@ def register(app: typer.Typer) -> None:
         ] = None,
     ) -> None:
         """Start everything on this machine and keep it running; Ctrl-C stops every part."""
+        from safestart.runtime.children.supervise import Child, Supervisor
         from safestart.runtime.settings import settings
-        from safestart.runtime.supervise import Child, Supervisor
 
         configured = settings()
         host = host or configured.host

@@ -15,7 +15,7 @@ from sqlalchemy.exc import TimeoutError as NoConnection
 from sqlalchemy.orm import Session
 
 from safestart.errors import Away, Unavailable
-from safestart.runtime.forks import Forkable
+from safestart.runtime.children.forks import Forkable
 from safestart.store import schema
 from safestart.store.dialect import BUSY_TIMEOUT_S, prepare
 from safestart.store.same_file import SameFile

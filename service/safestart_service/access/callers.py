@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 from fastapi import Request
 
-from safestart.runtime.forks import Forkable
+from safestart.runtime.children.forks import Forkable
 from safestart_service.access.gate import caller
 from safestart_service.errors import RateLimited
 from safestart_service.http.places import Places

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 
-from safestart.runtime.forks import Forkable
+from safestart.runtime.children.forks import Forkable
 
 
 class Budget(Forkable):

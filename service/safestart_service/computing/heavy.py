@@ -13,7 +13,7 @@ from fastapi import Request
 from starlette.requests import ClientDisconnect
 
 from safestart.errors import Unavailable
-from safestart.runtime.forks import Forkable
+from safestart.runtime.children.forks import Forkable
 from safestart.runtime.settings import Settings
 from safestart_service.access.callers import Callers
 from safestart_service.access.gate import caller

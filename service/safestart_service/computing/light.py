@@ -17,7 +17,7 @@ from fastapi import Request
 from starlette.requests import ClientDisconnect
 
 from safestart.errors import Cancelled, SafestartError
-from safestart.runtime.forks import Forkable
+from safestart.runtime.children.forks import Forkable
 from safestart_service.access.callers import Callers
 from safestart_service.computing.in_thread import begun
 

@@ -17,7 +17,7 @@ from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from safestart.errors import SafestartError
-from safestart.runtime.forks import Forkable
+from safestart.runtime.children.forks import Forkable
 from safestart.runtime.logs import about
 from safestart_service.access import head
 from safestart_service.access.gate import Access, caller_id

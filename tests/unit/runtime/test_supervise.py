@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from safestart.runtime.supervise import describe
+from safestart.runtime.children.supervise import describe
 from tests.waiting import PATIENCE_S, ended, until
 
 # Writes its pid and that of a child of its own, then waits; ends in order on SIGTERM unless told to be stubborn.
@@ -25,7 +25,7 @@ time.sleep(600)
 """
 SUPERVISOR = """
 import sys
-from safestart.runtime.supervise import Child, Supervisor
+from safestart.runtime.children.supervise import Child, Supervisor
 children = [Child(name, [sys.executable, "-c", *rest]) for name, *rest in eval(sys.argv[1])]
 sys.exit(Supervisor(children, grace_s=1.0).run())
 """
@@ -121,7 +121,7 @@ def test_a_command_that_does_not_exist_is_named(supervise) -> None:
         [
             sys.executable,
             "-c",
-            "import sys\nfrom safestart.runtime.supervise import Child, Supervisor\n"
+            "import sys\nfrom safestart.runtime.children.supervise import Child, Supervisor\n"
             "sys.exit(Supervisor([Child('a', ['/nonexistent/command'])]).run())",
         ],
         stderr=subprocess.PIPE,

@@ -1,7 +1,7 @@
 """Keep child commands running: start them, restart those that die, stop all of them together.
 
-Each command runs under :mod:`safestart.runtime.orphan_guard`, a small process that reads from a pipe this process
-holds open. When this process ends for any reason, the pipe closes and the guard ends its command.
+Each command runs under :mod:`safestart.runtime.children.orphan_guard`, a small process that reads from a pipe
+this process holds open. When this process ends for any reason, the pipe closes and the guard ends its command.
 """
 
 from __future__ import annotations

@@ -1,0 +1,1 @@
+"""The processes that a process makes: kept running, ended with it, and apart from it."""
