@@ -127,11 +127,14 @@ def import_(
 ) -> None:
     """Check a bundle and add its job to the database."""
     from safestart.processes.outcome import outcome_of
+    from safestart.processes.tables.foreign import require_shape
     from safestart.records.bundle import own_page, unpack
     from safestart.store.transfer import Transfer
 
     data = _bytes(bundle)
     opened = unpack(data, seal)
+    if opened.result is not None:
+        require_shape(opened.result, "bundle.result")
     if not own_page(data, opened):
         err.print("its index.html is not the page that this version makes of the job: it was not checked")
     with _database(database_url, new=True) as database:

@@ -56,6 +56,24 @@ _REQUIRED = {
 """Report type -> what was required; the names in braces come from the report's context."""
 
 
+_BY_VERSION = (
+    "missing",
+    "extra_forbidden",
+    "greater_than",
+    "less_than",
+    "too_",
+    "string_too_",
+    "string_pattern",
+)
+
+
+def differs_by_version(report: Any) -> bool:
+    """Whether a pydantic report tells two versions of a model apart: a field, a bound, a word; not a kind of value."""
+    if report["type"] in ("literal_error", "enum"):
+        return isinstance(report.get("input"), str)
+    return str(report["type"]).startswith(_BY_VERSION)
+
+
 def required(report: Any) -> str:
     """What one pydantic report required."""
     if report["type"] == "finite_number" and is_beyond(report.get("input")):

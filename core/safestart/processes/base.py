@@ -11,7 +11,7 @@ from pydantic import ValidationError
 from pydantic_core import PydanticSerializationError, to_json
 
 from safestart.errors import UnfitResult
-from safestart.model.validation import error_of, validation_error
+from safestart.model.validation import differs_by_version, error_of, validation_error
 from safestart.model.wire_model import WireModel as WireModel
 from safestart.processes.output import ProcessOutput as ProcessOutput
 from safestart.processes.sharding import Sharding
@@ -99,15 +99,20 @@ class ProcessSpec:
         except ValidationError as error:
             raise validation_error(error, model=self.inputs) from None
 
-    def check(self, document: dict[str, Any]) -> None:
+    def check(self, document: dict[str, Any], *, another_version: bool = False) -> None:
         """Raise ``UnfitResult`` unless ``document``, in its stored JSON form, matches ``outputs``.
 
-        Nothing is converted: text is not accepted as a number, 2.0 not as an integer, and NaN is refused.
+        Nothing is converted: text is not accepted as a number, 2.0 not as an integer, and NaN is refused. Outputs of
+        ``another_version`` may have fields more or fewer, other words and other bounds, but no other kinds of values.
         """
         try:
             self.outputs.model_validate_json(to_json(document, inf_nan_mode="constants"), strict=True)
         except ValidationError as error:
-            raise error_of(UnfitResult, error.errors(include_url=False), "outputs.") from None
+            reports: list[Any] = error.errors(include_url=False)
+            if another_version:
+                reports = [one for one in reports if not differs_by_version(one)]
+            if reports:
+                raise error_of(UnfitResult, reports, "outputs.") from None
         except PydanticSerializationError as error:
             raise UnfitResult(
                 f"outputs: required JSON, received something else ({error})", required="JSON"
