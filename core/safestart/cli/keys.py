@@ -127,10 +127,10 @@ def audit(
 
 @contextmanager
 def _database(url: str | None) -> Iterator[Database]:
-    from safestart.runtime.settings import settings
+    from safestart.runtime.settings import url_or_setting
     from safestart.store.database import Database
 
-    database = Database(url or settings().url())
+    database = Database(url_or_setting(url))
     try:
         database.migrate()
         yield database

@@ -185,15 +185,19 @@ def purge(
 
 def age(text: str) -> float:
     """Seconds of an age such as ``30d``; raises ``InvalidInput``."""
-    match = re.fullmatch(r"(\d{1,9}(?:\.\d{1,9})?)\s*(s|min|h|d|w)", text.strip())
+    match = re.fullmatch(r"([0-9]{1,9}(?:\.[0-9]{1,9})?)(s|min|h|d|w)", text)
     if match is None:
-        raise invalid("--older-than", "a number with s, min, h, d or w, such as 30d", text)
+        raise invalid(
+            "--older-than", "digits 0 to 9 and s, min, h, d or w, without spaces, such as 30d", text
+        )
     return float(match[1]) * _UNITS[match[2]]
 
 
 def _bundle_or_job(job: str, database_url: str) -> Bundle:
     from safestart.records.bundle import unpack
+    from safestart.runtime.settings import settings
 
+    settings()  # wrong ones end every command that may use a database
     return unpack(_bytes(Path(job))) if Path(job).is_file() else _bundle_of(job, database_url)
 
 
@@ -207,10 +211,10 @@ def _bundle_of(job: str, database_url: str) -> Bundle:
 @contextmanager
 def _database(url: str, *, new: bool = False) -> Iterator[Database]:
     """Open the database; ``new`` creates a missing one, which otherwise counts as a wrong path and is refused."""
-    from safestart.runtime.settings import settings
+    from safestart.runtime.settings import url_or_setting
     from safestart.store.database import Database
 
-    database = Database(url or settings().url())
+    database = Database(url_or_setting(url))
     if database.file is not None and not new and not database.file.exists():
         raise invalid("database_url", "an existing database", database.shown)
     try:

@@ -95,7 +95,7 @@ def number(text: str, line: int, name: str, power: int = 0) -> float:
         value = float(f"{mantissa}e{int(exponent or 0) + power}" if power else text)
     except ValueError:
         value = float("nan")
-    if not abs(value) < 1e300 or "_" in text:
+    if not abs(value) < 1e300 or "_" in text or not text.isascii():
         raise refused(line, f"{name}: a finite number", text)
     return value
 
