@@ -10,12 +10,16 @@ from __future__ import annotations
 import errno
 import io
 import os
+import select
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, cast
 
+from safestart.errors import InvalidInput
+
 NOT_WRITTEN = 2
+_READER_MS = 10_000
 
 
 class _Kept(io.FileIO):
@@ -78,6 +82,47 @@ def patient_streams() -> Iterator[Streams]:
     finally:
         _flush()
         sys.stdin, sys.stdout, sys.stderr = before
+
+
+def require_open(otherwise: str) -> None:
+    """Raise ``InvalidInput`` where standard output takes nothing: it is closed, full, or its reader has left.
+
+    For what can be shown only once: it is not made then, and ``otherwise`` says so. A full disk is seen by
+    :func:`require_delivered` only.
+    """
+    if isinstance(sys.stdout, _Counted):
+        raise _undelivered("it is closed", otherwise)
+    kept = _kept()
+    if kept is None or not hasattr(select, "poll"):  # Windows has none
+        return
+    heard = select.poll()
+    heard.register(kept.fileno(), select.POLLOUT)
+    if not any(states == select.POLLOUT for _, states in heard.poll(_READER_MS)):
+        raise _undelivered("nobody reads it", otherwise)
+
+
+def require_delivered(otherwise: str) -> None:
+    """Write out what was printed; raises ``InvalidInput`` unless standard output took all of it."""
+    sys.stdout.flush()
+    kept = _kept()
+    if kept is not None and kept.failure is not None:
+        failure, kept.failure = kept.failure, None  # told here, and not at the end of the command again
+        raise _undelivered(failure.strerror or str(failure), otherwise)
+
+
+def _kept() -> _Kept | None:
+    raw = getattr(getattr(sys.stdout, "buffer", None), "raw", None)
+    return raw if isinstance(raw, _Kept) else None
+
+
+def _undelivered(reason: str, otherwise: str) -> InvalidInput:
+    required = "one that accepts output"
+    return InvalidInput(
+        f"standard output: required {required}, received one that does not ({reason}); {otherwise}",
+        field="standard output",
+        required=required,
+        received=reason,
+    )
 
 
 class _Counted(io.StringIO):

@@ -11,6 +11,9 @@ from pathlib import Path
 import pytest
 
 from safestart.cli import main
+from safestart.store.access.audit import AuditLog
+from safestart.store.access.keys import KeyRepository
+from safestart.store.database import Database
 
 ASKED = ["go-no-go", "--omega-t-deg-s", "3", "--a-max-m-s2", "0.1", "--x-m", "5", "--y-m", "40"]
 NONE = "/dev/full"
@@ -149,3 +152,32 @@ def test_a_shorter_document_replaces_a_longer_one(tmp_path: Path, monkeypatch: p
         main()
     assert ended.value.code == 0
     assert json.loads(path.read_text())["verdict"] == "GO"
+
+
+@pytest.mark.parametrize("form", [[], ["--json"]], ids=["text", "json"])
+@pytest.mark.parametrize(
+    ("redirected", "reason"),
+    [(f">{NONE}", "No space left on device"), (">&-", "it is closed"), ("| :", "nobody reads it")],
+)
+def test_a_key_that_cannot_be_shown_is_not_made(
+    form: list[str], redirected: str, reason: str, tmp_path: Path
+) -> None:
+    """The first key closes the service for good: one that nobody has seen would close it to everybody."""
+    url = f"sqlite:///{tmp_path / 'keys.sqlite3'}"
+    asked = ["keys", "create", "--name", "a", "--role", "admin", "--database-url", url, *form]
+    if redirected.startswith("|"):
+        reader, writer = os.pipe()
+        os.close(reader)
+        command = [sys.executable, "-m", "safestart", *asked]
+        done = subprocess.run(command, stdout=writer, stderr=subprocess.PIPE, text=True, check=False)
+        os.close(writer)
+        code, said = done.returncode, done.stderr
+    else:
+        code, said = ended(asked, redirected)
+    assert (code, len(said.splitlines())) == (2, 1), said
+    assert f"({reason}); no key was made" in said
+    database = Database(url)
+    database.migrate()
+    assert KeyRepository(database).list() == ()
+    assert AuditLog(database).entries().entries == ()
+    database.close()
