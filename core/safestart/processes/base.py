@@ -11,6 +11,7 @@ from pydantic import ValidationError
 from pydantic_core import PydanticSerializationError, to_json
 
 from safestart.errors import UnfitResult
+from safestart.model.strict_json import validated_values
 from safestart.model.validation import error_of, validation_error
 from safestart.model.wire_model import WireModel as WireModel
 from safestart.processes.output import ProcessOutput as ProcessOutput
@@ -93,7 +94,18 @@ class ProcessSpec:
         Shown(self.inputs, self.outputs, self.tables, engines).require(self.id, self.views)
 
     def parse(self, inputs: Any) -> WireModel:
-        """Validate raw inputs; raises ``InvalidInput`` naming the first field, what it requires, what came."""
+        """Validate what somebody asks, strictly and as a POST does (:mod:`safestart.model.strict_json`).
+
+        Raises ``InvalidInput`` naming the first field, what it requires, what came. Inputs that are validated already
+        are returned.
+        """
+        return inputs if isinstance(inputs, self.inputs) else validated_values(self.inputs, inputs)
+
+    def stored(self, inputs: Any) -> WireModel:
+        """Inputs that were validated when they were stored: what an earlier version accepted still runs.
+
+        Raises ``InvalidInput`` for those of a process that has changed.
+        """
         try:
             return self.inputs.model_validate(inputs)
         except ValidationError as error:
