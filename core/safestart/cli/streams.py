@@ -11,11 +11,15 @@ import errno
 import io
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any, cast
+from typing import Any, NoReturn, cast
+
+from safestart.runtime.own_process import exit_code, own_configuration
 
 NOT_WRITTEN = 2
+_WRITABLE = "backslashreplace"
+r"""What an encoding lacks is written as ``\u65e5``: a terminal of another one must not end a command."""
 
 
 class _Kept(io.FileIO):
@@ -63,11 +67,11 @@ def patient_streams() -> Iterator[Streams]:
     _occupy()
     before = sys.stdin, sys.stdout, sys.stderr
     if sys.stdin is None:
-        sys.stdin = io.StringIO()
+        sys.stdin = io.TextIOWrapper(io.BufferedReader(_Closed()))
     if closed:
-        sys.stdout = _Counted()
+        sys.stdout = io.TextIOWrapper(io.BufferedWriter(_Dropped()), "utf-8", _WRITABLE)
     if sys.stderr is None:
-        sys.stderr = io.StringIO()
+        sys.stderr = io.TextIOWrapper(io.BufferedWriter(_Dropped()), "utf-8", _WRITABLE)
     kept = None
     if sys.stdout is sys.__stdout__:
         kept, sys.stdout = _wrapped(cast(io.TextIOWrapper, sys.stdout))
@@ -80,12 +84,37 @@ def patient_streams() -> Iterator[Streams]:
         sys.stdin, sys.stdout, sys.stderr = before
 
 
-class _Counted(io.StringIO):
-    """Standard output of a process that was started without one."""
+class _Closed(io.RawIOBase):
+    """Standard input of a process that was started without one; a command that asks for it says so."""
+
+    def readable(self) -> bool:
+        """Whoever reads gets the error below."""
+        return True
+
+    def readinto(self, _: Any, /) -> int:
+        """Raise ``OSError``."""
+        raise OSError(errno.EBADF, "it is closed")
+
+
+class _Dropped(io.RawIOBase):
+    """An output of a process that was started without one: it keeps nothing but how much it was."""
+
+    length = 0
+
+    def writable(self) -> bool:
+        """It takes everything."""
+        return True
+
+    def write(self, data: Any, /) -> int:
+        """Drop the data."""
+        size = memoryview(data).nbytes
+        self.length += size
+        return size
 
 
 def _written() -> bool:
-    return isinstance(sys.stdout, _Counted) and bool(sys.stdout.tell())
+    raw = getattr(getattr(sys.stdout, "buffer", None), "raw", None)
+    return isinstance(raw, _Dropped) and raw.length > 0
 
 
 def _occupy() -> None:
@@ -101,7 +130,7 @@ def _wrapped(stream: io.TextIOWrapper) -> tuple[_Kept, io.TextIOWrapper]:
     return raw, io.TextIOWrapper(
         io.BufferedWriter(raw),
         stream.encoding,
-        stream.errors,
+        _WRITABLE,
         line_buffering=stream.line_buffering,
         write_through=stream.write_through,
     )
@@ -110,3 +139,11 @@ def _wrapped(stream: io.TextIOWrapper) -> tuple[_Kept, io.TextIOWrapper]:
 def _flush() -> None:
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
+
+
+def run_command(run: Callable[[], object]) -> NoReturn:
+    """Be a process of ours: run a command, end with its exit code; our own errors are one line and code 2."""
+    own_configuration()
+    with patient_streams() as streams:
+        code = streams.code(exit_code(run))
+    sys.exit(code)

@@ -7,7 +7,7 @@ from copy import copy
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar, get_args, get_origin
 
-from pydantic import BaseModel, Field, TypeAdapter, ValidationError, create_model
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError, create_model
 from pydantic.fields import FieldInfo
 
 from safestart.errors import invalid
@@ -19,6 +19,7 @@ from safestart.processes.base import WireModel
 from safestart.runtime.plain_json import NameTwice, NoNumber, loads
 
 M = TypeVar("M", bound=WireModel)
+_FINITE = ConfigDict(allow_inf_nan=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,7 +128,7 @@ class Flat(Generic[M]):
         if parameter is None or parameter.json_text:
             return text if parameter is None else parameter.value(name, text)
         try:
-            return TypeAdapter(parameter.field.annotation).validate_python(text)
+            return TypeAdapter(parameter.field.annotation, config=_FINITE).validate_python(text)
         except ValidationError as error:
             raise refusal([{**one, "loc": (name,)} for one in error.errors(include_url=False)]) from None
 

@@ -23,7 +23,8 @@ from pydantic_settings import (
 
 from safestart.errors import InvalidInput, invalid
 from safestart.model.validation import refusal
-from safestart.runtime.secret_file import with_password
+from safestart.runtime.files.bounded import bytes_within
+from safestart.runtime.files.secret_file import with_password
 from safestart.runtime.variables import PREFIX, require_known
 
 Network = ipaddress.IPv4Network | ipaddress.IPv6Network
@@ -199,6 +200,8 @@ def _file(kind: type[BaseSettings]) -> TomlConfigSettingsSource:
     if named and not os.path.isfile(named):  # Path raises on a name that is too long
         raise invalid("SAFESTART_CONFIG", "the path of a TOML file", named)
     try:
+        if path is not None and path.is_file():
+            bytes_within(str(path), path, _MOST_FILE_BYTES)  # it is read without a bound
         source = TomlConfigSettingsSource(kind, toml_file=path or ())
     except RecursionError:
         raise invalid(str(path), "a readable TOML file in UTF-8", "one nested too deeply") from None
@@ -208,6 +211,7 @@ def _file(kind: type[BaseSettings]) -> TomlConfigSettingsSource:
     return source
 
 
+_MOST_FILE_BYTES = 1024 * 1024
 _KINDS: dict[Any, str] = {int: "an integer", float: "a number", bool: "true or false"}
 
 
