@@ -35,7 +35,10 @@ def writable(option: str, path: Path) -> Iterator[None]:
 
 
 def given_bytes(option: str, source: str, most: int) -> bytes:
-    """The bytes of a file, or of standard input for ``-``; raises ``InvalidInput`` for more than ``most``, ``OSError``."""
+    """The bytes of a file, or of standard input for ``-``.
+
+    Raises ``InvalidInput`` for more than ``most``, and ``OSError``.
+    """
     if source == "-":
         # A test or a notebook may have put one there that holds text alone.
         stream = getattr(sys.stdin, "buffer", None) or io.BytesIO(sys.stdin.read(most + 1).encode())

@@ -18,7 +18,7 @@ def float_array(values: ArrayLike) -> Floats:
     found = np.asarray(values) if hasattr(values, "__array__") else np.asarray(values, dtype=object)
     if found.dtype == object:
         kinds = set(map(type, found.ravel().tolist()))
-        if not all(issubclass(kind, Real) and kind is not bool for kind in kinds):
+        if bool in kinds or not all(issubclass(kind, Real) for kind in kinds):
             raise TypeError("required numbers")
     elif found.dtype.kind not in "iuf":
         raise TypeError("required numbers")

@@ -1,7 +1,7 @@
 """Values of JSON validated strictly, by the same rule wherever they come from: a body, a file, an option, Python.
 
-No text or boolean counts as a number, and 31.0 is the integer 31, as in JSON Schema. Where one channel took ``true`` for
-1.0 it would answer another question than the one that was asked, and than the other channels.
+No text or boolean counts as a number, and 31.0 is the integer 31, as in JSON Schema. Where one channel took ``true``
+for 1.0 it would answer another question than the one that was asked, and than the other channels.
 """
 
 from __future__ import annotations

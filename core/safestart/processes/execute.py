@@ -28,8 +28,9 @@ class Execution:
 def execute(process_id: str, inputs: Any, context: Context | None = None) -> Execution:
     """Validate the inputs, run the process, check the outputs, add the provenance.
 
-    Inputs that come from a store are validated already: give what ``ProcessSpec.stored`` makes of them. Raises ``NotFound`` for an unknown process, ``InvalidInput`` for inputs outside the spec, and ``UnfitResult`` for
-    outputs outside it.
+    Inputs that come from a store are validated already: give what ``ProcessSpec.stored`` makes of them. Raises
+    ``NotFound`` for an unknown process, ``InvalidInput`` for inputs outside the spec, and ``UnfitResult`` for outputs
+    outside it.
     """
     spec = process(process_id)
     parsed = spec.parse(inputs)

@@ -128,7 +128,8 @@ class Flat(Generic[M]):
         if parameter is None or parameter.json_text:
             return text if parameter is None else parameter.value(name, text)
         try:
-            return TypeAdapter(parameter.field.annotation, config=_FINITE).validate_python(text)
+            kind: Any = parameter.field.annotation
+            return TypeAdapter(kind, config=_FINITE).validate_python(text)
         except ValidationError as error:
             raise refusal([{**one, "loc": (name,)} for one in error.errors(include_url=False)]) from None
 

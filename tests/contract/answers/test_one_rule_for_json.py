@@ -182,7 +182,7 @@ def test_what_is_no_json() -> None:
     deep: list[Any] = []
     for _ in range(400):
         deep = [deep]
-    with pytest.raises(InvalidInput, match="nested|depth"):
+    with pytest.raises(InvalidInput, match=r"nested|depth"):
         process("certificate").parse({"grid": deep})
     with pytest.raises(InvalidInput, match="values of JSON"):
         json_of({"x": object()})

@@ -35,7 +35,7 @@ NO_EPOCHS = [
 @pytest.mark.parametrize("form", ["kvn", "xml"])
 def test_a_message_is_created_at_an_epoch(text: str, form: str, tmp_path: Path) -> None:
     for given in (course(), turning()):
-        with pytest.raises(InvalidInput, match="^CREATION_DATE: required"):
+        with pytest.raises(InvalidInput, match=r"^CREATION_DATE: required"):
             course_bytes(given, form, text)
     source, goal = tmp_path / "a.oem", tmp_path / f"b.{'oem' if form == 'kvn' else form}"
     source.write_bytes(course_bytes(course(), "kvn", CREATED))
@@ -82,7 +82,7 @@ def test_a_file_with_such_a_name_is_refused() -> None:
     with pytest.raises(InvalidInput, match="OBJECT_NAME: required one line of text"):
         ephemeris_from(xml.replace(f">{name}<", f">{name}\nORIGINATOR = NASA<").encode())
     table = course_bytes(course(), "csv", CREATED).decode()
-    with pytest.raises(InvalidInput, match="object: |OBJECT_NAME: required one line of text"):
+    with pytest.raises(InvalidInput, match=r"object: |OBJECT_NAME: required one line of text"):
         ephemeris_from(table.replace(name, f"{name}\x1b").encode(), "a.csv")
 
 
