@@ -69,9 +69,9 @@ def patient_streams() -> Iterator[Streams]:
     if sys.stdin is None:
         sys.stdin = io.TextIOWrapper(io.BufferedReader(_Closed()))
     if closed:
-        sys.stdout = io.TextIOWrapper(io.BufferedWriter(_Dropped()), "utf-8", _WRITABLE)
+        sys.stdout = io.TextIOWrapper(io.BufferedWriter(_Dropped(1)), "utf-8", _WRITABLE)
     if sys.stderr is None:
-        sys.stderr = io.TextIOWrapper(io.BufferedWriter(_Dropped()), "utf-8", _WRITABLE)
+        sys.stderr = io.TextIOWrapper(io.BufferedWriter(_Dropped(2)), "utf-8", _WRITABLE)
     kept = None
     if sys.stdout is sys.__stdout__:
         kept, sys.stdout = _wrapped(cast(io.TextIOWrapper, sys.stdout))
@@ -97,9 +97,20 @@ class _Closed(io.RawIOBase):
 
 
 class _Dropped(io.RawIOBase):
-    """An output of a process that was started without one: it keeps nothing but how much it was."""
+    """An output of a process that was started without one: it keeps nothing but how much it was.
+
+    ``number`` is the file number that :func:`_occupy` keeps for it: children write there.
+    """
 
     length = 0
+
+    def __init__(self, number: int) -> None:
+        super().__init__()
+        self._number = number
+
+    def fileno(self) -> int:
+        """The number of the null device in its place."""
+        return self._number
 
     def writable(self) -> bool:
         """It takes everything."""

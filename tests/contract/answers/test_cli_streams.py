@@ -207,3 +207,20 @@ def test_an_encoding_that_lacks_what_is_said(terminal: dict[str, str], tmp_path:
         assert getattr(done, stream)
         if arguments[0] == "label":
             assert rb"\u65e5\u672c" in done.stdout
+
+
+CHILD = """
+import subprocess, sys
+from safestart.cli.streams import patient_streams
+with patient_streams():
+    print("日本" * 100_000, file=sys.stderr)
+    subprocess.run(["sh", "-c", "echo said; echo said >&2"], stdout=sys.stderr, stderr=sys.stdout, check=True)
+"""
+
+
+@pytest.mark.parametrize("redirected", ["2>&-", ">&-", "<&- >&- 2>&-"])
+def test_a_child_of_a_command_whose_outputs_are_closed(redirected: str) -> None:
+    """`up` and `demo` give theirs the standard error."""
+    command = ["sh", "-c", f'exec "$@" {redirected}', "sh", sys.executable, "-c", CHILD]
+    done = subprocess.run(command, capture_output=True, check=False)
+    assert done.returncode == 0, done.stderr

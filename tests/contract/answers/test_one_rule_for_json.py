@@ -16,6 +16,7 @@ from safestart.errors import InvalidInput
 from safestart.model.strict_json import NotJson, json_of, validated
 from safestart.processes.execute import execute
 from safestart.processes.registry import PROCESS_IDS, process
+from safestart.public.wire import sent
 from safestart_worker.cluster import task
 
 if TYPE_CHECKING:
@@ -186,3 +187,20 @@ def test_what_is_no_json() -> None:
         process("certificate").parse({"grid": deep})
     with pytest.raises(InvalidInput, match="values of JSON"):
         json_of({"x": object()})
+
+
+def test_a_client_sends_what_numpy_holds_as_json() -> None:
+    given = POINT | {
+        "starts": [{"position_m": np.array([2.0, 25.0, 1.0]), "velocity_m_s": (0, np.int64(1), 0)}]
+    }
+    assert sent(given)["starts"] == [{"position_m": [2.0, 25.0, 1.0], "velocity_m_s": [0, 1, 0]}]
+    assert sent(None) == {}
+    assert sent({"x_m": True, "y_m": "40"}) == {"x_m": True, "y_m": "40"}, "the service refuses them"
+    for wrong in ({"x_m": float("nan")}, {"x_m": object()}, [1]):
+        with pytest.raises(InvalidInput):
+            sent(wrong)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("document", ["[]", "null", '"text"', "3"])
+def test_inputs_that_are_no_object(document: str) -> None:
+    assert "required an object" in refused(["run", "certificate", "--input", "-"], document)
