@@ -16,6 +16,7 @@ from safestart.errors import Unavailable
 from safestart.runtime.settings import Settings
 from safestart.runtime.settings import settings as process_settings
 from safestart_service.access.proxies import Proxies
+from safestart_service.computing.helpers.sources import Source
 from safestart_service.documents import deprecation, openapi, problems
 from safestart_service.http.limits import Limits
 from safestart_service.metrics import MetricsMiddleware
@@ -51,16 +52,20 @@ AWAY_S = 2.0
 
 
 def create_app(
-    settings: Settings | None = None, database: Database | None = None, *, warm: bool = False
+    settings: Settings | None = None,
+    database: Database | None = None,
+    *,
+    warm: bool = False,
+    source: Source | None = None,
 ) -> FastAPI:
     """Build the application.
 
     Without ``database`` it opens the one of the settings. It migrates the database at start. While the database is
     unavailable, or the machine has no room to ask it, ``/readyz`` reports it and instant answers work; the migration
     follows later. Raises ``InvalidInput`` for an invalid URL. ``warm`` starts a helper process before the first heavy
-    answer.
+    answer; ``source``: where helper processes come from.
     """
-    found = Services(settings or process_settings(), database)
+    found = Services(settings or process_settings(), database, source)
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:

@@ -15,6 +15,7 @@ import typer
 
 from safestart.errors import Away, InvalidInput, SafestartError, Unavailable
 from safestart.runtime.logs import configure, legible
+from safestart_service.computing.allocator import keep_little
 from safestart_service.http.open_files import make_room
 from safestart_service.http.places import Places
 
@@ -66,20 +67,24 @@ def _serve(overrides: dict[str, object]) -> None:
     make_room(chosen.max_connections)
     # Helper processes compute one answer each; a pool of threads in every one of them would only take memory.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    keep_little()
     listener = listen(family, address, chosen.host)
+    source = None
     try:
         # Imported only now, so that a wrong argument is answered at once.
         import uvicorn
 
         from safestart.store.database import Database
         from safestart_service.app import create_app
+        from safestart_service.computing.helpers.early import forked
         from safestart_service.http.wire import Protocol
 
-        database = Database(chosen.url())
         configure(chosen.log_format)
+        source = forked([listener])  # before there are threads and connections to a database
+        database = Database(chosen.url())
         with suppress(Away):  # the application waits for it and reports that
             database.migrate()
-        app = create_app(chosen, database, warm=True)
+        app = create_app(chosen, database, warm=True, source=source)
         refused = app.state.services.metrics.refused
         config = uvicorn.Config(
             app,
@@ -111,6 +116,8 @@ def _serve(overrides: dict[str, object]) -> None:
         server.run(sockets=[listener])
     finally:
         listener.close()
+        if source is not None:
+            source.close()
 
 
 def resolve(host: str, port: int) -> tuple[int, Any]:

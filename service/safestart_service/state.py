@@ -10,6 +10,7 @@ from safestart.runtime.settings import Settings
 from safestart_service.access.gate import Access
 from safestart_service.access.keyring import Keyring
 from safestart_service.computing.heavy import Helpers
+from safestart_service.computing.helpers.sources import Source
 from safestart_service.computing.light import Threads
 from safestart_service.computing.store import Store
 from safestart_service.http.following import Following
@@ -30,7 +31,9 @@ class Services:
     The store is imported at its first use; the instant answers and the API description do not need it.
     """
 
-    def __init__(self, settings: Settings, database: Database | None = None) -> None:
+    def __init__(
+        self, settings: Settings, database: Database | None = None, source: Source | None = None
+    ) -> None:
         from safestart.store.access.audit import AuditLog
         from safestart.store.access.keys import KeyRepository
         from safestart.store.database import Database
@@ -48,7 +51,7 @@ class Services:
         self.light = Threads("answers are being computed", LIGHT_THREADS, MOST_LIGHT)
         self.submitting = Threads("submissions are under way", STORE_THREADS, MOST_SUBMITTED)
         self.packing = Threads("bundles are being packed", 1, MOST_PACKED)  # one at a time: it is in memory
-        self.helpers = Helpers(settings)
+        self.helpers = Helpers(settings, source)
         self._pools = (self.light, self.submitting, self.packing, self.helpers)
         self._closed = False
         self.following = Following(settings.max_followers, self.access)

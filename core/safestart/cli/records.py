@@ -227,8 +227,7 @@ def _database(url: str, *, new: bool = False) -> Iterator[Database]:
 
 def _bytes(path: Path) -> bytes:
     from safestart.records.bundle import MOST_BYTES
+    from safestart.runtime.files.bounded import bytes_within
 
     with readable("file", path):
-        if path.stat().st_size > MOST_BYTES:
-            raise invalid("file", f"a bundle of at most {MOST_BYTES} bytes", path.stat().st_size)
-        return path.read_bytes()
+        return bytes_within("file", path, MOST_BYTES)

@@ -25,7 +25,8 @@ from pydantic_settings import (
 from safestart.errors import InvalidInput, invalid
 from safestart.model.plain_numbers import is_number, require_plain
 from safestart.model.validation import refusal
-from safestart.runtime.secret_file import with_password
+from safestart.runtime.files.bounded import bytes_within
+from safestart.runtime.files.secret_file import with_password
 from safestart.runtime.variables import NAMES, PREFIX, require_known
 
 Network = ipaddress.IPv4Network | ipaddress.IPv6Network
@@ -213,6 +214,8 @@ def _file(kind: type[BaseSettings]) -> TomlConfigSettingsSource:
     if named and not os.path.isfile(named):  # Path raises on a name that is too long
         raise invalid("SAFESTART_CONFIG", "the path of a TOML file", named)
     try:
+        if path is not None and path.is_file():
+            bytes_within(str(path), path, _MOST_FILE_BYTES)  # it is read without a bound
         source = TomlConfigSettingsSource(kind, toml_file=path or ())
     except RecursionError:
         raise invalid(str(path), "a readable TOML file in UTF-8", "one nested too deeply") from None
@@ -232,6 +235,7 @@ def _require_names(kind: type[BaseSettings], given: Mapping[str, Any]) -> None:
             raise invalid(f"settings.{name}", f"the name of a setting{like} (docs/settings.md)", name)
 
 
+_MOST_FILE_BYTES = 1024 * 1024
 _KINDS: dict[Any, str] = {int: "an integer", float: "a number", bool: "true or false"}
 
 

@@ -18,6 +18,7 @@ from safestart_service.access.gate import caller
 from safestart_service.computing import inside
 from safestart_service.computing.helpers.pool import Pool
 from safestart_service.computing.helpers.process import HelperEnded
+from safestart_service.computing.helpers.sources import Source
 from safestart_service.computing.light import leaves
 from safestart_service.computing.limits import too_long
 from safestart_service.computing.line import Line
@@ -36,17 +37,19 @@ log = logging.getLogger("safestart.service")
 
 
 class Helpers:
-    """The helper processes of one application."""
+    """The helper processes of one application; ``source``: where those of its first life come from."""
 
-    def __init__(self, settings: Settings) -> None:
+    def __init__(self, settings: Settings, source: Source | None = None) -> None:
         self._settings = settings
+        self._source = source
         self.callers = Callers("heavy answers are asked for", MOST_HEAVY)
         self.line = Line(settings.answer_processes)
         self.open()
 
     def open(self) -> None:
         """Begin, or begin again after :meth:`close`."""
-        self._pool = Pool(self._settings.answer_processes)
+        self._pool = Pool(self._settings.answer_processes, self._source)
+        self._source = None  # closed with the pool
         self._loop: asyncio.AbstractEventLoop | None = None
         self._warming: asyncio.Task[None] | None = None
         self._leaving = asyncio.Event()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 import gc
 import os
 import traceback
@@ -19,6 +18,7 @@ from safestart.processes.registry import PROCESS_IDS, process
 from safestart.runtime.named import load
 from safestart.runtime.progress import Context
 from safestart.runtime.settings import Settings
+from safestart_service.computing.allocator import return_freed
 from safestart_service.computing.helpers import serving
 from safestart_service.computing.store import Store
 from safestart_service.shortage import shortage
@@ -101,10 +101,8 @@ def _prepare() -> None:
 
 
 def _return_memory() -> None:
-    """Give freed memory back to the system, where glibc would keep it for later."""
     gc.collect()
-    with suppress(OSError, AttributeError):
-        ctypes.CDLL(None).malloc_trim(0)
+    return_freed()
 
 
 @cache

@@ -5,10 +5,16 @@ from __future__ import annotations
 import logging
 import os
 import tempfile
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from functools import cache
+from io import FileIO
+from itertools import chain
 from pathlib import Path
 from typing import BinaryIO
+
+LONG_BYTES = 1_000_000
+"""A body longer than this goes through a file."""
 
 log = logging.getLogger("safestart.service")
 
@@ -53,14 +59,33 @@ def _say(why: str) -> None:
     log.warning("no place for temporary files (%s): long answers take more memory", why)
 
 
-def write(path: Path | None, body: bytes) -> bool:
-    """Whether a body could be written into the file of this name, which must be there.
+def put(path: Path | None, parts: Iterable[bytes]) -> tuple[bytes, bool]:
+    """All parts as one, or nothing, and whether they are in the file of this name instead, which must be there.
 
-    Nobody waits for an answer whose file is gone.
+    Up to :data:`LONG_BYTES` need no file; more go without where there is none, or it is full. Nobody waits for an
+    answer whose file is gone.
     """
-    if path is None:
-        return False
-    with suppress(OSError), path.open("r+b") as file:
-        file.write(body)
-        return True
-    return False
+    parts, held, length = iter(parts), [], 0
+    for part in parts:
+        held.append(part)
+        length += len(part)
+        if length > LONG_BYTES:
+            break
+    if length > LONG_BYTES and path is not None:
+        with suppress(OSError), path.open("r+b", buffering=0) as file:
+            return _written(file, chain(held, parts))
+    return b"".join(chain(held, parts)), False
+
+
+def _written(file: FileIO, parts: Iterator[bytes]) -> tuple[bytes, bool]:
+    length = 0
+    for part in parts:
+        try:
+            left = memoryview(part)
+            while left:
+                left = left[file.write(left) :]
+        except OSError:  # it is full
+            file.seek(0)
+            return b"".join(chain((file.readall()[:length], part), parts)), False
+        length += len(part)
+    return b"", True

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 from uuid import uuid4
@@ -16,14 +16,14 @@ from safestart.processes.registry import process
 from safestart.runtime.access import Caller, Role
 from safestart.runtime.progress import Context
 from safestart_service.computing.limits import too_long
-from safestart_service.computing.long_answers import write
+from safestart_service.computing.long_answers import put
+from safestart_service.computing.pieces import members, pieces
 from safestart_service.computing.store import Store
 from safestart_service.documents.execution import (
     ExecuteRequest,
     check_outputs,
     check_states,
     parse_request,
-    run_now,
     selected,
 )
 from safestart_service.documents.jobs_view import job_detail
@@ -32,8 +32,6 @@ from safestart_service.http.body import MOST_PARTS, PARTS_PER_STATE, parse_body
 
 LIGHT_S = 0.03
 """An answer that costs more than this is heavy."""
-LONG_BYTES = 1_000_000
-"""A body longer than this goes through a file."""
 
 
 def _nothing(_: Any) -> dict[str, str]:
@@ -87,7 +85,7 @@ def at_once(store: Store, context: Context, asked: Asked) -> Made | float:
         return _answer(spec, request, context, asked)
     # A helper process loads for seconds, and compiles for a minute where no kernels are kept.
     document = spec.output_at_once(request.inputs, context)
-    return cost if document is None else _made(document, request, asked)
+    return cost if document is None else _made(document.items(), request, asked)
 
 
 def in_full(store: Store, context: Context, asked: Asked, place: Path | None = None) -> Made:
@@ -95,13 +93,6 @@ def in_full(store: Store, context: Context, asked: Asked, place: Path | None = N
 
     A long body goes into the file ``place``, or, where that is full or gone, the long way.
     """
-    made = _in_full(store, context, asked)
-    if len(made.body) > LONG_BYTES and write(place, made.body):
-        return replace(made, body=b"", in_file=True)
-    return made
-
-
-def _in_full(store: Store, context: Context, asked: Asked) -> Made:
     request = _parsed(store, asked)
     spec = process(asked.process_id)
     if asked.queued:
@@ -109,7 +100,7 @@ def _in_full(store: Store, context: Context, asked: Asked) -> Made:
     cost, limit = spec.cost(request.inputs), store.settings.answer_timeout_s
     if cost > limit:
         raise too_long(limit, cost)
-    return _answer(spec, request, context, asked)
+    return _answer(spec, request, context, asked, place)
 
 
 def _parsed(store: Store, asked: Asked) -> ExecuteRequest:
@@ -124,13 +115,23 @@ def _parsed(store: Store, asked: Asked) -> ExecuteRequest:
     return request
 
 
-def _answer(spec: ProcessSpec, request: ExecuteRequest, context: Context, asked: Asked) -> Made:
-    return _made(run_now(spec, request.inputs, context), request, asked)
+def _answer(
+    spec: ProcessSpec, request: ExecuteRequest, context: Context, asked: Asked, place: Path | None = None
+) -> Made:
+    return _made(spec.output_parts(request.inputs, context), request, asked, place)
 
 
-def _made(document: dict[str, Any], request: ExecuteRequest, asked: Asked) -> Made:
-    body = orjson.dumps(document if asked.bare else selected(document, request))
-    return Made(body, headers=asked.announced(request.inputs))
+def _made(
+    parts: Iterable[tuple[str, Any]], request: ExecuteRequest, asked: Asked, place: Path | None = None
+) -> Made:
+    headers = asked.announced(request.inputs)
+    chosen = parts if asked.bare else selected(parts, request)
+    raw = not asked.bare and request.response == "raw"
+    if place is None:
+        whole = chosen if raw else dict(chosen)
+        return Made(orjson.dumps(whole, option=orjson.OPT_SERIALIZE_NUMPY), headers=headers)
+    body, in_file = put(place, pieces(chosen) if raw else members(chosen))
+    return Made(body, headers=headers, in_file=in_file)
 
 
 def _submitted(store: Store, spec: ProcessSpec, request: ExecuteRequest, asked: Asked) -> Made:

@@ -36,7 +36,7 @@ def small_server(folder: Path, streams: int = STREAMS) -> Iterator[Address]:
     code = (
         "import safestart_service.http.wire as wire, safestart_service.http.unread as unread;"
         "import safestart_service.app as app; make = app.create_app;"
-        "app.create_app = lambda *given, warm: make(*given);"
+        "app.create_app = lambda *given, warm, source: make(*given, source=source);"
         "wire.HEAD_S = 5.0; unread.UNREAD_S = 1.0;"
         f"import safestart_service.commands as c; c._serve({chosen!r})"
     )

@@ -212,6 +212,26 @@ def test_a_call_that_stops_when_nobody_waits_keeps_its_process(
 
 
 @needs_fork
+def test_a_helper_that_keeps_much_memory_is_not_kept(source: Source) -> None:
+    """Whether its call returns, fails, or stops when nobody waits. What a call lets go of does not count."""
+
+    async def work(pool: Pool) -> None:
+        first = await pool(os.getpid)
+        await pool(exec, HOLD.format(2, 1))
+        assert await pool(len, b"1" * 40_000_000) == 40_000_000
+        assert await pool(os.getpid) == first
+        await pool(exec, HOLD.format(40, 1))
+        second = await pool(os.getpid)
+        with pytest.raises(ZeroDivisionError):
+            await pool(exec, HOLD.format(40, 0))
+        third = await pool(os.getpid)
+        assert len({first, second, third}) == 3
+        assert until(lambda: ended(first) and ended(second), "the end of both")
+
+    asked(source, work)
+
+
+@needs_fork
 def test_no_call_begins_after_the_end(source: Source) -> None:
     async def work(pool: Pool) -> None:
         pool.close()
@@ -239,6 +259,10 @@ def _nurseries() -> set[int]:
             if nursery.__name__ in one.cmdline():
                 found.add(one.pid)
     return found
+
+
+# As text: a helper that imported this module would keep the memory of pytest.
+HOLD = "import builtins; builtins.held = b'1' * {} * 1_000_000; 1 / {}"
 
 
 def _pid_after(wait_s: float) -> int:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 from safestart.errors import InvalidInput, invalid
+from safestart.model.plain_text import require_line
 
 
 class Kind(StrEnum):
@@ -80,6 +81,13 @@ class Fields:
         for name, token in self.values.items():
             if name not in self.taken and name not in known and not name.startswith("USER_DEFINED_"):
                 raise refused(token.line, f"a keyword of {self.block}", name)
+
+
+def written(token: Token) -> Token:
+    """The token, for a message; raises ``InvalidInput`` where a text of it is more than a line."""
+    for text in (token.name, token.value, token.units):
+        require_line(token.name or "row", text)
+    return token
 
 
 def refused(line: int, required: str, received: object) -> InvalidInput:

@@ -13,16 +13,20 @@ from safestart.errors import invalid
 from safestart.model.scenario import Floats
 from safestart.processes.go_no_go.spec import GoNoGoInputs
 
+BLOCK = 5_000
+"""Starts whose conditions are computed together: what lies between start and margin takes more memory than both."""
+
 
 class Conditions(NamedTuple):
     """Faces and range limit (m, inf without one), and over the starts, in metres: smallest margin, margin after erosion
-    by face, range margin, the binding condition, and the faces that the start itself violates.
+    by face (an array for many starts), range margin, the binding condition, and the faces that the start itself
+    violates.
     """
 
     faces: tuple[str, ...]
     limit: float
     margin: list[float]
-    face_margin: list[list[float]]
+    face_margin: list[list[float]] | Floats
     range_margin: list[float]
     binding: list[str]
     violated: list[list[str]]
@@ -44,16 +48,25 @@ def points_of(inputs: GoNoGoInputs) -> Floats:
 
 
 def _together(inputs: GoNoGoInputs) -> Conditions:
-    found = certify(inputs.scenario(), points_of(inputs), inputs.rest)
-    face_margin, range_margin = found.face_margin.tolist(), found.range_margin.tolist()
+    scenario, points = inputs.scenario(), points_of(inputs)
+    margin: list[float] = []
+    face_margins: list[Floats] = []
+    range_margins: list[float] = []
     binding: list[str] = []
     violated: list[list[str]] = []
-    for start in zip(found.slack.tolist(), face_margin, range_margin, strict=True):
-        binds, outside = binding_of(found.faces, *start)
-        binding.append(binds)
-        violated.append(outside)
+    sets: dict[tuple[str, ...], list[str]] = {}  # there are few: starts share them
+    for first in range(0, len(points), BLOCK):
+        found = certify(scenario, points[first : first + BLOCK], inputs.rest)
+        range_margin = found.range_margin.tolist()
+        for start in zip(found.slack.tolist(), found.face_margin.tolist(), range_margin, strict=True):
+            binds, outside = binding_of(found.faces, *start)
+            binding.append(binds)
+            violated.append(sets.setdefault(tuple(outside), outside))
+        margin += found.margin.tolist()
+        face_margins.append(found.face_margin)
+        range_margins += range_margin
     return Conditions(
-        found.faces, found.range_limit, found.margin.tolist(), face_margin, range_margin, binding, violated
+        found.faces, found.range_limit, margin, np.concatenate(face_margins), range_margins, binding, violated
     )
 
 

@@ -20,15 +20,19 @@ import warnings
 from contextlib import suppress
 from multiprocessing.connection import Connection
 
+from safestart_service.computing.allocator import MEGABYTE, keep_little
 from safestart_service.computing.helpers.serving import serve
 
+MOST_GROWN = 16 * 1024**2
+"""Bytes. A helper that has kept more for itself is dearer than the milliseconds of a new one."""
 _PR_SET_PDEATHSIG = 1
 
 
 def main(control: socket.socket) -> None:
     """Load, then fork a helper for every connection that comes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # at Ctrl-C the service ends its answers, and then us
-    _end_with_parent()
+    end_with_parent()
+    keep_little(MEGABYTE)
     threading.Thread(target=_end_without, args=(control,), daemon=True).start()
     loaded = load()
     # One end at a time: a helper that was forked with the end of another one would keep that connection open, and
@@ -38,9 +42,9 @@ def main(control: socket.socket) -> None:
         _bury()
         try:
             if _fork() == 0:
-                _end_with_parent()
+                end_with_parent()
                 control.close()
-                serve(Connection(end))
+                serve(Connection(end), MOST_GROWN)
                 return
         except OSError:
             traceback.print_exc()  # the other end sees that its connection is closed
@@ -81,7 +85,7 @@ def load() -> bool:
     return True
 
 
-def _end_with_parent() -> None:
+def end_with_parent() -> None:
     """Have Linux end this process with the one that started it, also while a library keeps the interpreter to itself.
 
     OpenBLAS does that for ever where it gets no memory to load into. Without a connection our threads end us, too.

@@ -58,7 +58,7 @@ class Pool:
             except asyncio.CancelledError:
                 await self._given_up(helper, call)
                 raise
-            self._idle.append(helper)
+            self._keep(helper)
         finally:
             self._busy.discard(helper)
         if not returned:
@@ -75,9 +75,13 @@ class Pool:
             stopped = call.done() and not call.cancelled() and call.exception() is None
         finally:
             if stopped:
-                self._idle.append(helper)
+                self._keep(helper)
             else:
                 helper.kill()
+
+    def _keep(self, helper: Helper) -> None:
+        if not helper.spent:
+            self._idle.append(helper)
 
     async def _helper(self) -> Helper:
         while self._idle:

@@ -35,6 +35,8 @@ class Helper:
     def __init__(self, connection: Connection, within_s: float | None = None) -> None:
         self._connection = connection
         self._sending = threading.Lock()
+        self.spent = False
+        """Whether it has done its last call."""
         if not connection.poll(within_s):
             raise TimeoutError
         self._pid: int = self._received()
@@ -45,10 +47,10 @@ class Helper:
         try:
             with self._sending:
                 self._connection.send((function, arguments))
-            found: tuple[bool, Any] = self._received()
+            returned, answer, self.spent = self._received()
         except (OSError, HelperEnded) as error:
             raise NotBegun if monotonic() - begun < DYING_S else HelperEnded from error
-        return found
+        return returned, answer
 
     def _received(self) -> Any:
         try:

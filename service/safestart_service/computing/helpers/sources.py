@@ -35,14 +35,32 @@ class Source(Protocol):
         """Make no more."""
 
 
-class Forked:
-    """Helpers that one process forks after it has loaded."""
+class Process(Protocol):
+    """What we need of a ``subprocess.Popen``."""
 
-    def __init__(self) -> None:
+    def poll(self) -> int | None:
+        """Its exit status; None while it lives."""
+
+    def wait(self, timeout: float | None = None) -> int:
+        """Its exit status, when it has ended; raises ``subprocess.TimeoutExpired``."""
+
+    def kill(self) -> None:
+        """End it, whatever it does."""
+
+
+class Forked:
+    """Helpers that one process forks after it has loaded.
+
+    ``first``: such a process, and where to ask it for helpers. When it ends a new program takes its place.
+    """
+
+    def __init__(self, first: tuple[Process, socket.socket] | None = None) -> None:
         self._lock = threading.Lock()
         self._closed = self._loaded = False
-        self._process: subprocess.Popen[bytes] | None = None
+        self._process: Process | None = None
         self._control: socket.socket | None = None
+        if first is not None:
+            self._process, self._control = first
         # Linux ends that process with the thread that started it, so this thread does nothing else.
         self._starter = ThreadPoolExecutor(1, "nursery")
 

@@ -1,0 +1,78 @@
+"""The program that forks helpers, forked itself from the service before that has threads or a database.
+
+It shares what the service has loaded (pydantic, NumPy, SQLAlchemy, our models), which is a third of what it needs.
+"""
+
+from __future__ import annotations
+
+import gc
+import multiprocessing
+import os
+import select
+import signal
+import socket
+import subprocess
+import sys
+from collections.abc import Iterable
+
+from safestart_service.computing.helpers import nursery
+from safestart_service.computing.helpers.sources import Forked
+
+
+class Child:
+    """A forked process, with those methods of ``subprocess.Popen`` that we need."""
+
+    def __init__(self, control: socket.socket, others: Iterable[socket.socket]) -> None:
+        context = multiprocessing.get_context("fork")
+        self._process = context.Process(target=_run, args=(control, others), daemon=True)
+        self._process.start()
+
+    def poll(self) -> int | None:
+        """Its exit status; None while it lives."""
+        return self._process.exitcode
+
+    def wait(self, timeout: float | None = None) -> int:
+        """Its exit status, when it has ended; raises ``subprocess.TimeoutExpired``."""
+        self._process.join(timeout)
+        found = self.poll()
+        if found is None:
+            raise subprocess.TimeoutExpired(nursery.__name__, timeout or 0.0)
+        return found
+
+    def kill(self) -> None:
+        """End it, whatever it does."""
+        self._process.kill()
+
+
+def forked(others: Iterable[socket.socket]) -> Forked | None:
+    """Helpers of a process that this one forks now, and which loads when the first helper is asked for.
+
+    The child closes ``others``. None where a process with loaded libraries cannot be forked safely (elsewhere than on
+    Linux), or there is no room for one.
+    """
+    if sys.platform != "linux":
+        return None
+    ours, theirs = socket.socketpair()
+    # Pages whose objects nobody scans stay shared.
+    gc.collect()
+    gc.freeze()
+    with theirs:
+        try:
+            child = Child(theirs, (ours, *others))
+        except OSError:
+            ours.close()
+            return None
+    return Forked((child, ours))
+
+
+def _run(control: socket.socket, others: Iterable[socket.socket]) -> None:
+    nursery.end_with_parent()
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the service hears it, and then ends us
+    for other in others:
+        other.close()
+    nothing = os.open(os.devnull, os.O_RDWR)
+    os.dup2(nothing, 0)
+    os.dup2(nothing, 1)
+    # While the service starts, it has the processor to itself.
+    select.select([control], [], [])
+    nursery.main(control)
