@@ -18,10 +18,11 @@ def page() -> str:
         "",
         "Each setting is read from the environment, else from the TOML file that `SAFESTART_CONFIG` names (default: "
         "`safestart.toml` in the user's configuration directory). The file uses the names below in lower case, "
-        "without `SAFESTART_` and without sections. An unknown variable `SAFESTART_...` ends every command with code "
-        "2. An unknown name in the file, a named file that is missing and an invalid value end every command that "
-        "reads settings with code 2. The message says what was required. `go-no-go`, `verify` and other commands that "
-        "need neither database nor service read no settings.",
+        "without `SAFESTART_` and without sections; variables are in capital letters. Numbers in variables are "
+        "written as on the command line: in the digits 0 to 9, without `_`, plus sign and spaces. An unknown variable "
+        "`SAFESTART_...` ends every command with code 2. An unknown name in the file, a named file that is missing "
+        "and an invalid value end every command that reads settings with code 2. The message says what was required. "
+        "`go-no-go`, `verify` and other commands that need neither database nor service read no settings.",
         "",
         "| variable | default | meaning |",
         "|---|---|---|",

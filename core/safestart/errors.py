@@ -98,7 +98,7 @@ class JobFailed(NotFound):
 
 
 class UnfitResult(SafestartError):
-    """A result does not match its process description, so it is not stored."""
+    """A result does not match its process description, so it is not stored, or not shown where it is stored."""
 
     slug = "unfit-result"
     title = "The result does not fit its description"

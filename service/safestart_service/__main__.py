@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import sys
-
 import typer
 
-from safestart.runtime.own_process import exit_code, own_configuration
+from safestart.cli.streams import run_command
 from safestart_service.commands import serve
 
 if __name__ == "__main__":
-    own_configuration()
-    sys.exit(exit_code(lambda: typer.run(serve)))
+    run_command(lambda: typer.run(serve))

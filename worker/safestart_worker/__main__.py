@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import sys
-
 import typer
 
-from safestart.runtime.own_process import exit_code, own_configuration
+from safestart.cli.streams import run_command
 from safestart_worker.commands import register
 
 if __name__ == "__main__":
-    own_configuration()
     app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
     register(app)
-    sys.exit(exit_code(app))
+    run_command(app)

@@ -8,9 +8,8 @@ from importlib import import_module
 
 import typer
 
-from safestart.cli.streams import patient_streams
+from safestart.cli.streams import run_command
 from safestart.cli.strict import strictly
-from safestart.runtime.own_process import exit_code, own_configuration
 from safestart.runtime.variables import require_known
 
 COMMAND_GROUP = "safestart.commands"
@@ -63,7 +62,4 @@ def build(asked: str = "") -> typer.Typer:
 
 def main() -> None:
     """Run the command line; our own errors, and missing or full places, end it with one line and exit code 2."""
-    own_configuration()
-    with patient_streams() as streams:
-        code = streams.code(exit_code(lambda: build(*sys.argv[1:2])()))
-    sys.exit(code)
+    run_command(lambda: build(*sys.argv[1:2])())

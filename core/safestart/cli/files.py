@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import sys
@@ -12,7 +13,11 @@ from stat import S_ISREG
 from typing import Any, BinaryIO
 
 from safestart.errors import InvalidInput, invalid
+from safestart.runtime.files.bounded import bytes_within, stream_within
 from safestart.runtime.plain_json import NameTwice, loads
+
+MOST_INPUT_BYTES = 64 * 1024 * 1024
+"""Of a file of inputs: eight times the longest body that a service takes by default."""
 
 
 @contextmanager
@@ -29,11 +34,23 @@ def writable(option: str, path: Path) -> Iterator[None]:
         yield
 
 
+def given_bytes(option: str, source: str, most: int) -> bytes:
+    """The bytes of a file, or of standard input for ``-``.
+
+    Raises ``InvalidInput`` for more than ``most``, and ``OSError``.
+    """
+    if source == "-":
+        # A test or a notebook may have put one there that holds text alone.
+        stream = getattr(sys.stdin, "buffer", None) or io.BytesIO(sys.stdin.read(most + 1).encode())
+        return stream_within(option, stream, most, "standard input")
+    return bytes_within(option, source, most)
+
+
 def read_json(option: str, source: str) -> Any:
     """The JSON of a file, or of standard input for ``-``; raises ``InvalidInput`` for ``option``."""
     try:
         with readable(option, source):
-            text = sys.stdin.read() if source == "-" else Path(source).read_text(encoding="utf-8")
+            text = given_bytes(option, source, MOST_INPUT_BYTES).decode()
     except UnicodeDecodeError:
         raise invalid(option, "UTF-8 text", source) from None
     try:
@@ -112,4 +129,4 @@ def _refused(option: str, required: str, path: Path | str) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise invalid(option, required, f"{path} ({error.strerror})") from None
+        raise invalid(option, required, f"{path} ({error.strerror or error})") from None

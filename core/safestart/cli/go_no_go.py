@@ -42,7 +42,9 @@ def register(app: typer.Typer) -> None:
     ) -> None:
         """May a chaser that is at rest here, or arrives like this, start its approach? Every GO has a proof, except
         those of method paper."""
-        given = {name: value for name, value in asked.items() if value is not None}
+        given = {
+            name: PARAMETERS[name].value(name, value) for name, value in asked.items() if value is not None
+        }
         if input_file:
             given = _read(input_file) | given
         for name, process_id in (("states", "go-no-go"), ("starts", "start-in-space")):
@@ -73,7 +75,7 @@ def _many(process_id: str, given: dict[str, Any], proof: Path | None, *, as_json
     """Answer a body of several starts, as POST does: one line for each."""
     inputs = process(process_id).parse(given | ({"proofs": True} if proof is not None else {}))
     with target("--proof", proof) as file:
-        document = execute(process_id, inputs.model_dump(mode="json"), Context()).document["outputs"]
+        document = execute(process_id, inputs, Context()).document["outputs"]
         if file is not None:
             if len(document["proof"]) != 1:
                 raise invalid("--proof", "one start", len(document["proof"]))

@@ -41,15 +41,21 @@ def create(
     as_json: Json = False,
 ) -> None:
     """Make a key and show it, this once. From the first key on, every call needs one."""
+    from safestart.cli.streams import require_delivered, require_open
     from safestart.store.access.keys import KeyRepository
 
+    def show(record: ApiKey, key: str) -> None:
+        if as_json:
+            print_json({**_document(record), "key": key})
+        else:  # only the key on standard output, so that it can be piped into a file or a secret store
+            out.print(key, soft_wrap=True, highlight=False)
+        require_delivered("no key was made")
+
+    require_open("no key was made")
     with _database(database_url) as database:
-        record, key = KeyRepository(database).create(name, role, None if days == 0 else days, operator())
+        record, _ = KeyRepository(database).create(name, role, None if days == 0 else days, operator(), show)
     if as_json:
-        print_json({**_document(record), "key": key})
         return
-    # Only the key on standard output, so that it can be piped into a file or a secret store.
-    out.print(key, soft_wrap=True, highlight=False)
     until = "never expires" if record.expires_at is None else f"expires {_moment(record.expires_at)}"
     err.print(
         f"key {record.id} ({record.name}, {record.role.value}, {until}); it is not shown again",
@@ -127,10 +133,10 @@ def audit(
 
 @contextmanager
 def _database(url: str | None) -> Iterator[Database]:
-    from safestart.runtime.settings import settings
+    from safestart.runtime.settings import url_or_setting
     from safestart.store.database import Database
 
-    database = Database(url or settings().url())
+    database = Database(url_or_setting(url))
     try:
         database.migrate()
         yield database

@@ -127,11 +127,14 @@ def import_(
 ) -> None:
     """Check a bundle and add its job to the database."""
     from safestart.processes.outcome import outcome_of
+    from safestart.processes.tables.foreign import require_shape
     from safestart.records.bundle import own_page, unpack
     from safestart.store.transfer import Transfer
 
     data = _bytes(bundle)
     opened = unpack(data, seal)
+    if opened.result is not None:
+        require_shape(opened.result, "bundle.result")
     if not own_page(data, opened):
         err.print("its index.html is not the page that this version makes of the job: it was not checked")
     with _database(database_url, new=True) as database:
@@ -182,15 +185,19 @@ def purge(
 
 def age(text: str) -> float:
     """Seconds of an age such as ``30d``; raises ``InvalidInput``."""
-    match = re.fullmatch(r"(\d{1,9}(?:\.\d{1,9})?)\s*(s|min|h|d|w)", text.strip())
+    match = re.fullmatch(r"([0-9]{1,9}(?:\.[0-9]{1,9})?)(s|min|h|d|w)", text)
     if match is None:
-        raise invalid("--older-than", "a number with s, min, h, d or w, such as 30d", text)
+        raise invalid(
+            "--older-than", "digits 0 to 9 and s, min, h, d or w, without spaces, such as 30d", text
+        )
     return float(match[1]) * _UNITS[match[2]]
 
 
 def _bundle_or_job(job: str, database_url: str) -> Bundle:
     from safestart.records.bundle import unpack
+    from safestart.runtime.settings import settings
 
+    settings()  # wrong ones end every command that may use a database
     return unpack(_bytes(Path(job))) if Path(job).is_file() else _bundle_of(job, database_url)
 
 
@@ -204,10 +211,10 @@ def _bundle_of(job: str, database_url: str) -> Bundle:
 @contextmanager
 def _database(url: str, *, new: bool = False) -> Iterator[Database]:
     """Open the database; ``new`` creates a missing one, which otherwise counts as a wrong path and is refused."""
-    from safestart.runtime.settings import settings
+    from safestart.runtime.settings import url_or_setting
     from safestart.store.database import Database
 
-    database = Database(url or settings().url())
+    database = Database(url_or_setting(url))
     if database.file is not None and not new and not database.file.exists():
         raise invalid("database_url", "an existing database", database.shown)
     try:
@@ -220,8 +227,7 @@ def _database(url: str, *, new: bool = False) -> Iterator[Database]:
 
 def _bytes(path: Path) -> bytes:
     from safestart.records.bundle import MOST_BYTES
+    from safestart.runtime.files.bounded import bytes_within
 
     with readable("file", path):
-        if path.stat().st_size > MOST_BYTES:
-            raise invalid("file", f"a bundle of at most {MOST_BYTES} bytes", path.stat().st_size)
-        return path.read_bytes()
+        return bytes_within("file", path, MOST_BYTES)

@@ -36,10 +36,10 @@ def register(app: typer.Typer) -> None:
         """Run a process here and write {"inputs", "outputs", "provenance"}, with its pictures beside it."""
         spec = process(process_id)
         inputs = {} if not input_file else read_json("--input", input_file)
-        spec.parse(inputs)
+        parsed = spec.parse(inputs)
         with target("--output", output_file) as file:
             with reporting(process_id) as context:
-                result = execute(process_id, inputs, context)
+                result = execute(process_id, parsed, context)
             for note in result.document["provenance"].get("notes", ()):
                 err.print(note, soft_wrap=True, markup=False)
             if file is not None:

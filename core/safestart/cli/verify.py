@@ -10,6 +10,8 @@ import typer
 from rich.markup import escape
 
 from safestart.cli.console import Json, out, print_json
+from safestart.cli.files import given_bytes
+from safestart.errors import InvalidInput
 from safestart.runtime.logs import legible
 from safestart.runtime.plain_json import loads
 
@@ -61,14 +63,7 @@ def register(app: typer.Typer) -> None:
 
 def _load(path: Path) -> Any:
     try:
-        if str(path) == "-":
-            data = sys.stdin.buffer.read(_MOST_BYTES + 1)
-        else:
-            with path.open("rb") as file:
-                data = file.read(_MOST_BYTES + 1)
-        if len(data) > _MOST_BYTES:
-            raise ValueError(f"required at most {_MOST_BYTES} bytes")
-        return loads(data)
-    except (OSError, ValueError, RecursionError) as error:
+        return loads(given_bytes("proof", str(path), _MOST_BYTES))
+    except (InvalidInput, OSError, ValueError, RecursionError) as error:
         sys.stderr.write(legible(f"safestart: {path}: unreadable: {error}") + "\n")
         raise typer.Exit(2) from None

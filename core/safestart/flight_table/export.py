@@ -20,6 +20,7 @@ from safestart.flight_table.numbers import Point, point_of
 from safestart.model.scenario import Scenario
 from safestart.proofs.checker import check
 from safestart.records.provenance import versions
+from safestart.runtime.files.bounded import bytes_within
 from safestart.runtime.plain_json import loads
 from safestart.runtime.progress import Context
 
@@ -99,28 +100,32 @@ def operations(points: Sequence[Point]) -> dict[str, int]:
     }
 
 
+_MOST_BYTES = 256 * 1024 * 1024
+"""Of each file of a table."""
+
+
 def verify(folder: Path) -> int:
     """Check a written table: every file's digest, the header's, and every proof; the number of proofs.
 
     Raises ``InvalidInput`` where a file is another's, ``ProofRejected`` where a proof fails.
     """
     try:
-        manifest = loads((folder / "manifest.json").read_bytes())
+        manifest = loads(_bytes(folder, "manifest.json"))
         listed = dict(manifest["files"])
     except (ValueError, KeyError, TypeError, RecursionError):
         raise invalid("manifest.json", "the manifest of a flight table", "something else") from None
     if not {*FIXED, "safestart_table.c", "safestart_table.h", "proofs.json"} <= listed.keys():
         raise invalid("manifest.json", "every file of a flight table", sorted(listed))
     for name, digest in listed.items():
-        found = sha256((folder / Path(name).name).read_bytes()).hexdigest()
+        found = sha256(_bytes(folder, Path(name).name)).hexdigest()
         if found != digest:
             raise invalid(name, f"SHA-256 {digest}", found)
-    header = (folder / "safestart_table.h").read_text(errors="replace")
+    header = _bytes(folder, "safestart_table.h").decode(errors="replace")
     for name in ("safestart_table.c", "proofs.json"):
         if listed[name] not in header:
             raise invalid("safestart_table.h", f"the SHA-256 of {name}", "another")
     try:
-        proofs = loads((folder / "proofs.json").read_bytes())
+        proofs = loads(_bytes(folder, "proofs.json"))
     except (ValueError, RecursionError):
         proofs = None
     if not isinstance(proofs, list):
@@ -142,3 +147,7 @@ def _stated(point: Point) -> dict[str, Any]:
         "y_max_m": point.atlas.y_max,
         "relative_gap": point.atlas.relative_gap,
     }
+
+
+def _bytes(folder: Path, name: str) -> bytes:
+    return bytes_within(name, folder / name, _MOST_BYTES)

@@ -11,6 +11,7 @@ import numpy as np
 from safestart.errors import InvalidInput, invalid
 from safestart.interchange.epochs import SECOND, Nanoseconds, system_of, text_of
 from safestart.interchange.frames import INERTIAL, frame_of
+from safestart.model.plain_text import require_line
 from safestart.model.scenario import Bools, Floats
 
 Window = tuple[int, int]
@@ -45,6 +46,12 @@ class AttitudeCourse:
     left_out: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        for item, text in (
+            ("OBJECT_NAME", self.name),
+            ("OBJECT_ID", self.object_id),
+            ("REF_FRAME_B", self.body),
+        ):
+            require_line(item, text)
         object.__setattr__(self, "reference", reference_of(self.reference))
         _require_body(self.body)
         system_of(self.time_system)

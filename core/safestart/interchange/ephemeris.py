@@ -12,6 +12,7 @@ from safestart.interchange.covariance import Covariance
 from safestart.interchange.epochs import Nanoseconds, system_of, text_of
 from safestart.interchange.frames import frame_of
 from safestart.model.orbit import EARTH_RADIUS
+from safestart.model.plain_text import require_line
 from safestart.model.scenario import Floats
 
 MOST_STATES = 1_000_000
@@ -43,6 +44,8 @@ class Ephemeris:
     left_out: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        for item, text in (("OBJECT_NAME", self.name), ("OBJECT_ID", self.object_id)):
+            require_line(item, text)
         object.__setattr__(self, "frame", frame_of(self.frame))
         system_of(self.time_system)
         if self.center.upper() != "EARTH":

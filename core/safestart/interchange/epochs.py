@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from safestart.errors import Unavailable, invalid
+from safestart.errors import InvalidInput, Unavailable, invalid
 
 Nanoseconds = np.ndarray[tuple[int, ...], np.dtype[np.int64]]
 
@@ -43,23 +43,12 @@ def epochs_of(texts: Sequence[str], system: str) -> Nanoseconds:
     within = np.empty(len(texts), dtype=np.int64)
     known: dict[str, int] = {}
     for k, text in enumerate(texts):
-        found = _DATE.fullmatch(text)
-        if found is None:
-            raise invalid("epoch", "YYYY-MM-DDThh:mm:ss or YYYY-DDDThh:mm:ss", text)
+        found = _matched(text)
         date = text[: text.index("T")]
         if date not in known:
             known[date] = _day(found, text)
         days[k] = known[date]
-        hour, minute, second, part = int(found[5]), int(found[6]), int(found[7]), found[8] or ""
-        if (
-            hour > 23
-            or minute > 59
-            or second > 60
-            or (second == 60 and (system, hour, minute) != ("UTC", 23, 59))
-        ):
-            raise invalid("epoch", "a time of day", text)
-        nanoseconds = int(part[:9].ljust(9, "0")) + (len(part) > 9 and part[9] >= "5")
-        within[k] = ((hour * 60 + minute) * 60 + second) * SECOND + nanoseconds
+        within[k] = _within(found, text, system)
     if system != "UTC":
         return days * _DAY + within - _OFFSETS[system]
     unique = np.unique(days)
@@ -70,6 +59,40 @@ def epochs_of(texts: Sequence[str], system: str) -> Nanoseconds:
     if late.any():
         raise invalid("epoch", "a leap second only where there is one", texts[int(np.argmax(late))])
     return days * _DAY + within + before * SECOND
+
+
+def require_epoch(field: str, text: str) -> None:
+    """Raise ``InvalidInput`` naming ``field`` unless ``text`` is an epoch of UTC, as :func:`epochs_of` reads it.
+
+    A leap second is taken at the end of any day, since no table of them is needed here.
+    """
+    try:
+        found = _matched(text)
+        _day(found, text)
+        _within(found, text, "UTC")
+    except InvalidInput as error:
+        raise invalid(field, str(error.required), text) from None
+
+
+def _matched(text: str) -> re.Match[str]:
+    found = _DATE.fullmatch(text)
+    if found is None:
+        raise invalid("epoch", "YYYY-MM-DDThh:mm:ss or YYYY-DDDThh:mm:ss", text)
+    return found
+
+
+def _within(found: re.Match[str], text: str, system: str) -> int:
+    """Nanoseconds since the begin of the day."""
+    hour, minute, second, part = int(found[5]), int(found[6]), int(found[7]), found[8] or ""
+    if (
+        hour > 23
+        or minute > 59
+        or second > 60
+        or (second == 60 and (system, hour, minute) != ("UTC", 23, 59))
+    ):
+        raise invalid("epoch", "a time of day", text)
+    nanoseconds = int(part[:9].ljust(9, "0")) + (len(part) > 9 and part[9] >= "5")
+    return ((hour * 60 + minute) * 60 + second) * SECOND + nanoseconds
 
 
 def _day(found: re.Match[str], text: str) -> int:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from safestart.errors import InvalidInput, invalid
+from safestart.runtime.files.bounded import bytes_within
 
 MOST_BYTES = 64 * 1024 * 1024
 """Largest file that is read: a day of states every second with covariance has about 40 MB."""
@@ -13,22 +14,11 @@ _BREAKS = "\n\r\x0b\x0c\x1c\x1d\x1e\x85\u2028\u2029"
 
 
 def bytes_of(path: Path | str, most: int = MOST_BYTES) -> bytes:
-    """The file's bytes; raises ``InvalidInput`` when it is missing, not a file, or longer than ``most`` bytes.
-
-    Checks the stated length first, and reads at most ``most`` bytes whatever it was.
-    """
-    path = Path(path)
+    """The file's bytes; raises ``InvalidInput`` when it is missing, not a file, or longer than ``most`` bytes."""
     try:
-        size = path.stat().st_size
-        if size > most:
-            raise invalid("file", f"at most {most} bytes", f"{path.name} with {size}")
-        with path.open("rb") as file:
-            data = file.read(most + 1)
+        return bytes_within("file", path, most)
     except OSError as error:
         raise InvalidInput(f"file: required a readable file, received {path} ({error.strerror})") from None
-    if len(data) > most:
-        raise invalid("file", f"at most {most} bytes", f"{path.name} with more")
-    return data
 
 
 def text_of(data: bytes, name: str) -> str:

@@ -35,5 +35,5 @@ def course_bytes(course: Ephemeris | AttitudeCourse, form: str, created: str) ->
 
 
 def message_bytes(tokens: Iterable[Token], form: str = "kvn") -> bytes:
-    """The bytes of a message in KVN or XML."""
+    """The bytes of a message in KVN or XML; raises ``InvalidInput`` for a text with a line end."""
     return (kvn.text_of(tokens) if form == "kvn" else xml_out.text_of(tokens)).encode()

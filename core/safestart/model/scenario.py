@@ -21,7 +21,8 @@ Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 # No mission exceeds these bounds; a value beyond them has the wrong unit (degrees for radians, mm for m).
-MAX_TUMBLE_RATE = math.radians(60.0)
+MAX_TUMBLE_DEG_S = 60.0
+MAX_TUMBLE_RATE = math.radians(MAX_TUMBLE_DEG_S)
 # An ion engine on a tonne gives about 1e-5; below 1e-6 m/s^2 nothing can be arrested.
 MIN_ACCELERATION, MAX_ACCELERATION = 1e-6, 10.0
 MAX_MEAN_MOTION = 1.3e-3
@@ -106,7 +107,8 @@ class Scenario:
     @classmethod
     def of(cls, omega_t_deg_s: float, a_max: float, mean_motion: float = 1.1e-3) -> Scenario:
         """Scenario with the paper's corridor from a tumble rate in deg/s and a thrust in m/s^2."""
-        return cls(Target(math.radians(omega_t_deg_s), mean_motion), Chaser(a_max))
+        degrees = number("omega_t_deg_s", omega_t_deg_s, 0.0, MAX_TUMBLE_DEG_S)
+        return cls(Target(math.radians(degrees), mean_motion), Chaser(a_max))
 
     @property
     def sync_radius(self) -> float:

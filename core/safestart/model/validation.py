@@ -36,6 +36,12 @@ _REQUIRED = {
     "bool_type": "true or false",
     "bool_parsing": "true or false",
     "string_type": "text",
+    "string_unicode": "text in Unicode",
+    "tuple_type": "an array",
+    "datetime_type": "a time with its zone",
+    "datetime_parsing": "a time with its zone",
+    "datetime_from_date_parsing": "a time with its zone",
+    "timezone_aware": "a time with its zone",
     "literal_error": "one of {expected}",
     "enum": "one of {expected}",
     "string_too_short": "at least {min_length} characters",
@@ -54,6 +60,24 @@ _REQUIRED = {
     "union_tag_not_found": "a value",
 }
 """Report type -> what was required; the names in braces come from the report's context."""
+
+
+_BY_VERSION = (
+    "missing",
+    "extra_forbidden",
+    "greater_than",
+    "less_than",
+    "too_",
+    "string_too_",
+    "string_pattern",
+)
+
+
+def differs_by_version(report: Any) -> bool:
+    """Whether a pydantic report tells two versions of a model apart: a field, a bound, a word; not a kind of value."""
+    if report["type"] in ("literal_error", "enum"):
+        return isinstance(report.get("input"), str)
+    return str(report["type"]).startswith(_BY_VERSION)
 
 
 def required(report: Any) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -11,7 +11,8 @@ from pydantic import ValidationError
 from pydantic_core import PydanticSerializationError, to_json
 
 from safestart.errors import UnfitResult
-from safestart.model.validation import error_of, validation_error
+from safestart.model.strict_json import validated_values
+from safestart.model.validation import differs_by_version, error_of, validation_error
 from safestart.model.wire_model import WireModel as WireModel
 from safestart.processes.output import ProcessOutput as ProcessOutput
 from safestart.processes.sharding import Sharding
@@ -53,11 +54,12 @@ class ProcessSpec:
     parts of :mod:`safestart.runtime.kernels.warmup` that its jobs need: a worker that
     has just started compiles those of waiting jobs first. ``at_once`` names a function (inputs, context) ->
     ``ProcessOutput`` or None: the output where a dear question turns out to be cheap, as the service can tell without
-    the libraries that the process needs. ``tables`` declares tables over plain lists among the
-    outputs; lists of objects are tables without a declaration. ``views`` say how a page shows the outputs, the most
-    important first. ``courses`` names a function (inputs, outputs) -> ``FlightCourses`` or None where the outputs are a
-    flight: the service then offers it as CCSDS messages and CZML. ``extensions`` are further members of its
-    description, named ``safestart:...``.
+    the libraries that the process needs. ``parts`` names a function (inputs, context) -> pairs of name and value, the
+    members of the document, for those that take much memory; large numeric ones may be arrays. ``tables`` declares
+    tables over plain lists among the outputs; lists of objects are tables without a declaration. ``views`` say how a
+    page shows the outputs, the most important first. ``courses`` names a function (inputs, outputs) ->
+    ``FlightCourses`` or None where the outputs are a flight: the service then offers it as CCSDS messages and CZML.
+    ``extensions`` are further members of its description, named ``safestart:...``.
     """
 
     id: str
@@ -72,6 +74,7 @@ class ProcessSpec:
     instant: str | None = None
     possible: str | None = None
     at_once: str | None = None
+    parts: str | None = None
     courses: str | None = None
     version: str = "1.0.0"
     replay_tolerance: float = 1e-9
@@ -93,21 +96,37 @@ class ProcessSpec:
         Shown(self.inputs, self.outputs, self.tables, engines).require(self.id, self.views)
 
     def parse(self, inputs: Any) -> WireModel:
-        """Validate raw inputs; raises ``InvalidInput`` naming the first field, what it requires, what came."""
+        """Validate what somebody asks, strictly and as a POST does (:mod:`safestart.model.strict_json`).
+
+        Raises ``InvalidInput`` naming the first field, what it requires, what came. Inputs that are validated already
+        are returned.
+        """
+        return inputs if isinstance(inputs, self.inputs) else validated_values(self.inputs, inputs)
+
+    def stored(self, inputs: Any) -> WireModel:
+        """Inputs that were validated when they were stored: what an earlier version accepted still runs.
+
+        Raises ``InvalidInput`` for those of a process that has changed.
+        """
         try:
             return self.inputs.model_validate(inputs)
         except ValidationError as error:
             raise validation_error(error, model=self.inputs) from None
 
-    def check(self, document: dict[str, Any]) -> None:
+    def check(self, document: dict[str, Any], *, another_version: bool = False) -> None:
         """Raise ``UnfitResult`` unless ``document``, in its stored JSON form, matches ``outputs``.
 
-        Nothing is converted: text is not accepted as a number, 2.0 not as an integer, and NaN is refused.
+        Nothing is converted: text is not accepted as a number, 2.0 not as an integer, and NaN is refused. Outputs of
+        ``another_version`` may have fields more or fewer, other words and other bounds, but no other kinds of values.
         """
         try:
             self.outputs.model_validate_json(to_json(document, inf_nan_mode="constants"), strict=True)
         except ValidationError as error:
-            raise error_of(UnfitResult, error.errors(include_url=False), "outputs.") from None
+            reports: list[Any] = error.errors(include_url=False)
+            if another_version:
+                reports = [one for one in reports if not differs_by_version(one)]
+            if reports:
+                raise error_of(UnfitResult, reports, "outputs.") from None
         except PydanticSerializationError as error:
             raise UnfitResult(
                 f"outputs: required JSON, received something else ({error})", required="JSON"
@@ -133,6 +152,13 @@ class ProcessSpec:
             return None
         found: ProcessOutput | None = load(self.at_once, f"at_once of process {self.id}")(inputs, context)
         return None if found is None else found.document
+
+    def output_parts(self, inputs: WireModel, context: Context) -> Iterator[tuple[str, Any]]:
+        """Name and value of every output of a light process; where it has ``parts``, a list may be an array."""
+        if self.parts is None:
+            return iter(self.runner()(inputs, context).document.items())
+        found: Iterator[tuple[str, Any]] = load(self.parts, f"parts of process {self.id}")(inputs, context)
+        return found
 
     def instant_answer(self, inputs: WireModel) -> dict[str, Any] | None:
         """The document that is known before any engine has run, or None."""

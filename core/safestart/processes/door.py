@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any, Protocol
 
 from safestart.errors import invalid
+from safestart.model.plain_numbers import is_number, require_plain
 from safestart.processes.flat import Parameter
 from safestart.processes.go_no_go.one_start import ONE_START, OneAtRest
 from safestart.processes.start_in_space import one_start as in_space
@@ -63,13 +64,32 @@ def _parameters() -> dict[str, Parameter]:
 
 
 PARAMETERS = _parameters()
+_NUMBERS = frozenset(
+    name for name, one in PARAMETERS.items() if not one.json_text and is_number(one.field.annotation)
+)
 
 
 def parse(values: Mapping[str, Any]) -> OneStart:
-    """Validate flat values, which may be texts; raises ``InvalidInput`` under the flat name."""
-    if _START in values:
+    """Validate flat values of JSON, strictly and as a POST does; raises ``InvalidInput`` under the flat name."""
+    if _in_space(values):
         return in_space.OneInSpace(in_space.parse(values))
-    for name in values:
+    return OneAtRest(ONE_START.parse(values))
+
+
+def read(texts: Mapping[str, str]) -> OneStart:
+    """As :func:`parse` for the texts of a query: plain scalars, and JSON for objects and lists."""
+    for name in _NUMBERS.intersection(texts):
+        require_plain(name, texts[name])
+    if _in_space(texts):
+        return in_space.OneInSpace(in_space.read(texts))
+    return OneAtRest(ONE_START.read(texts))
+
+
+def _in_space(given: Mapping[str, Any]) -> bool:
+    """Whether the question is the one in space; raises ``InvalidInput`` for its names without its start."""
+    if _START in given:
+        return True
+    for name in given:
         if name not in ONE_START.parameters and name in in_space.PARAMETERS:
             raise invalid(_START, f"the start, instead of x_m and y_m, where {name} is given", None)
-    return OneAtRest(ONE_START.parse(values))
+    return False

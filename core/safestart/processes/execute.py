@@ -28,8 +28,9 @@ class Execution:
 def execute(process_id: str, inputs: Any, context: Context | None = None) -> Execution:
     """Validate the inputs, run the process, check the outputs, add the provenance.
 
-    Raises ``NotFound`` for an unknown process, ``InvalidInput`` for inputs outside the spec, and ``UnfitResult`` for
-    outputs outside it.
+    Inputs that come from a store are validated already: give what ``ProcessSpec.stored`` makes of them. Raises
+    ``NotFound`` for an unknown process, ``InvalidInput`` for inputs outside the spec, and ``UnfitResult`` for outputs
+    outside it.
     """
     spec = process(process_id)
     parsed = spec.parse(inputs)
@@ -41,9 +42,12 @@ def execute(process_id: str, inputs: Any, context: Context | None = None) -> Exe
 def merge(
     process_id: str, inputs: Any, parts: Sequence[Part], started: datetime, context: Context | None = None
 ) -> Execution:
-    """Merge a sharded process whose shards ran elsewhere since ``started``; raises as :func:`execute`."""
+    """Merge a sharded process whose shards ran elsewhere since ``started``; raises as :func:`execute`.
+
+    The inputs were validated before its shards ran.
+    """
     spec = process(process_id)
-    parsed = spec.parse(inputs)
+    parsed = spec.stored(inputs)
     if spec.sharding is None:
         raise ValueError(f"process {process_id} has no shards")
     return _finished(spec, parsed, started, spec.sharding.merged(parsed, parts, context or Context()))

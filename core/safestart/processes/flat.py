@@ -7,18 +7,19 @@ from copy import copy
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar, get_args, get_origin
 
-from pydantic import BaseModel, Field, TypeAdapter, ValidationError, create_model
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError, create_model
 from pydantic.fields import FieldInfo
 
 from safestart.errors import invalid
 from safestart.model.places import placed
-from safestart.model.plain_numbers import require_plain
+from safestart.model.plain_numbers import is_number, require_plain
+from safestart.model.strict_json import validated_values
 from safestart.model.validation import refusal
 from safestart.processes.base import WireModel
 from safestart.runtime.plain_json import NameTwice, NoNumber, loads
 
 M = TypeVar("M", bound=WireModel)
-_NUMBERS = (int, float, int | None, float | None)
+_FINITE = ConfigDict(allow_inf_nan=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +35,10 @@ class Parameter:
     within: str
     required: bool
     json_text: bool
+
+    def value(self, name: str, given: Any) -> Any:
+        """The value of what was typed or sent for it: JSON is parsed, anything else comes back as it is."""
+        return _from_json(name, given) if self.json_text and isinstance(given, str) else given
 
 
 class Flat(Generic[M]):
@@ -71,26 +76,43 @@ class Flat(Generic[M]):
         self._numbers = {
             name
             for name, one in self.parameters.items()
-            if not one.json_text and one.field.annotation in _NUMBERS
+            if not one.json_text and is_number(one.field.annotation)
         }
+        self._json_texts = {name for name, one in self.parameters.items() if one.json_text}
         # Opened fields are not parameters themselves.
         self._special: dict[str, Parameter | None] = dict.fromkeys(opened)
         self._special |= {name: one for name, one in self.parameters.items() if one.within or one.json_text}
 
     def parse(self, values: Mapping[str, Any]) -> M:
-        """Validate flat values, which may be texts; raises ``InvalidInput`` under the flat name."""
+        """Validate values of JSON under flat names, strictly; raises ``InvalidInput`` under the flat name."""
+        return validated_values(self._model, self._whole(values), self._flat)
+
+    def read(self, texts: Mapping[str, str]) -> M:
+        """As :meth:`parse` for texts: plain scalars, and JSON where a parameter takes objects or lists."""
+        for name in self._numbers.intersection(texts):
+            require_plain(name, texts[name])
+        if not self._json_texts.isdisjoint(texts):
+            return self.parse({name: self._value(name, text) for name, text in texts.items()})
+        # Every value is a scalar's text: pydantic reads it, which takes microseconds.
+        try:
+            parsed: M = self._validate(self._whole(texts))
+            return parsed
+        except ValidationError as error:
+            reports = placed(self._model, error.errors(include_url=False))
+            for report in reports:
+                report["loc"] = self._flat(report["loc"])
+            raise refusal(reports) from None
+
+    def _whole(self, values: Mapping[str, Any]) -> dict[str, Any]:
+        """The document of the model with these flat values."""
         top: dict[str, Any] = {name: {} for name in self._opened}
         for name, value in values.items():
-            if isinstance(value, str) and name in self._numbers:
-                require_plain(name, value)
             if name not in self._special:
                 top[name] = value
                 continue
             parameter = self._special[name]
             if parameter is None:
                 raise invalid(name, "no field of this name", value)
-            if parameter.json_text and isinstance(value, str):
-                value = _from_json(name, value)
             (top[parameter.within] if parameter.within else top)[name] = value
         for name in self._omitted:
             if not top[name]:
@@ -98,14 +120,18 @@ class Flat(Generic[M]):
         for name in self._listed:
             if name in top:
                 top[name] = [top[name]]
+        return top
+
+    def _value(self, name: str, text: str) -> Any:
+        """The value of one text, by its parameter's type."""
+        parameter = self.parameters.get(name)
+        if parameter is None or parameter.json_text:
+            return text if parameter is None else parameter.value(name, text)
         try:
-            parsed: M = self._validate(top)
-            return parsed
+            kind: Any = parameter.field.annotation
+            return TypeAdapter(kind, config=_FINITE).validate_python(text)
         except ValidationError as error:
-            reports = placed(self._model, error.errors(include_url=False))
-            for report in reports:
-                report["loc"] = self._flat(report["loc"])
-            raise refusal(reports) from None
+            raise refusal([{**one, "loc": (name,)} for one in error.errors(include_url=False)]) from None
 
     def _text(self, name: str, item: FieldInfo) -> str:
         text = item.description or ""

@@ -45,6 +45,7 @@ def outcome_of(process_id: str, outputs: dict[str, Any]) -> dict[str, Any] | Non
 
 def _findings(view: Findings, tables: dict[str, Any]) -> Iterator[tuple[str, str, str | None]]:
     basis = tables[""][0].get(view.basis) if view.basis else None
+    basis = basis if isinstance(basis, str) else None  # of another version, it may be anything
     for row in tables.get(view.table, ()):
         word = row.get(view.word)
         if isinstance(word, str):

@@ -34,7 +34,7 @@ def execute_side_by_side(
             for one in ended:
                 done[waiting.pop(one)] = one.result()
             context.step(len(done), len(parts) + 1, f"{len(done)} of {len(parts)} shards")
-        return merge(process_id, inputs, [done[index] for index in range(len(parts))], started, context)
+        return merge(process_id, parsed, [done[index] for index in range(len(parts))], started, context)
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
 

@@ -40,9 +40,14 @@ class Limits:
     keep_out: fmpq | None
 
     @property
+    def at_end(self) -> tuple[str, ...]:
+        """Names of those limits of the question that hold at the end alone. Elsewhere faces may have such names."""
+        return AT_END if self.hold is not None else ()
+
+    @property
     def norms(self) -> tuple[str, ...]:
         """Names of the limits that the question has."""
-        return (AT_END if self.hold is not None else ()) + (("speed",) if self.most is not None else ())
+        return self.at_end + (("speed",) if self.most is not None else ())
 
     @property
     def rest_scale(self) -> fmpq:
@@ -90,7 +95,7 @@ def parts_of(
                 f"parts: required the steps {ends[0]}..{ends[1]} in turn, received {first}..{last}"
             )
         made = part(row, "multipliers", list)
-        out.append((first, last, _weights(made, faces, (*limits.norms, *cones), horizon, d)))
+        out.append((first, last, _weights(made, faces, (*limits.norms, *cones), limits.at_end, horizon, d)))
         covered = last + 1
     if covered != ends[1] + 1:
         raise ProofRejected(f"parts: required all steps {ends[0]}..{ends[1]}, received up to {covered - 1}")
@@ -98,7 +103,12 @@ def parts_of(
 
 
 def _weights(
-    rows: list[Any], faces: Collection[str], norms: Collection[str], horizon: fmpq, d: int
+    rows: list[Any],
+    faces: Collection[str],
+    norms: Collection[str],
+    at_end: Collection[str],
+    horizon: fmpq,
+    d: int,
 ) -> list[Weight]:
     if not 1 <= len(rows) <= _MOST_MULTIPLIERS:
         raise ProofRejected(f"multipliers: required 1..{_MOST_MULTIPLIERS}, received {len(rows)}")
@@ -107,9 +117,9 @@ def _weights(
         face, value = row.get("face") if isinstance(row, Mapping) else None, number(row, "value", 0.0)
         if not isinstance(face, str) or (face not in faces and face not in norms):
             raise ProofRejected(f"multipliers: required a face of the question, received {shown(row, 90)}")
-        at, with_pull = () if face in AT_END else ("time_s",), ("pull",) if face in norms else ()
+        at, with_pull = () if face in at_end else ("time_s",), ("pull",) if face in norms else ()
         fields(row, "multipliers", (*at, "face", "value", *with_pull))
-        time = None if face in AT_END else number(row, "time_s", 0.0)
+        time = None if face in at_end else number(row, "time_s", 0.0)
         if time is not None and time > horizon:
             raise ProofRejected(f"multipliers: required a time in [0, T], received {shown(row, 90)}")
         pull = vector(row.get("pull"), "pull", d) if face in norms else []

@@ -20,7 +20,7 @@ from safestart.public.proofs import verify
 from safestart.public.regions import Region
 from safestart.public.results import Result
 from safestart.public.starts import point_of, points_of, rest_of, seconds, state_of, wire_of
-from safestart.public.wire import TIMEOUT_S, Wire, artifact_of
+from safestart.public.wire import TIMEOUT_S, Wire, artifact_of, sent
 from safestart.records.labels import labels_of
 
 if TYPE_CHECKING:
@@ -176,7 +176,7 @@ class Client:
         """
         path = f"/processes/{quote(process_id, safe='')}/execution"
         headers = {"Prefer": "respond-async", "Idempotency-Key": str(uuid.uuid4())}
-        body = {"inputs": dict(inputs or {}), **labels_of(name=name, tags=tags, note=note)}
+        body = {"inputs": sent(inputs), **labels_of(name=name, tags=tags, note=note)}
         job = self._wire.post(path, body, headers, again=True)
         return str(job["jobID"])
 

@@ -10,6 +10,7 @@ import numpy as np
 from safestart.control.controller import Command, Controller
 from safestart.errors import invalid
 from safestart.exact.question import MAX_STEPS, Question
+from safestart.model.float_array import float_array
 from safestart.model.scenario import Floats, Scenario, number
 from safestart.simulation.starts import steps_of
 
@@ -86,7 +87,10 @@ def controller(
 
 
 def _state(state: ArrayLike) -> Floats:
-    found = np.array(state, dtype=np.float64)
+    try:
+        found = float_array(state)
+    except (TypeError, ValueError, OverflowError):
+        raise invalid("state", "numbers, shape (6,): LVLH position in m and velocity in m/s", state) from None
     if found.shape != (6,):
         raise invalid("state", "shape (6,): LVLH position in m and velocity in m/s", found.shape)
     if not np.isfinite(found).all():

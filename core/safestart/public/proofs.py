@@ -9,6 +9,7 @@ from typing import Any
 
 from safestart.errors import invalid
 from safestart.proofs.single import Verified
+from safestart.runtime.files.bounded import bytes_within
 from safestart.runtime.plain_json import loads
 
 _MOST_BYTES = 16 * 1024 * 1024
@@ -28,11 +29,7 @@ def verify(proof: Mapping[str, Any] | str | os.PathLike[str]) -> Verified:
 
 def _read(path: Path) -> Any:
     try:
-        with path.open("rb") as file:
-            data = file.read(_MOST_BYTES + 1)
-        if len(data) > _MOST_BYTES:
-            raise invalid("proof", f"a file of at most {_MOST_BYTES} bytes", str(path))
-        return loads(data)
+        return loads(bytes_within("proof", path, _MOST_BYTES))
     except OSError as error:
         raise invalid("proof", "a readable file", f"{path} ({error.strerror})") from None
     except (ValueError, RecursionError) as error:

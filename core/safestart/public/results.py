@@ -97,14 +97,14 @@ def run(process_id: str, inputs: Mapping[str, Any] | None = None, *, progress: b
     if not isinstance(inputs, Mapping | None):
         raise invalid("inputs", "an object of names and values", inputs)
     given = dict(inputs or {})
-    process(process_id).parse(given)
+    parsed = process(process_id).parse(given)
     if not progress:
-        found = execute(process_id, given, Context())
+        found = execute(process_id, parsed, Context())
     else:
         from rich.console import Console
 
         from safestart.runtime.reporting import reporting_on
 
         with reporting_on(Console(stderr=True, highlight=False), process_id) as context:
-            found = execute(process_id, given, context)
+            found = execute(process_id, parsed, context)
     return Result(process_id, found.document, found.artifacts)

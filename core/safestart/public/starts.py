@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from safestart.errors import invalid
+from safestart.model.float_array import float_array
 from safestart.model.scenario import MAX_RANGE, Floats, Rest, Scenario
 
 if TYPE_CHECKING:
@@ -17,8 +18,8 @@ if TYPE_CHECKING:
 def points_of(points: ArrayLike) -> Floats:
     """Body-frame points (..., 2) or (..., 3) in metres; raises ``InvalidInput`` for anything else."""
     try:
-        found = np.asarray(points, dtype=np.float64)
-    except (TypeError, ValueError):
+        found = float_array(points)
+    except (TypeError, ValueError, OverflowError):
         raise invalid("points", "numbers, last axis of length 2 or 3 (metres)", points) from None
     if found.ndim == 0 or found.shape[-1] not in (2, 3):
         raise invalid("points", "last axis of length 2 or 3 (metres)", found.shape)

@@ -12,7 +12,9 @@ import httpx
 
 from safestart import errors
 from safestart.errors import Altered, Away, SafestartError, invalid
+from safestart.model.strict_json import json_of
 from safestart.records.artifact import Artifact
+from safestart.runtime.plain_json import NoNumber, loads
 
 TIMEOUT_S = 60.0
 _TRIES, _PAUSE_S = 5, 0.5
@@ -74,6 +76,16 @@ class Wire:
         if answer.is_success or answer.status_code == httpx.codes.NOT_MODIFIED:
             return answer
         raise _refusal(answer)
+
+
+def sent(inputs: Mapping[str, Any] | None) -> Any:
+    """Inputs as JSON, NumPy's numbers and arrays too; raises ``InvalidInput`` for what JSON cannot hold."""
+    if not isinstance(inputs, Mapping | None):
+        raise invalid("inputs", "an object of names and values", inputs)
+    try:
+        return loads(json_of(dict(inputs or {})))
+    except NoNumber as error:
+        raise invalid("inputs", error.required, error.text) from None
 
 
 def artifact_of(wire: Wire, job: str, entry: Mapping[str, Any]) -> Artifact:

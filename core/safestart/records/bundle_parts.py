@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from datetime import UTC, datetime
 from typing import Annotated, Any, Literal
 from unicodedata import category
 
@@ -17,8 +18,8 @@ from pydantic import (
     ValidationError,
 )
 
-from safestart.errors import InvalidInput, invalid
-from safestart.model.validation import validation_error
+from safestart.errors import InvalidInput, UnfitResult, invalid
+from safestart.model.validation import error_of, validation_error
 from safestart.records.labels import Name, Note, Tags
 
 _NOT_PRINTED = frozenset({"Cc", "Cf", "Cn", "Co", "Cs", "Zl", "Zp"})
@@ -54,6 +55,15 @@ def _printing(name: str) -> str:
     return name
 
 
+def _in_utc(time: datetime) -> datetime:
+    try:
+        time.astimezone(UTC)
+    except OverflowError:
+        raise ValueError("a time within the years 1 to 9999 in UTC") from None
+    return time
+
+
+_Time = Annotated[AwareDatetime, AfterValidator(_in_utc)]
 _Text = Annotated[str, BeforeValidator(_storable)]
 _Count = Annotated[int, Field(ge=0, lt=2**31, strict=True)]
 _Document = Annotated[dict[str, Any], BeforeValidator(_json)]
@@ -79,10 +89,10 @@ class JobFacts(Closed):
     message: _Text
     problem: _Document | None
     versions: _Document | None
-    created_at: AwareDatetime
-    started_at: AwareDatetime | None
-    finished_at: AwareDatetime | None
-    updated_at: AwareDatetime
+    created_at: _Time
+    started_at: _Time | None
+    finished_at: _Time | None
+    updated_at: _Time
     name: Name = ""
     tags: Tags = Field(default_factory=list)
     note: Note = ""
@@ -91,7 +101,7 @@ class JobFacts(Closed):
 class EventFacts(Closed):
     """One entry of ``events.json``."""
 
-    at: AwareDatetime
+    at: _Time
     kind: Literal["status", "progress", "log"]
     data: _Document
 
@@ -103,8 +113,21 @@ class ProcessFacts(Closed):
     version: _Text
 
 
-class Provenance(BaseModel):
-    """The origin of a result: checks the hash of every artifact and keeps the rest unchanged."""
+class Origin(BaseModel):
+    """The origin of a result, as far as anything reads it: everything else is kept unchanged."""
+
+    packages: dict[str, str] = Field(default_factory=dict)
+    python: str | None = None
+    source_sha256: str | None = None
+    git_revision: str | None = None
+    machine: dict[str, Any] = Field(default_factory=dict)
+    notes: list[str] = Field(default_factory=list)
+    started: str | None = None
+    finished: str | None = None
+
+
+class Provenance(Origin):
+    """The origin of a result in a bundle, which also has the hash of every artifact."""
 
     artifacts: dict[str, str]
 
@@ -163,6 +186,14 @@ def require_result(result: Any) -> None:
         raise validation_error(error, "bundle.result.") from None
     except ValueError as error:
         raise invalid("bundle.result", str(error), result) from None
+
+
+def origin_of(result: Mapping[str, Any]) -> Origin:
+    """The origin of a stored result; raises ``UnfitResult`` where it is none, as of a result that somebody altered."""
+    try:
+        return Origin.model_validate(result.get("provenance"))
+    except ValidationError as error:
+        raise error_of(UnfitResult, error.errors(include_url=False), "provenance.") from None
 
 
 def require_names(files: Iterable[tuple[Any, Any]]) -> None:

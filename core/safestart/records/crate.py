@@ -16,6 +16,7 @@ from typing import Any
 from urllib.parse import quote
 
 from safestart.records.bundle import Bundle
+from safestart.records.bundle_parts import origin_of
 from safestart.records.comparable import canonical
 
 METADATA = "ro-crate-metadata.json"
@@ -96,8 +97,8 @@ def _action(bundle: Bundle, files: dict[str, tuple[str, bytes]]) -> dict[str, An
 
 def _software(bundle: Bundle) -> dict[str, Any]:
     """This software as it ran: the version of the package, and the SHA-256 of its source as identifier."""
-    origin = {} if bundle.result is None else bundle.result["provenance"]
-    packages, source = origin.get("packages", {}), origin.get("source_sha256")
+    origin = None if bundle.result is None else origin_of(bundle.result)
+    packages, source = ({}, None) if origin is None else (origin.packages, origin.source_sha256)
     return {
         "@id": _SOFTWARE,
         "@type": "SoftwareApplication",

@@ -7,13 +7,12 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints, ValidationError
 
+from safestart.model.plain_text import UNPRINTED
 from safestart.model.validation import validation_error
 
 MOST_NAME, MOST_TAGS, MOST_TAG, MOST_NOTE = 100, 10, 40, 2000
 """Letters of a name, tags of a job, letters of a tag and of a note."""
-# Controls, line separators, and the marks that turn the direction of the text after them: a list shows many texts.
-_UNPRINTED = r"\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069"
-_LINE, _TAG, _LINES = rf"^[^\t\n{_UNPRINTED}]*$", rf"^[^,\t\n{_UNPRINTED}]+$", rf"^[^{_UNPRINTED}]*$"
+_LINE, _TAG, _LINES = rf"^[^\t\n{UNPRINTED}]*$", rf"^[^,\t\n{UNPRINTED}]+$", rf"^[^{UNPRINTED}]*$"
 
 
 def _once(tags: list[str]) -> list[str]:

@@ -63,7 +63,7 @@ def replay(
     """
     _require_result(document)
     process_id = document["process"]["id"]
-    again = execute(process_id, document["inputs"], context)
+    again = execute(process_id, process(process_id).stored(document["inputs"]), context)
     # As the store would return it, with NumPy numbers as plain numbers.
     now = json.loads(canonical(again.document))
     environment = changed(document["provenance"], now["provenance"])

@@ -1,8 +1,8 @@
 """A process of our own: what the user has configured for the libraries that we use does not reach it.
 
-Matplotlib, Dask, Numba and JAX read variables and files of the user's, meant for notebooks and other programs: a style
-that needs LaTeX, a lifetime of Dask's workers, a device that is not there. Our settings are in
-:mod:`safestart.runtime.settings`. A program that imports our packages keeps its own configuration.
+Matplotlib, Dask, Numba, JAX and libpq read variables and files of the user's, meant for notebooks and other programs:
+a style that needs LaTeX, a lifetime of Dask's workers, a device that is not there, another server than the URL's. Our
+settings are in :mod:`safestart.runtime.settings`. A program that imports our packages keeps its own configuration.
 """
 
 from __future__ import annotations
@@ -15,9 +15,14 @@ from collections.abc import Callable, MutableMapping
 from safestart.errors import InvalidInput, SafestartError
 from safestart.runtime.logs import legible
 
-_READ_BY_LIBRARIES = ("MPL", "MATPLOTLIB", "NUMBA_", "JAX_", "XLA_")
+_READ_BY_LIBRARIES = ("MPL", "MATPLOTLIB", "NUMBA_", "JAX_", "XLA_", "PG", "PSYCOPG_")
 # Where caches are kept. A place that cannot be used is bypassed.
 _PLACES = frozenset({"NUMBA_CACHE_DIR", "MPLCONFIGDIR"})
+# How we prove who we are to PostgreSQL and it to us: dropping them would make a connection less secure, silently.
+_PROOFS = (
+    *("PGPASSWORD", "PGPASSFILE", "PGSSL", "PGGSS", "PGKRBSRVNAME"),
+    *("PGCHANNELBINDING", "PGREQUIREAUTH", "PGREQUIREPEER", "PGREQUIRESSL"),
+)
 _OURS = {
     "MATPLOTLIBRC": os.devnull,  # else a file of the working or home directory is read
     "MPLBACKEND": "agg",
@@ -39,7 +44,7 @@ def own_configuration(environment: MutableMapping[str, str] = os.environ) -> Non
     Dask's part is in the worker: with an existing scheduler its TLS configuration is wanted.
     """
     for name in list(environment):
-        if name.startswith(_READ_BY_LIBRARIES) and name not in _PLACES:
+        if name.startswith(_READ_BY_LIBRARIES) and name not in _PLACES and not name.startswith(_PROOFS):
             del environment[name]
     environment.update(_OURS)
 

@@ -16,15 +16,18 @@ from platformdirs import user_config_path, user_data_path
 from pydantic import Field, ValidationError, field_validator
 from pydantic_settings import (
     BaseSettings,
+    InitSettingsSource,
     PydanticBaseSettingsSource,
     SettingsConfigDict,
     TomlConfigSettingsSource,
 )
 
 from safestart.errors import InvalidInput, invalid
+from safestart.model.plain_numbers import is_number, require_plain
 from safestart.model.validation import refusal
-from safestart.runtime.secret_file import with_password
-from safestart.runtime.variables import PREFIX, require_known
+from safestart.runtime.files.bounded import bytes_within
+from safestart.runtime.files.secret_file import with_password
+from safestart.runtime.variables import NAMES, PREFIX, require_known
 
 Network = ipaddress.IPv4Network | ipaddress.IPv6Network
 
@@ -174,7 +177,7 @@ class Settings(BaseSettings):
         file_secret_settings: PydanticBaseSettingsSource,
     ) -> tuple[PydanticBaseSettingsSource, ...]:
         """Arguments first, then the environment, then the file."""
-        return init_settings, env_settings, _file(settings_cls)
+        return init_settings, _variables(settings_cls), _file(settings_cls)
 
     def url(self) -> str:
         """The database URL with its password; creates the default directory if it is missing."""
@@ -197,6 +200,18 @@ class Settings(BaseSettings):
         return f"sqlite:///{folder / 'safestart.sqlite3'}"
 
 
+def _variables(kind: type[BaseSettings]) -> InitSettingsSource:
+    """Read the variables by their exact names; raises ``InvalidInput`` for numbers that a query refuses, too.
+
+    Pydantic would read ``safestart_port`` beside ``SAFESTART_PORT``, and ``8_000`` or ``" 8000"`` as a number.
+    """
+    given = {name: os.environ[PREFIX + name.upper()] for name in NAMES if PREFIX + name.upper() in os.environ}
+    for name, value in given.items():
+        if is_number(kind.model_fields[name].annotation):
+            require_plain(f"settings.{name}", value)
+    return InitSettingsSource(kind, init_kwargs=given)
+
+
 def _file(kind: type[BaseSettings]) -> TomlConfigSettingsSource:
     """Read the settings file; raises ``InvalidInput`` when a named file is missing or is not TOML."""
     named = os.environ.get("SAFESTART_CONFIG")
@@ -205,15 +220,28 @@ def _file(kind: type[BaseSettings]) -> TomlConfigSettingsSource:
     if named and not os.path.isfile(named):  # Path raises on a name that is too long
         raise invalid("SAFESTART_CONFIG", "the path of a TOML file", named)
     try:
+        if path is not None and path.is_file():
+            bytes_within(str(path), path, _MOST_FILE_BYTES)  # it is read without a bound
         source = TomlConfigSettingsSource(kind, toml_file=path or ())
     except RecursionError:
         raise invalid(str(path), "a readable TOML file in UTF-8", "one nested too deeply") from None
     except (OSError, ValueError) as error:  # invalid TOML or UTF-8 is a ValueError
         raise invalid(str(path), "a readable TOML file in UTF-8", str(error)) from None
+    _require_names(kind, source.toml_data)
     _require_kinds(kind, source.toml_data)
     return source
 
 
+def _require_names(kind: type[BaseSettings], given: Mapping[str, Any]) -> None:
+    """Raise ``InvalidInput`` for a name that is not exactly a setting's: beside ``port``, ``Port`` would be ignored."""
+    for name in given:
+        if name not in kind.model_fields:
+            near = get_close_matches(name.lower(), kind.model_fields, n=1)
+            like = f", such as {near[0]}" if near else ""
+            raise invalid(f"settings.{name}", f"the name of a setting{like} (docs/settings.md)", name)
+
+
+_MOST_FILE_BYTES = 1024 * 1024
 _KINDS: dict[Any, str] = {int: "an integer", float: "a number", bool: "true or false"}
 
 
@@ -238,6 +266,12 @@ def _place(of_user: Callable[[str], Path]) -> Path | None:
         return None
 
 
+def url_or_setting(given: str | None) -> str:
+    """The database URL that a command was given, else that of the settings, all of which are read and checked."""
+    chosen = settings()
+    return given or chosen.url()
+
+
 @cache
 def settings() -> Settings:
     """The process-wide settings; raises ``InvalidInput`` and names the wrong setting."""
@@ -249,12 +283,8 @@ def settings() -> Settings:
 
 
 def _fit(report: Any) -> dict[str, Any]:
-    """A pydantic report that names the fields and hides the contents of tables and arrays."""
+    """A pydantic report that hides the contents of tables and arrays."""
     fit = dict(report)
-    if fit["type"] == "extra_forbidden":
-        near = get_close_matches(str(fit["loc"][0]), Settings.model_fields, n=1)
-        like = f", such as {near[0]}" if near else ""
-        fit |= {"type": "value_error", "ctx": {"error": f"the name of a setting{like} (docs/settings.md)"}}
     if isinstance(fit.get("input"), dict | list):  # it may contain a URL with its password
         fit["input"] = type(fit["input"])
     return fit

@@ -33,10 +33,13 @@ _OTHERS = ("SAFESTART_TEST_POSTGRESQL", "SAFESTART_CHROMIUM", "SAFESTART_SCREENS
 
 
 def require_known(variables: Iterable[str]) -> None:
-    """Raise ``InvalidInput`` for a ``SAFESTART_`` variable that names no setting: a misspelt one would be ignored."""
+    """Raise ``InvalidInput`` for a ``SAFESTART_`` variable that names no setting: a misspelt one would be ignored.
+
+    So would one of ``SAFESTART_PORT`` and ``safestart_port``: names are as they are documented, in capital letters.
+    """
     known = [PREFIX + name.upper() for name in (*NAMES, "config")]
     for name in sorted(variables):
-        if name.upper().startswith(PREFIX) and name.upper() not in known and name not in _OTHERS:
+        if name.upper().startswith(PREFIX) and name not in (*known, *_OTHERS):
             near = get_close_matches(name.upper(), known, n=1)
             like = f", such as {near[0]}" if near else ""
             required = f"the name of a setting{like} (docs/settings.md)"

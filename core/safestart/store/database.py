@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from threading import Lock
+from typing import Any
 
 from sqlalchemy import Connection, Engine, Pool, create_engine
 from sqlalchemy.engine import URL
@@ -21,13 +22,6 @@ from safestart.store.dialect import BUSY_TIMEOUT_S, prepare
 from safestart.store.same_file import SameFile
 from safestart.store.url import REQUIRED, parse, refused, shown, without_secrets
 
-# Keepalives detect a server that vanished; without them libpq waits for ever.
-_POSTGRESQL = {
-    "connect_timeout": 10,
-    "tcp_user_timeout": 30_000,
-    "keepalives_idle": 10,
-    "keepalives_interval": 5,
-}
 # libpq's messages for errors that waiting cannot cure; at that stage there are no error codes.
 _REFUSALS = (
     "authentication failed",
@@ -164,11 +158,18 @@ def _dumps(value: object) -> str:
     return json.dumps(value, separators=(",", ":"), allow_nan=False)
 
 
+def _options(backend: str) -> dict[str, Any]:
+    if backend == "sqlite":
+        return {"timeout": BUSY_TIMEOUT_S}
+    from safestart.store.session import CONNECTION  # SQLite does without psycopg
+
+    return CONNECTION
+
+
 def _engine(url: URL) -> Engine:
-    sqlite = url.get_backend_name() == "sqlite"
-    options = {"timeout": BUSY_TIMEOUT_S} if sqlite else _POSTGRESQL
-    ours = {name: value for name, value in options.items() if name not in url.query}
     try:
+        options = _options(url.get_backend_name())
+        ours = {name: value for name, value in options.items() if name not in url.query}
         return create_engine(url, json_serializer=_dumps, connect_args=ours)
     except ModuleNotFoundError as error:
         raise Unavailable(

@@ -21,7 +21,6 @@ from sqlalchemy.sql.functions import FunctionElement
 from sqlalchemy.types import Float, Integer, String, TypeDecorator
 
 BUSY_TIMEOUT_S = 30.0
-STOPPED_S = 10.0
 _WAL_BYTES = 64 * 1024 * 1024
 _SCHEMA_LOCK = 0x5AFE57A27
 _QUEUE_LOCK = 0x5AFE57A28
@@ -137,7 +136,6 @@ def prepare(engine: Engine) -> None:
         event.listen(engine, "begin", _on_sqlite_begin)
     else:
         event.listen(engine, "do_connect", _do_postgresql_connect)
-        event.listen(engine, "connect", _on_postgresql_connect)
         event.listen(engine, "checkout", _on_postgresql_checkout)
 
 
@@ -164,23 +162,15 @@ def _on_sqlite_connect(connection: sqlite3.Connection, _record: Any) -> None:
 
 def _do_postgresql_connect(_dialect: Any, _record: Any, arguments: Any, options: Any) -> Any:
     from safestart.store.patient import PatientConnection  # SQLite does without psycopg
+    from safestart.store.session import settle
 
-    return PatientConnection.connect(*arguments, **options)
-
-
-def _on_postgresql_connect(connection: Any, _record: Any) -> None:
-    from safestart.store.patient import STATEMENT_S
-
-    with connection.cursor() as cursor:
-        cursor.execute(f"SET statement_timeout = {int(STATEMENT_S * 1000)}")
-        # A process stopped in the middle of a transaction would keep its rows locked, and nobody could take over.
-        cursor.execute(f"SET idle_in_transaction_session_timeout = {int(STOPPED_S * 1000)}")
-        # The same limit as for SQLite: a foreign lock must not hang every request.
-        cursor.execute(f"SET lock_timeout = {int(BUSY_TIMEOUT_S * 1000)}")
-        # Every job was once accepted and running, and an index keeps those rows until a vacuum. A bitmap scan visits
-        # all of them each time; a plain one marks what is gone and passes over it from then on.
-        cursor.execute("SET enable_bitmapscan = off")
-    connection.commit()
+    connection = PatientConnection.connect(*arguments, **options)
+    try:
+        settle(connection, BUSY_TIMEOUT_S)  # before SQLAlchemy reads anything through it
+    except BaseException:
+        connection.close()
+        raise
+    return connection
 
 
 def _on_postgresql_checkout(connection: Any, _record: Any, _proxy: Any) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any
 from uuid import uuid4
@@ -16,14 +16,13 @@ from safestart.runtime.access import Caller, Role
 from safestart.runtime.progress import Context
 from safestart_service.computing.limits import too_long
 from safestart_service.computing.long_answers import Where, put
-from safestart_service.computing.pieces import pieces
+from safestart_service.computing.pieces import members, pieces
 from safestart_service.computing.store import Store
 from safestart_service.documents.execution import (
     ExecuteRequest,
     check_outputs,
     check_states,
     parse_request,
-    run_now,
     selected,
 )
 from safestart_service.documents.jobs_view import job_detail
@@ -87,7 +86,7 @@ def at_once(store: Store, context: Context, asked: Asked) -> Made | float:
         return _answer(spec, request, context, asked)
     # A helper process loads for seconds, and compiles for a minute where no kernels are kept.
     document = spec.output_at_once(request.inputs, context)
-    return cost if document is None else _made(document, request, asked)
+    return cost if document is None else _made(document.items(), request, asked)
 
 
 def in_full(store: Store, context: Context, asked: Asked, place: Where | None = None) -> Made:
@@ -120,17 +119,19 @@ def _parsed(store: Store, asked: Asked) -> ExecuteRequest:
 def _answer(
     spec: ProcessSpec, request: ExecuteRequest, context: Context, asked: Asked, place: Where | None = None
 ) -> Made:
-    return _made(run_now(spec, request.inputs, context), request, asked, place)
+    return _made(spec.output_parts(request.inputs, context), request, asked, place)
 
 
 def _made(
-    document: dict[str, Any], request: ExecuteRequest, asked: Asked, place: Where | None = None
+    parts: Iterable[tuple[str, Any]], request: ExecuteRequest, asked: Asked, place: Where | None = None
 ) -> Made:
     headers = asked.announced(request.inputs)
-    chosen = document if asked.bare else selected(document, request)
+    chosen = parts if asked.bare else selected(parts, request)
+    raw = not asked.bare and request.response == "raw"
     if place is None:
-        return Made(orjson.dumps(chosen), headers=headers)
-    body, in_file = put(place, pieces(chosen))
+        whole = chosen if raw else dict(chosen)
+        return Made(orjson.dumps(whole, option=orjson.OPT_SERIALIZE_NUMPY), headers=headers)
+    body, in_file = put(place, pieces(chosen) if raw else members(chosen))
     return Made(body, headers=headers, in_file=in_file)
 
 

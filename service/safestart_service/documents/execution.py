@@ -13,9 +13,8 @@ from safestart.errors import InvalidInput, invalid
 from safestart.processes.base import ProcessSpec, WireModel
 from safestart.processes.registry import process
 from safestart.records.labels import NAME_TEXT, NOTE_TEXT, TAGS_TEXT, Labels, Name, Note, Tags
-from safestart.runtime.progress import Context
 from safestart_service.documents.describe import output_ids
-from safestart_service.documents.formats.ogc import ogc_values
+from safestart_service.documents.formats.ogc import ogc_members
 from safestart_service.http.body import MOST_PARTS, parse_body, require_bounded, require_once
 
 _QUALIFIED = {"value", "mediaType", "encoding", "schema"}
@@ -124,15 +123,15 @@ def check_states(spec: ProcessSpec, inputs: WireModel, max_states: int) -> None:
         raise invalid(spec.states, f"at most {max_states} items", len(getattr(inputs, spec.states)))
 
 
-def run_now(spec: ProcessSpec, inputs: WireModel, context: Context) -> dict[str, Any]:
-    """Run a light process here; returns its output document."""
-    return spec.runner()(inputs, context).document
+def selected(parts: Iterable[tuple[str, Any]], request: ExecuteRequest) -> Any:
+    """Of the outputs those that are requested.
 
-
-def selected(document: dict[str, Any], request: ExecuteRequest) -> Any:
-    """The requested outputs as the standard's results document, or the bare value of a raw response."""
-    chosen = document if request.outputs is None else {name: document[name] for name in request.outputs}
-    return next(iter(chosen.values())) if request.response == "raw" else ogc_values(chosen)
+    As members of the standard's results document, one after the other, or the bare value of a raw response.
+    """
+    if request.outputs is not None:
+        document = dict(parts)
+        parts = [(name, document[name]) for name in request.outputs]
+    return next(iter(parts))[1] if request.response == "raw" else ogc_members(parts)
 
 
 def prefers_async(headers: Iterable[str]) -> bool:

@@ -142,7 +142,7 @@ def partial_document(services: Services, job: Job, base: str) -> dict[str, Any]:
             required="a job of a process that is cut into shards",
             received=job.id,
         )
-    inputs = spec.parse(job.inputs)
+    inputs = spec.stored(job.inputs)
     documents = services.jobs.shard_documents(job.id)
     total = len(spec.sharding.parts(inputs))
     # A successful job has no shards any more: its result replaces them.

@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import Any
 from urllib.parse import quote
 
+from safestart.records.bundle_parts import origin_of
 from safestart.store.records import Job, JobStatus
 
 
@@ -47,12 +48,13 @@ def provenance(job: Job, record: dict[str, Any] | None, base: str) -> dict[str, 
 def _add_result(
     document: dict[str, Any], activity: str, plan: str, record: dict[str, Any], submitter: str | None
 ) -> None:
-    origin = record["provenance"]
-    software = f"safestart:software:{origin.get('source_sha256', 'unknown')}"
+    origin = origin_of(record)
+    software = f"safestart:software:{origin.source_sha256 or 'unknown'}"
+    known = {"python": origin.python, "source_sha256": origin.source_sha256}
     document.setdefault("agent", {})[software] = {
         "prov:type": "prov:SoftwareAgent",
-        **{f"safestart:{name}": origin[name] for name in ("python", "source_sha256") if origin.get(name)},
-        **{f"safestart:package:{name}": value for name, value in origin.get("packages", {}).items()},
+        **{f"safestart:{name}": value for name, value in known.items() if value},
+        **{f"safestart:package:{name}": value for name, value in origin.packages.items()},
     }
     document["wasAssociatedWith"]["_:plan"]["prov:agent"] = software
     if submitter:

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Container, Sequence
+from collections.abc import Container
 from functools import cache
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from fastapi import Request
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel
 
 from safestart.errors import InvalidInput, invalid
-from safestart.model import doubles
-from safestart.model.places import placed
-from safestart.model.validation import refusal
+from safestart.model.strict_json import NotJson, validated
 from safestart.runtime.plain_json import NameTwice, TooManyNames, require_unique_names
 from safestart_service.errors import MalformedBody, UnsupportedMediaType
 from safestart_service.http.answers import all_lines
@@ -23,7 +20,6 @@ Model = TypeVar("Model", bound=BaseModel)
 MOST_PARTS = 100_000
 """Values and names in a body of a process without a list of states."""
 PARTS_PER_STATE = 8
-MOST_REPORTS = 20
 
 
 async def read_body(request: Request) -> bytes:
@@ -51,30 +47,14 @@ async def read_body(request: Request) -> bytes:
 def parse_body(model: type[Model], body: bytes, most_parts: int = MOST_PARTS) -> Model:
     """Validate bytes against a model; raises ``MalformedBody`` or ``InvalidInput``, which name the mistake.
 
-    ``most_parts`` bounds the values and names in the body before anything is parsed. pydantic parses and validates in
-    one pass, which makes 100 000 states affordable.
+    ``most_parts`` bounds the values and names in the body before anything is parsed.
     """
     require_bounded(body, most_parts)
     require_once(body, names_of(model))
     try:
-        return model.model_validate_json(body, strict=True)
-    except ValidationError as error:
-        reports = error.errors(include_url=False, include_input=False)
-    if len(reports) == 1 and reports[0]["type"] == "json_invalid":
-        raise _malformed(body, reports[0]["msg"])
-    document = json.loads(body, parse_float=doubles.read)  # it is JSON: pydantic has read it
-    if _made_whole(document, reports):
-        # Once: what is still no integer after this is none.
-        try:
-            return model.model_validate_json(json.dumps(document), strict=True)
-        except ValidationError as error:
-            reports = error.errors(include_url=False, include_input=False)
-    # The reports name places in the document. pydantic's own copies of the inputs would be one per report.
-    shown = placed(model, reports[:MOST_REPORTS])
-    raise refusal(
-        [{**report, "input": value_at(document, report["loc"])} for report in shown],
-        others=max(0, len(reports) - MOST_REPORTS),
-    )
+        return validated(model, body)
+    except NotJson as error:
+        raise _malformed(body, str(error)) from None
 
 
 def require_bounded(body: bytes, most_parts: int) -> None:
@@ -92,39 +72,6 @@ def require_bounded(body: bytes, most_parts: int) -> None:
             required=required,
             received=parts,
         )
-
-
-def value_at(document: Any, place: Sequence[Any]) -> Any:
-    """The value at a place of a report; parts of the place that name a member of a union are left out."""
-    for part in place:
-        if _holds(document, part):
-            document = document[part]
-    return document
-
-
-def _holds(document: Any, part: Any) -> bool:
-    there = isinstance(document, dict) and part in document
-    return there or (isinstance(document, list) and isinstance(part, int) and part < len(document))
-
-
-def _made_whole(document: Any, reports: Sequence[Any]) -> bool:
-    """Put 31 where the document has 31.0 and a report misses an integer; whether there was such a place.
-
-    To JSON Schema 31.0 is an integer; to pydantic in strict mode it is not.
-    """
-    found = False
-    for report in reports:
-        if report["type"] != "int_type":
-            continue
-        inside, key = None, None
-        value = document
-        for part in report["loc"]:
-            if _holds(value, part):
-                inside, key, value = value, part, value[part]
-        if inside is not None and isinstance(value, float) and value.is_integer():
-            inside[key] = int(value)
-            found = True
-    return found
 
 
 def _malformed(body: bytes, why: str) -> MalformedBody:

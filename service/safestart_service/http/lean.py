@@ -6,7 +6,7 @@ answer. This route splits the query string once and validates it in one call.
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable, Container
+from collections.abc import Awaitable, Callable
 from typing import Any, TypeVar
 from urllib.parse import parse_qsl
 
@@ -16,25 +16,21 @@ from fastapi.routing import APIRoute
 from starlette.types import Receive, Scope, Send
 
 from safestart.errors import invalid
-from safestart.model.plain_numbers import GROUPED, require_plain
 from safestart_service.http.answers import send_json
+from safestart_service.http.strict import FORM, require_form
 
 Query = TypeVar("Query")
 
 
-def query_values(raw: bytes, numbers: Container[str] = ()) -> dict[str, str]:
-    """Parameters of a query string.
+def query_values(raw: bytes) -> dict[str, str]:
+    """Parameters of a query string, without the ``f=json`` of OGC clients.
 
-    Raises ``InvalidInput`` for a repeated parameter, which is ambiguous, for ``1_0``, which pydantic reads as 10 but is
-    more likely a slip for 1.0, and for ``numbers`` that are not written as such.
+    Raises ``InvalidInput`` for a repeated parameter, which is ambiguous, and for another ``f``. How numbers are written
+    is for whoever knows which parameters are some.
     """
     text = raw.decode("latin-1")
     if "%" in text or "+" in text:
         pairs = parse_qsl(text, keep_blank_values=True)
-        text = "&".join(value for _, value in pairs)
-        for name, value in pairs:  # only escapes can make a plus sign or a space
-            if name in numbers:
-                require_plain(name, value)
     else:  # nothing to unescape, the usual case
         pairs = [part.partition("=")[::2] for part in text.split("&") if part]
     values = dict(pairs)
@@ -44,10 +40,8 @@ def query_values(raw: bytes, numbers: Container[str] = ()) -> dict[str, str]:
             if name in seen:
                 raise invalid(name, "one value", f"another one, {value}")
             seen.add(name)
-    if GROUPED.search(text):
-        for name, value in pairs:
-            if GROUPED.search(value):
-                require_plain(name, value)
+    if FORM in values:
+        require_form(values.pop(FORM))
     return values
 
 
@@ -55,12 +49,11 @@ def query_route(
     parse: Callable[[dict[str, str]], Query],
     answer: Callable[[Request, Query], Awaitable[Response]],
     instant: Callable[[Query, Scope], Any] = lambda _, __: None,
-    numbers: Container[str] = (),
 ) -> type[APIRoute]:
     """An ``APIRoute`` class that serves ``answer(request, parse(parameters))``; the endpoint is only documentation.
 
     ``instant`` gives the document of a query that takes microseconds, sent at once, or None. Its second argument is
-    the request's scope. ``numbers`` are the parameters that are numbers.
+    the request's scope.
     """
 
     class QueryRoute(APIRoute):
@@ -71,7 +64,7 @@ def query_route(
             if scope["method"] != "GET":
                 await super().handle(scope, receive, send)  # refuses it
                 return
-            query = parse(query_values(scope["query_string"], numbers))
+            query = parse(query_values(scope["query_string"]))
             document = instant(query, scope)
             if document is None:
                 response = await answer(Request(scope, receive, send), query)

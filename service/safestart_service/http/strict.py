@@ -17,8 +17,14 @@ from pydantic import BaseModel
 from safestart.errors import invalid
 from safestart.model.plain_numbers import is_number, require_plain
 
-_FORM = "f"
+FORM = "f"
 """Clients of OGC APIs ask for JSON with it; that is what they get in any case."""
+
+
+def require_form(value: str) -> None:
+    """Raise ``InvalidInput`` for another form of an answer than JSON."""
+    if value != "json":
+        raise invalid(FORM, "json", value)
 
 
 class StrictRoute(APIRoute):
@@ -45,15 +51,14 @@ def _check(request: Request, known: dict[str, Any]) -> None:
         if name in seen and get_origin(kind) is not list:
             raise invalid(name, "one value", f"another one, {value}")
         seen.add(name)
-        if name == _FORM and name not in known:
-            if value != "json":
-                raise invalid(name, "json", value)
+        if name == FORM and name not in known:
+            require_form(value)
         elif name not in known:
             raise invalid(name, "no field of this name", value)
         elif is_number(kind):
             require_plain(name, value)
-    if _FORM in seen and _FORM not in known:
-        kept = [pair for pair in pairs if pair[0] != _FORM]
+    if FORM in seen and FORM not in known:
+        kept = [pair for pair in pairs if pair[0] != FORM]
         request.scope["query_string"] = urlencode(kept).encode("ascii")
 
 

@@ -10,7 +10,6 @@ from fastapi.responses import Response
 from starlette.types import Scope
 
 from safestart.errors import NotFound
-from safestart.model.plain_numbers import is_number
 from safestart.processes import door
 from safestart.processes.door import OneStart
 from safestart.processes.flat import described
@@ -35,9 +34,6 @@ if TYPE_CHECKING:
 else:
     GoNoGoQuery = described(door.PARAMETERS, "GoNoGoQuery", "One operating point and one start, flat.")
 _SILENT = Context()
-_NUMBERS = frozenset(
-    name for name, one in door.PARAMETERS.items() if not one.json_text and is_number(one.field.annotation)
-)
 
 
 def _instant(asked: OneStart, scope: Scope) -> dict[str, Any] | None:
@@ -76,10 +72,8 @@ def in_space(body: bytes) -> bool:
     return b'"starts"' in body
 
 
-one = APIRouter(
-    tags=["instant answers"], route_class=query_route(door.parse, _answer, _instant, numbers=_NUMBERS)
-)
-proof = APIRouter(tags=["instant answers"], route_class=query_route(door.parse, _proof, numbers=_NUMBERS))
+one = APIRouter(tags=["instant answers"], route_class=query_route(door.read, _answer, _instant))
+proof = APIRouter(tags=["instant answers"], route_class=query_route(door.read, _proof))
 many = APIRouter(tags=["instant answers"], route_class=StrictRoute)
 
 

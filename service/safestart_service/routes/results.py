@@ -8,6 +8,7 @@ from fastapi import APIRouter, Path, Query, Request
 from fastapi.responses import Response
 
 from safestart.errors import Conflict
+from safestart.processes.tables.foreign import fit_for
 from safestart_service.computing.light import Left
 from safestart_service.documents.arrays import arrays_of
 from safestart_service.documents.formats.base import Format
@@ -87,7 +88,8 @@ def results(
     headers = {"ETag": tag, "Cache-Control": _CACHE, "Vary": "Accept"}
     if not form.document:
         headers["Content-Disposition"] = f'attachment; filename="{jobID}.{form.name}"'
-    return Response(form.encode(record, table), headers=headers, media_type=form.media_type)
+    data = fit_for(record, lambda: form.encode(record, table))
+    return Response(data, headers=headers, media_type=form.media_type)
 
 
 @router.get(

@@ -37,6 +37,20 @@ def test_keys_are_random_and_only_digests_are_kept(keys):
     assert kept == {record.id: key_digest(key.encode()) for record, key in made}
 
 
+def test_a_key_that_could_not_be_shown_is_none(database, keys):
+    def broken(*_: object) -> None:
+        raise InvalidInput("standard output: full")
+
+    with pytest.raises(InvalidInput, match="full"):
+        keys.create("unseen", Role.ADMIN, 1.0, BY, broken)
+    assert keys.list() == ()
+    assert AuditLog(database).entries().entries == ()
+    seen = []
+    made = keys.create("seen", Role.ADMIN, 1.0, BY, lambda *shown: seen.append(shown))
+    assert seen == [made]
+    assert keys.list() == (made[0],)
+
+
 def test_expiry_and_revocation_are_the_databases_word(database, keys):
     short, _ = keys.create("short", Role.READ, 1.0, BY)
     lasting, _ = keys.create("lasting", Role.SUBMIT, None, BY)

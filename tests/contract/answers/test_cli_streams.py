@@ -11,6 +11,11 @@ from pathlib import Path
 import pytest
 
 from safestart.cli import main
+from safestart.records.labels import Labels
+from safestart.store.access.audit import AuditLog
+from safestart.store.access.keys import KeyRepository
+from safestart.store.database import Database
+from safestart.store.jobs.repository import JobRepository
 
 ASKED = ["go-no-go", "--omega-t-deg-s", "3", "--a-max-m-s2", "0.1", "--x-m", "5", "--y-m", "40"]
 NONE = "/dev/full"
@@ -149,3 +154,104 @@ def test_a_shorter_document_replaces_a_longer_one(tmp_path: Path, monkeypatch: p
         main()
     assert ended.value.code == 0
     assert json.loads(path.read_text())["verdict"] == "GO"
+
+
+@pytest.mark.parametrize("form", [[], ["--json"]], ids=["text", "json"])
+@pytest.mark.parametrize(
+    ("redirected", "reason"),
+    [(f">{NONE}", "No space left on device"), (">&-", "it is closed"), ("| :", "nobody reads it")],
+)
+def test_a_key_that_cannot_be_shown_is_not_made(
+    form: list[str], redirected: str, reason: str, tmp_path: Path
+) -> None:
+    """The first key closes the service for good: one that nobody has seen would close it to everybody."""
+    url = f"sqlite:///{tmp_path / 'keys.sqlite3'}"
+    asked = ["keys", "create", "--name", "a", "--role", "admin", "--database-url", url, *form]
+    if redirected.startswith("|"):
+        reader, writer = os.pipe()
+        os.close(reader)
+        command = [sys.executable, "-m", "safestart", *asked]
+        done = subprocess.run(command, stdout=writer, stderr=subprocess.PIPE, text=True, check=False)
+        os.close(writer)
+        code, said = done.returncode, done.stderr
+    else:
+        code, said = ended(asked, redirected)
+    assert (code, len(said.splitlines())) == (2, 1), said
+    assert f"({reason}); no key was made" in said
+    database = Database(url)
+    database.migrate()
+    assert KeyRepository(database).list() == ()
+    assert AuditLog(database).entries().entries == ()
+    database.close()
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["verify", "-"],
+        ["verify", "-", "--json"],
+        ["go-no-go", "--input", "-"],
+        ["run", "certificate", "--input", "-"],
+    ],
+    ids=lambda arguments: " ".join(arguments),
+)
+@pytest.mark.parametrize("more", ["", ">&-"])
+def test_a_closed_standard_input(arguments: list[str], more: str) -> None:
+    """Code 2: the code 1 of `verify` would say that the proof is wrong."""
+    code, said = ended(arguments, f"<&- {more}")
+    assert (code, len(said.splitlines())) == (2, 1), said
+    assert "it is closed" in said
+    assert ended(arguments, f"<&- {more} 2>&-") == (2, "")
+
+
+ENCODINGS: list[dict[str, str]] = [
+    {"PYTHONIOENCODING": "ascii"},
+    {"PYTHONIOENCODING": "latin-1"},
+    {"PYTHONIOENCODING": "cp437"},
+    {"PYTHONIOENCODING": "ascii:strict"},
+    {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"},
+]
+
+
+@pytest.mark.parametrize("terminal", ENCODINGS, ids=str)
+def test_an_encoding_that_lacks_what_is_said(terminal: dict[str, str], tmp_path: Path) -> None:
+    """On standard output and in errors of every command, as the streams are those of the whole process."""
+    url = f"sqlite:///{tmp_path}/jobs.sqlite3"
+    database = Database(url)
+    database.migrate()
+    job = JobRepository(database).submit(
+        "certificate", {}, timeout_s=9, labels=Labels(name="日本", note="é ²")
+    )
+    database.close()
+    for arguments, code, stream in (
+        (["label", job.id, "--database-url", url], 0, "stdout"),
+        (["reproduce", "table1"], 0, "stdout"),
+        (["run", "日本 ²"], 2, "stderr"),
+        (["go-no-go", "--日本"], 2, "stderr"),
+        (["--help"], 0, "stdout"),
+    ):
+        command = [sys.executable, "-m", "safestart", *arguments]
+        plain = {name: value for name, value in os.environ.items() if name != "PYTHONUTF8"}
+        done = subprocess.run(command, capture_output=True, env=plain | terminal, check=False)
+        assert done.returncode == code, done.stderr
+        assert b"Traceback" not in done.stderr
+        assert getattr(done, stream)
+        if arguments[0] == "label":
+            assert rb"\u65e5\u672c" in done.stdout
+
+
+CHILD = """
+import subprocess, sys
+from safestart.cli.streams import patient_streams
+with patient_streams():
+    print("日本" * 100_000, file=sys.stderr)
+    subprocess.run(["sh", "-c", "echo said; echo said >&2"], stdout=sys.stderr, stderr=sys.stdout, check=True)
+"""
+
+
+@pytest.mark.parametrize("redirected", ["2>&-", ">&-", "<&- >&- 2>&-"])
+def test_a_child_of_a_command_whose_outputs_are_closed(redirected: str) -> None:
+    """`up` and `demo` give theirs the standard error."""
+    command = ["sh", "-c", f'exec "$@" {redirected}', "sh", sys.executable, "-c", CHILD]
+    done = subprocess.run(command, capture_output=True, check=False)
+    assert done.returncode == 0, done.stderr

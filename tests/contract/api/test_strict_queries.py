@@ -75,6 +75,22 @@ def test_clients_of_ogc_apis_may_ask_for_json(client, path: str) -> None:
     assert_problem(client.get(f"{path}?f=html"), 422, "f")
 
 
+def test_every_call_may_be_asked_for_json(guarded) -> None:
+    client, keys, _ = guarded
+    client.headers["X-API-Key"] = keys["admin"]
+    for method, path, _ in _calls(client):
+        assert_problem(_asked(client, method, f"{path}?f=html"), 422, "f")
+        plain, asked = (_asked(client, method, f"{path}{more}") for more in ("", "?f=json"))
+        assert (asked.status_code, asked.headers["content-type"]) == (
+            plain.status_code,
+            plain.headers["content-type"],
+        ), (method, path)
+    question = "/go-no-go?omega_t_deg_s=3&a_max_m_s2=0.1&x_m=-5&y_m=40&f=json"
+    assert client.get(question).json()["verdict"] == "GO"
+    assert_problem(client.get(question.replace("?", "?f=json&")), 422, "f")
+    assert client.get(question.replace("go?", "go/proof?")).status_code == 200
+
+
 def test_a_plain_number_is_taken(client) -> None:
     assert client.get("/jobs?limit=5&offset=0").status_code == 200
     assert client.get("/go-no-go?omega_t_deg_s=3e0&a_max_m_s2=0.1&x_m=-5&y_m=%34%30").status_code == 200

@@ -106,6 +106,18 @@ def test_the_parts_alone_are_a_bundle(database: Database) -> None:
         ("job", [1]),
         *(("result", wrong) for wrong in (None, 3, [1], "x", {}, RESULT | {"outputs": [1]})),
         *(("result", RESULT | {"provenance": wrong}) for wrong in (None, 3, [1])),
+        *(
+            ("result", RESULT | {"provenance": RESULT["provenance"] | wrong})
+            for wrong in (
+                {"packages": 5},
+                {"packages": {"numpy": 2}},
+                {"packages": None},
+                {"source_sha256": ["a"]},
+                {"python": 3},
+                {"machine": "x"},
+                {"notes": "<script>"},
+            )
+        ),
         *(("result", RESULT | {"outputs": {"b": wrong}}) for wrong in (NAN, HALF, HUGE)),
         ("result", RESULT | {"schema_version": HUGE}),
         ("result", RESULT | {"process": {"id": 3}}),
@@ -144,6 +156,17 @@ def test_the_parts_alone_are_a_bundle(database: Database) -> None:
 def test_parts_that_no_job_has_are_refused(part: str, value: Any) -> None:
     with pytest.raises(InvalidInput, match="bundle"):
         unpack(sealed(**{part: value}))
+
+
+@pytest.mark.parametrize("name", ["created_at", "started_at", "finished_at", "updated_at"])
+@pytest.mark.parametrize("time", ["0001-01-01T00:00:00+14:00", "9999-12-31T23:59:59.999999-14:00"])
+def test_a_time_beyond_the_years_is_refused_at_its_field(name: str, time: str) -> None:
+    with pytest.raises(
+        InvalidInput, match=f"^bundle.job.{name}: required a time within the years 1 to 9999 in UTC"
+    ):
+        unpack(sealed(job=JOB | {name: time}))
+    with pytest.raises(InvalidInput, match=r"^bundle\.events\.0\.at: required a time within the years"):
+        unpack(sealed(events=[EVENT | {"at": time}]))
 
 
 def test_inputs_that_the_job_leaves_to_their_defaults_are_no_contradiction() -> None:

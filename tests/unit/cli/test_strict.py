@@ -102,11 +102,13 @@ def test_lists_as_json(
     assert "position_m: required JSON" in refused(["go-no-go", *words], monkeypatch, capsys)
 
 
-def test_texts_of_a_file_follow_the_rule(
+def test_a_text_in_a_file_is_no_number(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    given = {"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "x_m": "1_0", "y_m": 40}
-    assert "x_m" in refused(["go-no-go", "--input", "-"], monkeypatch, capsys, json.dumps(given))
+    given = {"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "x_m": "10", "y_m": 40}
+    assert "x_m: required a number, received '10'" in refused(
+        ["go-no-go", "--input", "-"], monkeypatch, capsys, json.dumps(given)
+    )
 
 
 def test_no_option_of_go_no_go_takes_a_number_as_a_text() -> None:

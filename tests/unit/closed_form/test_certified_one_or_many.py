@@ -14,7 +14,7 @@ from safestart.closed_form.certified import certify
 from safestart.closed_form.certified_point import certify_point, prepare
 from safestart.closed_form.rates import rates_of
 from safestart.model.scenario import CorridorShape, Floats, Rest, Scenario
-from safestart.processes.door import parse
+from safestart.processes.door import parse, read
 from safestart.processes.execute import execute
 from safestart.runtime.progress import Context
 
@@ -118,7 +118,7 @@ def test_python_as_the_service(seed: int) -> None:
     flat = asked(case)
     flat |= flat.pop("corridor")
     for k in range(0, len(points), 11):
-        got = parse({name: str(value) for name, value in {**flat, **states[k]}.items()}).document(Context())
+        got = read({name: str(value) for name, value in {**flat, **states[k]}.items()}).document(Context())
         assert (got["verdict"], got["margin_m"]) == (found.verdict[k], margins[k])
         for one in (points[k], points[k : k + 1]):
             alone = ss.certify(scenario, one, rest)

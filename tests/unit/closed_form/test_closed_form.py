@@ -179,7 +179,7 @@ def test_bad_points(points: object) -> None:
 def test_bad_scenarios_name_the_field_and_what_came(rate: float, thrust: float) -> None:
     with pytest.raises(InvalidInput) as error:
         Scenario.of(rate, thrust)
-    assert error.value.field in ("tumble_rate", "max_acceleration")
+    assert error.value.field in ("omega_t_deg_s", "max_acceleration")
     assert "required" in error.value.detail
     assert "received" in error.value.detail
 

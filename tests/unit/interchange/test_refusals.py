@@ -53,6 +53,7 @@ def _swapped(text: str) -> str:
         (OEM.replace(LAST, LAST.rpartition(" ")[0]), "an epoch and 6 numbers"),
         (OEM.replace(LAST, LAST.rpartition(" ")[0] + " nan"), "a finite number"),
         (OEM.replace(LAST, LAST.rpartition(" ")[0] + " 1_0"), "a finite number"),
+        (OEM.replace(LAST, LAST.rpartition(" ")[0] + " ٣"), "a finite number"),
         (OEM.replace("2026-03-01T12:00:10 ", "2026-02-30T12:00:10 "), "a date of the calendar"),
         (OEM.replace("2026-03-01T12:00:10 ", "2026-03-01T12:00:60 "), "a time of day"),
         (OEM.replace("2026-03-01T12:00:10 ", "2026-03-01T25:00:10 "), "a time of day"),

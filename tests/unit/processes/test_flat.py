@@ -61,11 +61,11 @@ SHORT = Flat(Short, {"states": State})
 
 def test_names_go_where_they_belong() -> None:
     assert list(FLAT.parameters) == ["thrust", "mode", "c_x", "states", "starts", "attitude"]
-    found = FLAT.parse({"thrust": "2", "c_x": "0.5", "attitude": '{"kind": "spin", "axis": [0, 0, 1]}'})
+    found = FLAT.read({"thrust": "2", "c_x": "0.5", "attitude": '{"kind": "spin", "axis": [0, 0, 1]}'})
     assert found == Inputs(thrust=2, corridor=Shape(c_x=0.5), attitude=Spin(kind="spin", axis=[0, 0, 1]))
-    found = FLAT.parse({"thrust": 2, "starts": '[{"position_m": [5, 40, 0]}]'})
+    found = FLAT.parse({"thrust": 2, "starts": [{"position_m": [5, 40, 0]}]})
     assert found == Inputs(thrust=2, starts=[Start(position_m=[5, 40, 0])])
-    assert SHORT.parse({"x_m": "5"}) == Short(states=[State(x_m=5)])
+    assert SHORT.read({"x_m": "5"}) == Short(states=[State(x_m=5)])
 
 
 @pytest.mark.parametrize(
@@ -84,7 +84,7 @@ def test_names_go_where_they_belong() -> None:
 )
 def test_refusals_name_the_flat_field(flat: Flat[Any], values: dict[str, str], field: str) -> None:
     with pytest.raises(InvalidInput) as refused:
-        flat.parse(values)
+        flat.read(values)
     assert refused.value.field == field
 
 
@@ -144,7 +144,7 @@ def test_a_command_has_an_option_for_each_parameter() -> None:
 def test_go_no_go_asks_for_one_start_by_the_names_of_its_inputs() -> None:
     short = {"omega_t_deg_s": "3", "a_max_m_s2": "0.1", "x_m": "5", "y_m": "40"}
     assert {name for name, one in ONE_START.parameters.items() if one.required} == set(short)
-    found = ONE_START.parse(short | {"r_h_m": "1", "proofs": "true"})
+    found = ONE_START.read(short | {"r_h_m": "1", "proofs": "true"})
     assert (found.states[0].x_m, found.states[0].z_m, found.corridor.r_h_m, found.proofs) == (
         5,
         None,

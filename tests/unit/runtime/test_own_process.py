@@ -22,6 +22,9 @@ from safestart.public.client import Client
 from safestart.records.artifact import Artifact
 from safestart.runtime.own_process import exit_code, own_configuration, place_fault
 from safestart.runtime.settings import settings
+from safestart.store.access.keys import KeyRepository
+from safestart.store.database import Database
+from tests.contract.store.store_backends import NO_SERVER, POSTGRESQL, fresh_url
 
 ASKED = {
     "omega_t_deg_s": [3],
@@ -34,6 +37,23 @@ HOSTILE = {
     "NUMBA_DISABLE_JIT": "1",
     "NUMBA_BOUNDSCHECK": "what",
     "HTTP_PROXY": "http://127.0.0.1:9",
+}
+LIBPQ = {
+    "PGDATESTYLE": "German",
+    "PGTZ": "Asia/Tokyo",
+    "PGGEQO": "bogus",
+    "PGCLIENTENCODING": "SQL_ASCII",
+    "PGOPTIONS": "-c datestyle=SQL,DMY -c search_path=nowhere",
+    "PGSERVICE": "bogus",
+    "PGSERVICEFILE": "/nowhere",
+    "PGTARGETSESSIONATTRS": "bogus",
+    "PGHOSTADDR": "192.0.2.1",
+    "PGHOST": "192.0.2.1",
+    "PGPORT": "1",
+    "PGUSER": "nobody",
+    "PGDATABASE": "nowhere",
+    "PGCONNECT_TIMEOUT": "bogus",
+    "PSYCOPG_IMPL": "bogus",
 }
 COMMANDS = (
     ["keys", "list"],
@@ -62,7 +82,13 @@ def words() -> Figure:
 
 def test_variables_that_libraries_read_are_ours() -> None:
     place = {"NUMBA_CACHE_DIR": "/somewhere", "PATH": "/bin"}
-    environment = HOSTILE | place | {"MATPLOTLIBRC": "/mine", "JAX_ENABLE_X64": "1"}
+    place |= {
+        "PGPASSFILE": "/secret",
+        "PGSSLMODE": "verify-full",
+        "PGPASSWORD": "s",
+        "PGREQUIREAUTH": "scram-sha-256",
+    }
+    environment = HOSTILE | LIBPQ | place | {"MATPLOTLIBRC": "/mine", "JAX_ENABLE_X64": "1"}
     own_configuration(environment)
     assert environment == place | {
         "HTTP_PROXY": HOSTILE["HTTP_PROXY"],
@@ -71,6 +97,32 @@ def test_variables_that_libraries_read_are_ours() -> None:
         "NUMBA_DISABLE_JIT": "0",
         "JAX_PLATFORMS": "cpu",
     }
+
+
+@pytest.mark.skipif(not POSTGRESQL, reason=NO_SERVER)
+def test_variables_of_libpq_choose_no_server_and_no_session(tmp_path: Path) -> None:
+    url = fresh_url("postgresql", tmp_path)
+    done = subprocess.run(
+        [
+            sys.executable,
+            "-m",
+            "safestart",
+            "keys",
+            "create",
+            "--name",
+            "日本",
+            "--database-url",
+            url,
+            "--json",
+        ],
+        env=os.environ | LIBPQ,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    database = Database(url)
+    assert [key.name for key in KeyRepository(database).list()] == ["日本"]
+    database.close()
 
 
 @pytest.mark.slow

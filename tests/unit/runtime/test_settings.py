@@ -5,14 +5,18 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from safestart.cli import build
 from safestart.errors import InvalidInput
+from safestart.runtime.own_process import exit_code
 from safestart.runtime.settings import Settings, settings
 from safestart.runtime.variables import NAMES
+from safestart.store.database import Database
 from tests.waiting import PATIENCE_S
 
 
@@ -66,6 +70,12 @@ def test_a_name_that_is_too_long_is_no_file(monkeypatch: pytest.MonkeyPatch) -> 
         ("log_format", "xml", "one of 'text' or 'json'"),
         ("max_queued", "1e4", "an integer"),
         ("keep_days", "-1", "a number >= 0"),
+        ("port", "8_000", "a number without _ between its digits"),
+        ("port", " 8000", "a number without spaces and without a plus sign"),
+        ("port", "+8000", "a number without spaces and without a plus sign"),
+        ("port", "٨٠٠٠", "a number in the digits 0 to 9"),
+        ("lease_s", "1_0", "a number without _ between its digits"),
+        ("lease_s", "10\n", "a number without spaces"),
     ],
 )
 def test_a_wrong_variable_is_named_with_what_was_required_and_what_came(
@@ -82,6 +92,8 @@ def test_a_wrong_variable_is_named_with_what_was_required_and_what_came(
     ("content", "said"),
     [
         (b"prot = 9", "settings.prot: required the name of a setting, such as port"),
+        (b"Port = 22060\nport = 22061", "settings.Port: required the name of a setting, such as port"),
+        (b"PORT = 9", "settings.PORT: required the name of a setting, such as port"),
         (b"[safestart]\nport = 9", "settings.safestart: required the name of a setting"),
         (b"port = = 9", r"required a readable TOML file in UTF-8, received 'Invalid value \(at line 1"),
         (b"host = '\xff'", "required a readable TOML file in UTF-8"),
@@ -158,6 +170,8 @@ def test_without_any_file_there_are_the_defaults() -> None:
         ("SAFESTART_RATE_PER_SECOND", "SAFESTART_RATE_PER_S"),
         ("SAFESTART_CONFIG_FILE", "SAFESTART_CONFIG"),
         ("safestart_prot", "SAFESTART_PORT"),
+        ("safestart_port", "SAFESTART_PORT"),
+        ("Safestart_Config", "SAFESTART_CONFIG"),
         ("SAFESTART_ZZZ", None),
         ("SAFESTART_", None),
     ],
@@ -173,9 +187,39 @@ def test_a_variable_that_names_no_setting_is_refused(
 
 
 def test_variables_that_are_known_are_not_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in ("safestart_port", "SAFESTART_TEST_POSTGRESQL", "SAFE_START", "XSAFESTART_PORT"):
+    for name in ("SAFESTART_PORT", "SAFESTART_TEST_POSTGRESQL", "SAFE_START", "XSAFESTART_PORT"):
         monkeypatch.setenv(name, "1")
     assert settings().port == 1
+
+
+COMMANDS = (
+    *(["keys", *more] for more in (["create", "--name", "a"], ["list"], ["revoke", "x"], ["audit"])),
+    *(["label", "job"], ["export", "job"], ["backup", "copy"], ["restore", "copy"]),
+    *(["purge", "--older-than", "1d"], ["replay", "job"]),
+)
+
+
+@pytest.mark.parametrize("command", COMMANDS, ids=" ".join)
+def test_a_command_that_is_given_its_database_reads_all_settings(
+    command: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("SAFESTART_PORT", "abc")
+    url = f"sqlite:///{tmp_path / 'some.sqlite3'}"
+    Database(url).migrate()
+    assert exit_code(lambda: build()([*command, "--database-url", url])) == 2
+    assert "settings.port: required an integer" in capsys.readouterr().err
+
+
+def test_a_replay_of_a_file_reads_all_settings(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "a.zip"
+    with zipfile.ZipFile(file, "w"):
+        pass
+    monkeypatch.setenv("SAFESTART_CONFIG", str(tmp_path / "none.toml"))
+    assert exit_code(lambda: build()(["replay", str(file)])) == 2
+    assert "SAFESTART_CONFIG: required" in capsys.readouterr().err
 
 
 @pytest.mark.slow

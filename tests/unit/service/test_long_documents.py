@@ -10,11 +10,14 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import orjson
 import pytest
 
+from safestart.processes.registry import process
+from safestart.runtime.progress import Context
 from safestart_service.computing.long_answers import LONG_BYTES, Place, Where, put
-from safestart_service.computing.pieces import BLOCK, pieces
+from safestart_service.computing.pieces import BLOCK, members, pieces
 
 DOCUMENTS: list[Any] = [
     {},
@@ -35,6 +38,26 @@ def test_the_pieces_are_the_document(document: Any) -> None:
     before = orjson.dumps(document)
     assert b"".join(pieces(document)) == before
     assert orjson.dumps(document) == before, "the document itself is left alone"
+
+
+@pytest.mark.parametrize("rows", [1, 3 * BLOCK + 1])
+def test_an_array_is_written_as_its_list(rows: int) -> None:
+    table = np.random.default_rng(5).normal(size=(rows, 3)) * 10.0 ** np.arange(-200, 250, 150)
+    found = b"".join(members([("a", table), ("b", [])]))
+    assert found == orjson.dumps({"a": table.tolist(), "b": []})
+    assert found == orjson.dumps({"a": table, "b": []}, option=orjson.OPT_SERIALIZE_NUMPY)
+
+
+@pytest.mark.parametrize("given", [{}, {"method": "paper"}, {"proofs": True}])
+@pytest.mark.parametrize("number", [1, 7])
+def test_the_parts_of_an_answer_are_its_document(given: dict[str, Any], number: int) -> None:
+    spec = process("go-no-go")
+    states = [{"x_m": 0.5 * k, "y_m": 40} for k in range(number)]
+    asked = spec.parse({"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "states": states} | given)
+    document = spec.runner()(asked, Context()).document
+    parts = dict(spec.output_parts(asked, Context()))
+    assert orjson.dumps(parts, option=orjson.OPT_SERIALIZE_NUMPY) == orjson.dumps(document)
+    spec.check(document)
 
 
 def test_a_large_list_is_never_one_piece() -> None:

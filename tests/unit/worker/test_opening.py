@@ -1,13 +1,15 @@
 """The embedded cluster has Dask's defaults and ours."""
 
 import asyncio
+import gc
 import os
 
 import dask
 import psutil
 import pytest
 
-from safestart_worker.cluster.opening import _defaults, open_cluster
+from safestart.errors import InvalidInput
+from safestart_worker.cluster.opening import _defaults, _require_address, open_cluster
 from safestart_worker.cluster.own_files import forget_variables
 
 USERS = {
@@ -56,3 +58,24 @@ def test_a_process_without_a_task_hardly_wakes() -> None:
             return max(one.num_ctx_switches().voluntary - count for one, count in before.items()) / 3.0
 
     assert asyncio.run(wakes_per_s()) < 50.0
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(
+    "address", ["http://x", "x", "tcp://x", "tcp://x:99999999", "tcp://x:0", "tcp://", "ucx://x:1", "\udcff"]
+)
+def test_no_address_is_refused_before_there_is_a_client(address: str) -> None:
+    """The client would leave coroutines that nobody awaits, and two warnings after the sentence."""
+
+    async def opened() -> None:
+        async with open_cluster(address, 1, 3, "me"):
+            pass
+
+    with pytest.raises(InvalidInput, match="scheduler: required an address such as tcp://host:8786"):
+        asyncio.run(opened())
+    gc.collect()
+
+
+@pytest.mark.parametrize("address", ["tcp://x:8786", "x:8786", "tls://[::1]:8786", "ws://x:80"])
+def test_addresses(address: str) -> None:
+    _require_address(address)

@@ -11,9 +11,11 @@ from typing import Any
 
 import dask
 from distributed import Client, LocalCluster, Nanny, Security
+from distributed.comm.addressing import parse_address
+from distributed.comm.registry import get_backend
 from distributed.system import MEMORY_LIMIT
 
-from safestart.errors import InvalidInput
+from safestart.errors import InvalidInput, invalid
 from safestart_worker.cluster.cluster import Cluster
 from safestart_worker.cluster.credentials import configured, refused, throwaway
 from safestart_worker.cluster.own_files import forget_variables, unreadable
@@ -31,6 +33,8 @@ async def open_cluster(
     scheduler: str, processes: int, max_attempts: int, owner: str
 ) -> AsyncIterator[Cluster]:
     """Connect to ``scheduler``, or start an embedded cluster when it is empty; the block's end closes it."""
+    if scheduler:
+        _require_address(scheduler)
     async with AsyncExitStack() as stack:
         folder = stack.enter_context(_private_folder())
         if not scheduler:
@@ -53,15 +57,27 @@ async def open_cluster(
             except (OSError, TimeoutError) as error:
                 raise refused(scheduler, error) from error
             except ValueError as error:
-                raise InvalidInput(
-                    f"scheduler: required an address such as tcp://host:8786, received {scheduler!r}",
-                    field="scheduler",
-                    required="an address such as tcp://host:8786",
-                    received=scheduler,
-                ) from error
+                raise _no_address(scheduler) from error
             cluster = Cluster(client, owner, local)
             stack.push_async_callback(cluster.close)
             yield cluster
+
+
+def _require_address(scheduler: str) -> None:
+    """Raise ``InvalidInput`` for no address of a scheduler, before there is a client.
+
+    Dask's client finds it out inside of coroutines, and leaves some of its own that nobody awaits.
+    """
+    try:
+        scheme, place = parse_address(scheduler)
+        if not 0 < get_backend(scheme).get_address_host_port(place)[1] < 65536:
+            raise ValueError("no port")
+    except (ValueError, NotImplementedError, TypeError):
+        raise _no_address(scheduler) from None
+
+
+def _no_address(scheduler: str) -> InvalidInput:
+    return invalid("scheduler", "an address such as tcp://host:8786", scheduler)
 
 
 def _private_folder() -> TemporaryDirectory[str]:

@@ -66,7 +66,9 @@ def load() -> None:
 
 def run_job(process_id: str, inputs: dict[str, Any], key: str, topic: str) -> JobEnd:
     """Run one job to its outcome."""
-    return _whole(lambda context: execute(process_id, inputs, context), key, topic)
+    return _whole(
+        lambda context: execute(process_id, process(process_id).stored(inputs), context), key, topic
+    )
 
 
 def run_merge(

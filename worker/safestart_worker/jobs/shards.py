@@ -65,7 +65,7 @@ class Sharded:
     async def run(self) -> JobEnd:
         """Run the missing shards, then the merge."""
         try:
-            parts = self._sharding.parts(self._spec.parse(self._claim.inputs))
+            parts = self._sharding.parts(self._spec.stored(self._claim.inputs))
         except SafestartError as error:
             return _failed(problems.of_error(error))
         contents = [content(self._spec.id, part, source()) for part in parts]

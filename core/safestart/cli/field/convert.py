@@ -34,6 +34,7 @@ def register(app: typer.Typer) -> None:
     ) -> None:
         """Write states or attitudes in another form, every number to the last bit; tables hold no covariance."""
         from safestart.interchange.ephemeris import Ephemeris
+        from safestart.interchange.epochs import require_epoch
         from safestart.interchange.read import course_from
         from safestart.interchange.source import bytes_of
         from safestart.interchange.write import course_bytes
@@ -42,6 +43,7 @@ def register(app: typer.Typer) -> None:
             raise invalid("to", f"a name that ends in one of {', '.join(_FORMS)}", to.name)
         if sense not in (None, "rotating", "inertial"):
             raise invalid("--sense", "rotating or inertial", sense)
+        require_epoch("--created", created)
         form = _FORMS[to.suffix.lower()]
         course = course_from(bytes_of(source), source.name, sense)  # type: ignore[arg-type]
         plain = len(course.pieces) == 1 and not course.useable

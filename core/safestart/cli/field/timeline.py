@@ -11,7 +11,9 @@ import typer
 from safestart.cli.console import Json, err, out, print_json, reporting
 from safestart.cli.files import folder, target, writable
 from safestart.errors import invalid
+from safestart.processes.base import WireModel
 from safestart.processes.execute import Execution
+from safestart.processes.registry import process
 from safestart.processes.side_by_side import execute_side_by_side
 from safestart.runtime.plain_json import loads
 
@@ -92,9 +94,10 @@ def register(app: typer.Typer) -> None:
             inputs["spin"] = {"rate_deg_s": spin, "phase_deg": phase}
         if corridor:
             inputs["corridors"] = [_corridor(text) for text in corridor]
+        parsed = process("commit-timeline").parse(inputs)
         with target("--output", output) as file, folder("--proofs", proofs):
             with reporting("commit-timeline") as context:
-                result = execute_side_by_side("commit-timeline", inputs, context, _workers(inputs))
+                result = execute_side_by_side("commit-timeline", parsed, context, _workers(parsed))
             if file is not None:
                 file.write_json(result.document, indent=2)
                 _beside(file.path, result)
@@ -103,14 +106,13 @@ def register(app: typer.Typer) -> None:
         print_json(result.document) if as_json else _show(result.document["outputs"])
 
 
-def _workers(inputs: dict[str, Any]) -> int | None:
+def _workers(inputs: WireModel) -> int | None:
     """1 for a span so short that other processes would not have started before it is done; None: as many as cores."""
     from safestart.processes.commit_timeline.courses import encounter_of
-    from safestart.processes.commit_timeline.spec import SPEC, CommitTimelineInputs
+    from safestart.processes.commit_timeline.spec import CommitTimelineInputs
 
-    parsed = SPEC.parse(inputs)
-    assert isinstance(parsed, CommitTimelineInputs)
-    return 1 if len(encounter_of(parsed)[1]) < _FEW else None
+    assert isinstance(inputs, CommitTimelineInputs)
+    return 1 if len(encounter_of(inputs)[1]) < _FEW else None
 
 
 def _text(option: str, path: Path) -> str:

@@ -28,13 +28,15 @@ from safestart.dynamics.yamanaka_ankersen import YamanakaAnkersen
 from safestart.errors import invalid
 from safestart.exact.limits import AT_END, SPEED
 from safestart.exact.question import Goal, Spanned, check_steps
-from safestart.exact.space.demands.rules import NONE, Demands
+from safestart.exact.space.demands.rules import NONE, PLUME, VIEW, Demands
 from safestart.exact.space.unknowns import KNOWN, Unknowns
 from safestart.model.orbit import KeplerOrbit
 from safestart.model.scenario import MAX_RANGE, CorridorShape, Floats, number
 from safestart.optim.thrust_shapes import BALL, CUBE, SIMPLEX, UnitSet
 
 MOST_FACES = 32
+OTHERS = frozenset((*AT_END, SPEED, VIEW, PLUME))
+"""Names of what proofs name beside faces, whether or not a question has it."""
 _UNIT_SETS: dict[str, UnitSet] = {"ball": BALL, "box": CUBE, "thrusters": SIMPLEX}
 
 
@@ -52,8 +54,8 @@ class Face:
 class SpaceQuestion(Spanned):
     """``steps`` intervals of ``dt`` s; raises ``InvalidInput`` for an invalid question.
 
-    Faces: 1 to 32 with different names and nonzero normals; the faces of each frame have a point in common. A table of
-    attitudes reaches the horizon.
+    Faces: 1 to 32 with different names, none of ``OTHERS``, and nonzero normals; the faces of each frame have a point
+    in common. A table of attitudes reaches the horizon.
 
     ``goal`` makes it `synchronize`: at T, any number of intervals from ``goal.earliest`` to ``steps``, the chaser is at
     rest against the turning body in a ball around ``goal.hold`` (body frame, m). ``speed_limit`` (m/s) holds for the
@@ -78,9 +80,6 @@ class SpaceQuestion(Spanned):
         _check_faces(self.faces)
         if self.goal is not None:
             _check_goal(self.goal, self.faces, self.steps)
-        norms = (AT_END if self.goal is not None else ()) + ((SPEED,) if self.speed_limit is not None else ())
-        if any(face.name in norms for face in self.faces):
-            raise invalid("faces", f"names other than {', '.join(norms)}", [face.name for face in self.faces])
         self.demands.check([*(face.name for face in self.faces), *AT_END, SPEED])
         if self.demands.plume is not None and self.thrust.kind != "ball":
             # A sum of thrusts away from the target may come from a thruster that blows at it.
@@ -194,6 +193,8 @@ def _check_faces(faces: tuple[Face, ...]) -> None:
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice or not all(isinstance(name, str) and 0 < len(name) <= 40 for name in names):
         raise invalid("faces", "names of 1 to 40 characters, each once", twice or names)
+    if not OTHERS.isdisjoint(names):
+        raise invalid("faces", f"names other than {', '.join(sorted(OTHERS))}", names)
     for k, face in enumerate(faces):
         if face.frame not in ("lvlh", "body"):
             raise invalid(f"faces.{k}.frame", "lvlh or body", face.frame)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 
-from safestart.interchange.ccsds.tokens import Kind, Token, refused
+from safestart.interchange.ccsds.tokens import Kind, Token, refused, written
 from safestart.interchange.source import refuse_many_lines
 
 _PAIR = re.compile(r"([A-Z][A-Z0-9_]*)\s*=\s*(.*?)\s*(?:\[([^\[\]]*)\])?", re.ASCII)
@@ -40,9 +40,9 @@ def tokens_of(text: str) -> Iterator[Token]:
 
 
 def text_of(tokens: Iterable[Token]) -> str:
-    """The KVN text of tokens."""
+    """The KVN text of tokens; raises ``InvalidInput`` for a text with a line end."""
     lines = []
-    for token in tokens:
+    for token in map(written, tokens):
         if token.kind is Kind.KEY:
             lines.append(f"{token.name} = {token.value}" + (f" [{token.units}]" if token.units else ""))
         elif token.kind is Kind.ROW:

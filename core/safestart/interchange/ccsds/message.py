@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from safestart.errors import invalid
 from safestart.interchange.ccsds import kvn, xml_form
 from safestart.interchange.ccsds.tokens import Fields, Kind, Token, blocks_of, refused
+from safestart.interchange.epochs import require_epoch
 from safestart.interchange.foreign import refuse_foreign
 from safestart.interchange.source import text_of
 
@@ -113,7 +114,8 @@ def message_of(data: bytes) -> Message:
 
 
 def header_of(kind: str, version: str, created: str, originator: str) -> list[Token]:
-    """The tokens with which a message begins."""
+    """The tokens with which a message begins; raises ``InvalidInput`` unless it was ``created`` at an epoch."""
+    require_epoch("CREATION_DATE", created)
     return [
         Token(Kind.KEY, f"CCSDS_{kind}_VERS", version),
         Token(Kind.KEY, "CREATION_DATE", created),

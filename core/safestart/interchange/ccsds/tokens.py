@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 from safestart.errors import InvalidInput, invalid
+from safestart.model.plain_text import require_line
 
 
 class Kind(StrEnum):
@@ -82,6 +83,13 @@ class Fields:
                 raise refused(token.line, f"a keyword of {self.block}", name)
 
 
+def written(token: Token) -> Token:
+    """The token, for a message; raises ``InvalidInput`` where a text of it is more than a line."""
+    for text in (token.name, token.value, token.units):
+        require_line(token.name or "row", text)
+    return token
+
+
 def refused(line: int, required: str, received: object) -> InvalidInput:
     """The error at a line of a file."""
     return invalid(f"line {line}" if line else "file", required, received)
@@ -95,7 +103,7 @@ def number(text: str, line: int, name: str, power: int = 0) -> float:
         value = float(f"{mantissa}e{int(exponent or 0) + power}" if power else text)
     except ValueError:
         value = float("nan")
-    if not abs(value) < 1e300 or "_" in text:
+    if not abs(value) < 1e300 or "_" in text or not text.isascii():
         raise refused(line, f"{name}: a finite number", text)
     return value
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from html import escape
 
 from safestart.errors import invalid
-from safestart.interchange.ccsds.tokens import Kind, Token
+from safestart.interchange.ccsds.tokens import Kind, Token, written
 from safestart.interchange.ccsds.xml_form import STATE, TRIANGLE
 
 _HEADER = ("CREATION_DATE", "ORIGINATOR")
@@ -15,7 +15,7 @@ _META = ("OBJECT_NAME", "OBJECT_ID", "CENTER_NAME", "REF_FRAME", "TIME_SYSTEM")
 
 def text_of(tokens: Iterable[Token]) -> str:
     """The XML text of an OEM, AEM, OPM or OCM; raises ``InvalidInput`` for another kind."""
-    first, *rest = tokens
+    first, *rest = map(written, tokens)
     kind = first.name.split("_")[1].lower()
     writers = {"oem": _oem, "aem": _aem, "opm": _opm, "ocm": _ocm}
     if kind not in writers:

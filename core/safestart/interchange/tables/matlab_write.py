@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 from collections.abc import Mapping
 from typing import Any, cast
 
@@ -22,7 +23,7 @@ def matlab_of(columns: Mapping[str, Any]) -> bytes:
         array = np.atleast_1d(np.asarray(column))
         text = array.dtype.kind == "U"
         found[name] = (array.astype(object) if text else array.astype(np.float64)).reshape(
-            len(array), array.size // max(len(array), 1)
+            len(array), math.prod(array.shape[1:])
         )
     # It takes files too, whatever its stubs say.
     savemat(cast(Any, sink), found, do_compression=True, long_field_names=True)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import Any
+
 from safestart.processes.base import ProcessOutput
 from safestart.processes.go_no_go.answer import Answer
 from safestart.processes.go_no_go.conditions import conditions_of
@@ -13,6 +16,11 @@ from safestart.runtime.progress import Context
 def run(inputs: GoNoGoInputs, context: Context) -> ProcessOutput:
     """Answer for every start; planar and spatial ones may not be mixed."""
     return ProcessOutput(answer(inputs, context).document())
+
+
+def parts(inputs: GoNoGoInputs, context: Context) -> Iterator[tuple[str, Any]]:
+    """The members of that document one after the other, for very many starts."""
+    return answer(inputs, context).parts()
 
 
 def answer(inputs: GoNoGoInputs, context: Context) -> Answer:

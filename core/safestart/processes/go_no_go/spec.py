@@ -129,6 +129,7 @@ SPEC = ProcessSpec(
     run="safestart.processes.go_no_go.run:run",
     light=True,
     at_once="safestart.processes.go_no_go.run:output_at_once",
+    parts="safestart.processes.go_no_go.run:parts",
     cost=lambda inputs: cost(inputs, len(inputs.states)),
     states="states",
     tables=(

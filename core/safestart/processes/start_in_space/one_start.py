@@ -66,8 +66,17 @@ class SpaceAnswer(WireModel):
 
 
 def parse(values: Mapping[str, Any]) -> SpaceInputs:
-    """Validate flat values, which may be texts; raises ``InvalidInput`` under the flat name."""
-    return (_WHOLE if "corridor" in values else _FIVE).parse(values)
+    """Validate flat values of JSON, strictly; raises ``InvalidInput`` under the flat name."""
+    return _of(values).parse(values)
+
+
+def read(texts: Mapping[str, str]) -> SpaceInputs:
+    """As :func:`parse` for the texts of a query."""
+    return _of(texts).read(texts)
+
+
+def _of(given: Mapping[str, Any]) -> Flat[SpaceInputs]:
+    return _WHOLE if "corridor" in given else _FIVE
 
 
 @dataclass(frozen=True, slots=True)

@@ -127,7 +127,11 @@ class FiveFaces(CorridorInput):
 class FaceInput(WireModel):
     """A half-space."""
 
-    name: str = Field(min_length=1, max_length=40, description="Name, each once.")
+    name: str = Field(
+        min_length=1,
+        max_length=40,
+        description="Name, each once; not field_of_view, hold, plume, rest, speed.",
+    )
     normal: Vector = Field(
         description="normal . p <= offset_m for positions p; its length scales the offset."
     )

@@ -79,18 +79,32 @@ def columns_of(spec: ProcessSpec) -> dict[str, TableColumns]:
     return found
 
 
-def output_columns(spec: ProcessSpec) -> dict[str, tuple[Kind, bool, bool]]:
-    """Outputs that are numbers or arrays of them: type, whether numbers may be missing, whether it is an array."""
-    found: dict[str, tuple[Kind, bool, bool]] = {}
-    for name, field in spec.outputs.model_fields.items():
-        kind, nullable = _plain(field.annotation)
-        deep = get_origin(kind) is list
+@dataclass(frozen=True, slots=True)
+class OutputArray:
+    """An output that is a number or an array of them: its type, whether numbers may be missing, and its ``shape``.
+
+    ``shape`` has the least number of entries along each axis; it is () for a single number.
+    """
+
+    kind: Kind
+    nullable: bool
+    shape: tuple[int, ...]
+
+
+def output_arrays(spec: ProcessSpec) -> dict[str, OutputArray]:
+    """Outputs that are numbers or arrays of them, by name."""
+    found = {}
+    for name, annotation in _members(spec.outputs):
+        shape = []
+        kind, nullable = _plain(annotation)
         while get_origin(kind) is list:
-            kind, inner = _plain(get_args(kind)[0])
+            shape.append((_length(annotation) or (0, 0))[0])
+            annotation = get_args(kind)[0]
+            kind, inner = _plain(annotation)
             nullable = nullable or inner
         scalar = _scalar(kind)
         if scalar is not None and scalar is not Kind.TEXT:
-            found[name] = scalar, nullable, deep
+            found[name] = OutputArray(scalar, nullable, tuple(shape))
     return found
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from sqlalchemy import ColumnElement, and_, or_, select, update
 
@@ -17,6 +17,7 @@ from safestart.store.records import ApiKey
 MAX_NAME = 100
 MAX_DAYS = 3660.0
 _DAY_S = 86_400.0
+Show = Callable[[ApiKey, str], None]
 
 
 class KeyRepository:
@@ -25,10 +26,14 @@ class KeyRepository:
     def __init__(self, database: Database) -> None:
         self._database = database
 
-    def create(self, name: str, role: Role, days: float | None, by: Caller) -> tuple[ApiKey, str]:
+    def create(
+        self, name: str, role: Role, days: float | None, by: Caller, show: Show | None = None
+    ) -> tuple[ApiKey, str]:
         """Make a key that expires after ``days`` (None: never); returns its record and the key itself, which cannot
         be read again.
 
+        ``show`` gets both before the key is in force: what it raises leaves no key behind, as one that nobody has seen
+        would close an open service for good. Writers wait for it, so it must not wait for anybody.
         Raises ``InvalidInput`` for a name that is empty or longer than 100 characters and for days not in (0,
         3660].
         """
@@ -50,7 +55,10 @@ class KeyRepository:
             session.flush()
             add_audit(session, by, "create-key", key_id, {"name": name, "role": row.role, "days": days})
             session.refresh(row)
-            return row.record(True), key
+            record = row.record(True)
+            if show is not None:
+                show(record, key)
+            return record, key
 
     def list(self) -> tuple[ApiKey, ...]:
         """All keys ever made, oldest first."""

@@ -10,7 +10,7 @@ import io
 from typing import Any
 
 from safestart.processes.tables import Kind, typed_tables
-from safestart.processes.tables.columns import output_columns
+from safestart.processes.tables.columns import output_arrays
 from safestart.processes.tables.typed import known_process
 from safestart_service.documents.formats.base import Format, Record
 
@@ -32,12 +32,12 @@ def arrays_of(record: Record) -> dict[str, Any]:
             if isinstance(value, int | float | list) and (array := _numeric(value)) is not None:
                 arrays[name] = array
     else:
-        for name, (kind, nullable, deep) in output_columns(spec).items():
+        for name, one in output_arrays(spec).items():
             value = outputs.get(name)
             if value is None:
-                value = [] if deep else float("nan")
-            if (array := _typed(value, kind, nullable=nullable)) is not None:
-                arrays[name] = array
+                value = [] if one.shape else float("nan")
+            if (array := _typed(value, one.kind, nullable=one.nullable)) is not None:
+                arrays[name] = _in_shape(array, one.shape)
     for name, table in typed_tables(record).items():
         for column, kind in table.kinds.items():
             if kind is not Kind.TEXT:
@@ -59,6 +59,13 @@ def _typed(values: Any, kind: Kind, *, nullable: bool) -> Any:
         return np.array(values, dtype=np.float64 if nullable or exact is None else exact)
     except (TypeError, ValueError, OverflowError):
         return None
+
+
+def _in_shape(array: Any, least: tuple[int, ...]) -> Any:
+    """An empty array with all axes of its description: a list without points says nothing of a point's length."""
+    if array.size or array.ndim >= len(least):
+        return array
+    return array.reshape(*array.shape, *least[array.ndim :])
 
 
 def _numeric(value: Any) -> Any:

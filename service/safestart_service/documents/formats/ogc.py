@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import orjson
@@ -9,18 +10,18 @@ import orjson
 from safestart_service.documents.formats.base import Format, Record
 
 
-def ogc_values(outputs: dict[str, Any]) -> dict[str, Any]:
+def ogc_members(outputs: Iterable[tuple[str, Any]]) -> Iterator[tuple[str, Any]]:
     """Outputs as the standard defines them: objects are qualified, and null outputs are left out."""
-    return {
-        name: {"value": value, "mediaType": "application/json"} if isinstance(value, dict) else value
-        for name, value in outputs.items()
-        if value is not None
-    }
+    for name, value in outputs:
+        if isinstance(value, dict):
+            yield name, {"value": value, "mediaType": "application/json"}
+        elif value is not None:
+            yield name, value
 
 
 def ogc_results(record: Record) -> dict[str, Any]:
     """Values by output id, artifacts as links."""
-    document = ogc_values(record["outputs"])
+    document = dict(ogc_members(record["outputs"].items()))
     for file in record["artifacts"]:
         document[file["name"]] = {"href": file["href"], "type": file["media_type"], "title": file["name"]}
     return document

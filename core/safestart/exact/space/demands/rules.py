@@ -178,8 +178,6 @@ class Demands:
         names = [one.name for one in self.keep_outs]
         reserved = {*taken, VIEW, PLUME}
         wrong = sorted({name for name in names if names.count(name) > 1 or name in reserved})
-        if self.view is not None and VIEW in taken:
-            raise invalid("faces", f"names other than {VIEW} beside a field of view", VIEW)
         if wrong:
             raise invalid("keep_outs", "names that nothing else has, each once", wrong)
 

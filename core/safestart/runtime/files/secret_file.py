@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from urllib.parse import quote
 
 from safestart.errors import invalid
+from safestart.runtime.files.bounded import bytes_within
 
+_MOST_BYTES = 64 * 1024
 _REQUIRED = "a readable file that holds the password of the database"
 
 
@@ -30,7 +31,7 @@ def with_password(url: str, file: str) -> str:
 
 def _read(file: str) -> str:
     try:
-        password = Path(file).read_text(encoding="utf-8").rstrip("\r\n")
+        password = bytes_within("database_password_file", file, _MOST_BYTES).decode().rstrip("\r\n")
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else "no UTF-8 text"
         raise invalid("database_password_file", _REQUIRED, f"{file} ({reason})") from None

@@ -1,0 +1,1 @@
+"""Files and streams read within a bound."""
