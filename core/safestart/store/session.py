@@ -2,8 +2,7 @@
 
 ``ALTER DATABASE``, ``ALTER ROLE`` and libpq's variables may set a form of dates that the driver cannot read, a coding
 that has no letter for a name, or numbers cut to 15 digits. A ``SET`` after the connection stands above all of them.
-What the URL says stays: an operator wrote it for this service. So does the ``search_path`` of a database or role, as a
-place for our tables.
+What it does not name stays as the URL, the database or the role say: their ``search_path`` is a place for our tables.
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 from collections.abc import AsyncIterator
-from io import FileIO
+from io import BufferedReader, FileIO
 from typing import Any
 
 from fastapi import Request
@@ -68,12 +68,14 @@ class _Sent(StreamingResponse):
 
     def __init__(self, request: Request, file: FileIO, made: Made) -> None:
         size, budget = os.fstat(file.fileno()).st_size, services(request).answers
-        self._file, self._share = file, Share(budget, caller(request).key_id)
-        if not self._share.grow(size):
-            file.close()
-            raise full(budget)
+        # Closing it waits for a thread that still reads: its number may be that of another answer a moment later.
+        self._file = BufferedReader(file, PIECE)
         headers = made.headers | {"Content-Length": str(size)}
-        super().__init__(_pieces(file), made.status, headers, media_type="application/json")
+        super().__init__(_pieces(self._file), made.status, headers, media_type="application/json")
+        self._share = Share(budget, caller(request).key_id)
+        if not self._share.grow(size):
+            self._file.close()
+            raise full(budget)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Send it."""
@@ -84,7 +86,7 @@ class _Sent(StreamingResponse):
             self._share.end()
 
 
-async def _pieces(file: FileIO) -> AsyncIterator[bytes]:
+async def _pieces(file: BufferedReader[FileIO]) -> AsyncIterator[bytes]:
     while piece := await asyncio.to_thread(file.read, PIECE):
         yield piece
 

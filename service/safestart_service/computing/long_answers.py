@@ -105,11 +105,24 @@ def put(where: Where | None, parts: Iterable[bytes]) -> tuple[bytes, bool]:
         if length > LONG_BYTES:
             break
     if length > LONG_BYTES and where is not None:
-        with suppress(OSError), where.path.open("r+b", buffering=0) as file:
-            if file.read(len(where.mark) + 1) == where.mark:
-                file.seek(0)
+        file = _found(where)
+        if file is not None:
+            with file:  # what fails from here on is an error: half an answer is none
                 return _written(file, chain(held, parts))
     return b"".join(chain(held, parts)), False
+
+
+def _found(where: Where) -> FileIO | None:
+    with suppress(OSError):
+        file = where.path.open("r+b", buffering=0)
+        try:
+            if file.read(len(where.mark) + 1) == where.mark:
+                file.seek(0)
+                return file
+        except OSError:
+            pass
+        file.close()
+    return None
 
 
 def _written(file: FileIO, parts: Iterator[bytes]) -> tuple[bytes, bool]:

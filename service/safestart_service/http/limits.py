@@ -106,9 +106,10 @@ class Limits(Forkable):
 
         async def refuse_answer() -> None:
             nonlocal unsent
-            unsent = None
+            refused, unsent = unsent, None
             assert self.answers is not None
             await self._refuse(scope, request_id, full(self.answers), send_with_headers)
+            unsent = refused  # what the application still says is dropped
 
         refusal = unread or self._misplaced(scope, headers) or self._refusal(scope, headers)
         if refusal is not None:

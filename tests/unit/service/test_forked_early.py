@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import os
 import signal
+import socket
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import httpx
@@ -13,6 +15,7 @@ import psutil
 import pytest
 
 from benchmarks.worst_requests_watch import memory_of
+from safestart_service.computing.helpers.early import Child
 from tests.waiting import PATIENCE_S, ended, free_port, until
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere it is a program of its own")
@@ -96,3 +99,18 @@ def test_a_keystroke_says_nothing(served: Served) -> None:
         process.send_signal(signal.SIGINT)
     assert served.heavy() == 200
     assert psutil.Process(served.process.pid).children(), "it lives"
+
+
+def test_several_threads_learn_of_its_end() -> None:
+    """The system tells it once: a second one that asked heard that the child lives."""
+    ours, theirs = socket.socketpair()
+    with ours, theirs:
+        child = Child(theirs, (ours,))
+        assert child.poll() is None
+        with pytest.raises(subprocess.TimeoutExpired):
+            child.wait(0.05)
+        with ThreadPoolExecutor(8) as threads:
+            waits = [threads.submit(child.wait, PATIENCE_S) for _ in range(8)]
+            child.kill()
+            assert {one.result() for one in waits} == {-signal.SIGKILL}
+        assert child.poll() == child.wait() == -signal.SIGKILL

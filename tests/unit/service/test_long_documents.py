@@ -7,6 +7,7 @@ import resource
 import signal
 import sys
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -147,3 +148,18 @@ def test_who_comes_late_lets_the_file_of_another_answer_alone(tmp_path: Path) ->
         assert str(file.fileno()) == late.where.path.name
         assert in_another_process(late.where) == (True, False)
     assert (tmp_path / "any").read_bytes() == b"what somebody else has opened"
+
+
+def test_half_an_answer_is_an_error() -> None:
+    """One whose making fails when its file has a part of it was cut to what was held in memory."""
+
+    def parts() -> Iterator[bytes]:
+        yield b"x" * (LONG_BYTES + 1)
+        raise TimeoutError("in the middle")
+
+    place = Place()
+    try:
+        with pytest.raises(TimeoutError, match="in the middle"):
+            put(place.where, parts())
+    finally:
+        place.close()

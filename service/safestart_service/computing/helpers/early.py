@@ -6,6 +6,7 @@ It shares what the service has loaded (pydantic, NumPy, SQLAlchemy, our models),
 from __future__ import annotations
 
 import gc
+import math
 import multiprocessing
 import os
 import select
@@ -13,10 +14,14 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
 from collections.abc import Iterable
+from time import monotonic, sleep
 
 from safestart_service.computing.helpers import nursery
 from safestart_service.computing.helpers.sources import Forked
+
+_EVERY_S = 0.005
 
 
 class Child:
@@ -26,17 +31,20 @@ class Child:
         context = multiprocessing.get_context("fork")
         self._process = context.Process(target=_run, args=(control, others), daemon=True)
         self._process.start()
+        self._asking = threading.Lock()
 
     def poll(self) -> int | None:
         """Its exit status; None while it lives."""
-        return self._process.exitcode
+        with self._asking:  # the system tells it once
+            return self._process.exitcode
 
     def wait(self, timeout: float | None = None) -> int:
         """Its exit status, when it has ended; raises ``subprocess.TimeoutExpired``."""
-        self._process.join(timeout)
-        found = self.poll()
-        if found is None:
-            raise subprocess.TimeoutExpired(nursery.__name__, timeout or 0.0)
+        until = math.inf if timeout is None else monotonic() + timeout
+        while (found := self.poll()) is None:
+            if monotonic() > until:
+                raise subprocess.TimeoutExpired(nursery.__name__, timeout or 0.0)
+            sleep(_EVERY_S)
         return found
 
     def kill(self) -> None:
