@@ -14,7 +14,7 @@ from safestart import errors
 from safestart.errors import Altered, Away, SafestartError, invalid
 from safestart.model.strict_json import json_of
 from safestart.records.artifact import Artifact
-from safestart.runtime.plain_json import NoNumber, loads
+from safestart.runtime.plain_json import NameTwice, NoNumber, loads
 
 TIMEOUT_S = 60.0
 _TRIES, _PAUSE_S = 5, 0.5
@@ -86,6 +86,8 @@ def sent(inputs: Mapping[str, Any] | None) -> Any:
         return loads(json_of(dict(inputs or {})))
     except NoNumber as error:
         raise invalid("inputs", error.required, error.text) from None
+    except NameTwice as error:  # 1 and "1" are one name in JSON
+        raise invalid("inputs", "every name once in an object", error.name) from None
 
 
 def artifact_of(wire: Wire, job: str, entry: Mapping[str, Any]) -> Artifact:

@@ -47,11 +47,14 @@ class Unsent:
         if not whole:
             await self._send(message)
             return
-        for first in range(0, len(body), PIECE):
-            await self._send(
-                {"type": "http.response.body", "body": body[first : first + PIECE], "more_body": True}
-            )
-        await self._send({"type": "http.response.body", "body": b""})  # when all of it has been taken
+        await send_pieces(self._send, body)
+
+
+async def send_pieces(send: Send, body: bytes) -> None:
+    """Send a body, each piece when the client has taken the one before."""
+    for first in range(0, len(body), PIECE):
+        await send({"type": "http.response.body", "body": body[first : first + PIECE], "more_body": True})
+    await send({"type": "http.response.body", "body": b""})
 
 
 def is_long(headers: Iterable[tuple[bytes, bytes]]) -> bool:

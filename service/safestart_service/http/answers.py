@@ -13,7 +13,7 @@ from starlette._utils import get_route_path
 from starlette.types import Receive, Scope, Send
 
 from safestart_service.access.proxies import HOST
-from safestart_service.computing.unsent import PIECE
+from safestart_service.computing.unsent import send_pieces
 
 _HOST = re.compile(r"[A-Za-z0-9._-]+(:\d{1,5})?|\[[0-9A-Fa-f:.]+\](:\d{1,5})?")
 
@@ -35,10 +35,7 @@ class Shared(Response):
         """Send it, each piece when the client has taken the one before."""
         del scope, receive
         await send({"type": "http.response.start", "status": self.status_code, "headers": self.raw_headers})
-        body = bytes(self.body)
-        for first in range(0, len(body), PIECE):
-            await send({"type": "http.response.body", "body": body[first : first + PIECE], "more_body": True})
-        await send({"type": "http.response.body", "body": b""})
+        await send_pieces(send, bytes(self.body))
 
 
 async def send_json(send: Send, document: Any) -> None:

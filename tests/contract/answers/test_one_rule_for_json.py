@@ -204,3 +204,8 @@ def test_a_client_sends_what_numpy_holds_as_json() -> None:
 @pytest.mark.parametrize("document", ["[]", "null", '"text"', "3"])
 def test_inputs_that_are_no_object(document: str) -> None:
     assert "required an object" in refused(["run", "certificate", "--input", "-"], document)
+
+
+def test_names_that_are_one_in_json() -> None:
+    with pytest.raises(InvalidInput, match="every name once"):
+        sent({1: 2, "1": 3})
