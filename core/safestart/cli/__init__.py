@@ -5,12 +5,16 @@ from __future__ import annotations
 import os
 import sys
 from importlib import import_module
+from typing import TYPE_CHECKING
 
 import typer
 
 from safestart.cli.streams import run_command
 from safestart.cli.strict import strictly
 from safestart.runtime.variables import require_known
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 COMMAND_GROUP = "safestart.commands"
 # The modules of our commands in the order of the help, each with the commands that it adds.
@@ -31,9 +35,10 @@ COMMANDS = {
 
 
 def build(asked: str = "") -> typer.Typer:
-    """The application with every installed distribution's commands; with ours alone that is ``asked``, if there is one.
+    """The application with every installed distribution's commands, or with the one that is ``asked``, if it exists.
 
-    The modules of all commands take longer to load than a verdict takes to give.
+    The modules of all commands take longer to load than a verdict takes to give, and NumPy, which some of them load,
+    starts threads before a service has said how many it wants. An entry point has the name of its command.
     """
     app = typer.Typer(
         name="safestart",
@@ -49,13 +54,17 @@ def build(asked: str = "") -> typer.Typer:
         require_known(os.environ)
 
     wanted = [name for name, commands in COMMANDS.items() if asked in commands]
-    for name in wanted or COMMANDS:
-        import_module(f"safestart.cli.{name}").register(app)
+    points: list[EntryPoint] = []
     if not wanted:
         from importlib.metadata import entry_points
 
-        for point in sorted(entry_points(group=COMMAND_GROUP), key=lambda p: p.name):
-            point.load()(app)
+        points = sorted(entry_points(group=COMMAND_GROUP), key=lambda point: point.name)
+        named = [point for point in points if point.name == asked]
+        wanted, points = ([], named) if named else (list(COMMANDS), points)
+    for name in wanted:
+        import_module(f"safestart.cli.{name}").register(app)
+    for point in points:
+        point.load()(app)
     strictly(app)
     return app
 

@@ -9,13 +9,14 @@ import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from threading import Event
 
 import httpx
 import psutil
 import pytest
 
 from benchmarks.worst_requests_watch import memory_of
-from safestart_service.computing.helpers.early import Child
+from safestart_service.computing.helpers.early import Child, forked
 from tests.waiting import PATIENCE_S, ended, free_port, until
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere it is a program of its own")
@@ -99,6 +100,17 @@ def test_a_keystroke_says_nothing(served: Served) -> None:
         process.send_signal(signal.SIGINT)
     assert served.heavy() == 200
     assert psutil.Process(served.process.pid).children(), "it lives"
+
+
+def test_beside_threads_there_is_none() -> None:
+    """A library of the user's, or of an embedding program, may have started them."""
+    done = Event()
+    with ThreadPoolExecutor(1) as threads:
+        threads.submit(done.wait)
+        try:
+            assert forked(()) is None
+        finally:
+            done.set()
 
 
 def test_several_threads_learn_of_its_end() -> None:

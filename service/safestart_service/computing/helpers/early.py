@@ -56,9 +56,9 @@ def forked(others: Iterable[socket.socket]) -> Forked | None:
     """Helpers of a process that this one forks now, and which loads when the first helper is asked for.
 
     The child closes ``others``. None where a process with loaded libraries cannot be forked safely (elsewhere than on
-    Linux), or there is no room for one.
+    Linux, or beside threads, whose locks would stay taken in the child), or there is no room for one.
     """
-    if sys.platform != "linux":
+    if sys.platform != "linux" or len(os.listdir("/proc/self/task")) > 1:
         return None
     ours, theirs = socket.socketpair()
     # Pages whose objects nobody scans stay shared.
