@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from threading import RLock
 
 import flint
 
-_LOCK = RLock()
+from safestart.runtime.children.forks import ForkableLock
+
+_LOCK = ForkableLock()
 
 
 @contextmanager

@@ -5,29 +5,19 @@ from __future__ import annotations
 import ipaddress
 import os
 import re
-from collections.abc import Callable, Mapping
-from difflib import get_close_matches
 from errno import ENOENT
 from functools import cache
-from pathlib import Path
 from typing import Any, Literal
 
-from platformdirs import user_config_path, user_data_path
+from platformdirs import user_data_path
 from pydantic import Field, ValidationError, field_validator
-from pydantic_settings import (
-    BaseSettings,
-    InitSettingsSource,
-    PydanticBaseSettingsSource,
-    SettingsConfigDict,
-    TomlConfigSettingsSource,
-)
+from pydantic_settings import BaseSettings, PydanticBaseSettingsSource, SettingsConfigDict
 
-from safestart.errors import InvalidInput, invalid
-from safestart.model.plain_numbers import is_number, require_plain
+from safestart.errors import InvalidInput
 from safestart.model.validation import refusal
-from safestart.runtime.files.bounded import bytes_within
 from safestart.runtime.files.secret_file import with_password
-from safestart.runtime.variables import NAMES, PREFIX, require_known
+from safestart.runtime.settings_sources import of_file, of_variables, place
+from safestart.runtime.variables import PREFIX, require_known
 
 Network = ipaddress.IPv4Network | ipaddress.IPv6Network
 
@@ -177,13 +167,13 @@ class Settings(BaseSettings):
         file_secret_settings: PydanticBaseSettingsSource,
     ) -> tuple[PydanticBaseSettingsSource, ...]:
         """Arguments first, then the environment, then the file."""
-        return init_settings, _variables(settings_cls), _file(settings_cls)
+        return init_settings, of_variables(settings_cls), of_file(settings_cls)
 
     def url(self) -> str:
         """The database URL with its password; creates the default directory if it is missing."""
         if self.database_url:
             return with_password(self.database_url, self.database_password_file)
-        folder = _place(user_data_path)
+        folder = place(user_data_path)
         try:
             if folder is None:
                 raise FileNotFoundError(ENOENT, "this account has no home directory")
@@ -198,72 +188,6 @@ class Settings(BaseSettings):
                 received=received,
             ) from None
         return f"sqlite:///{folder / 'safestart.sqlite3'}"
-
-
-def _variables(kind: type[BaseSettings]) -> InitSettingsSource:
-    """Read the variables by their exact names; raises ``InvalidInput`` for numbers that a query refuses, too.
-
-    Pydantic would read ``safestart_port`` beside ``SAFESTART_PORT``, and ``8_000`` or ``" 8000"`` as a number.
-    """
-    given = {name: os.environ[PREFIX + name.upper()] for name in NAMES if PREFIX + name.upper() in os.environ}
-    for name, value in given.items():
-        if is_number(kind.model_fields[name].annotation):
-            require_plain(f"settings.{name}", value)
-    return InitSettingsSource(kind, init_kwargs=given)
-
-
-def _file(kind: type[BaseSettings]) -> TomlConfigSettingsSource:
-    """Read the settings file; raises ``InvalidInput`` when a named file is missing or is not TOML."""
-    named = os.environ.get("SAFESTART_CONFIG")
-    folder = _place(user_config_path)
-    path = Path(named) if named else folder / "safestart.toml" if folder else None
-    if named and not os.path.isfile(named):  # Path raises on a name that is too long
-        raise invalid("SAFESTART_CONFIG", "the path of a TOML file", named)
-    try:
-        if path is not None and path.is_file():
-            bytes_within(str(path), path, _MOST_FILE_BYTES)  # it is read without a bound
-        source = TomlConfigSettingsSource(kind, toml_file=path or ())
-    except RecursionError:
-        raise invalid(str(path), "a readable TOML file in UTF-8", "one nested too deeply") from None
-    except (OSError, ValueError) as error:  # invalid TOML or UTF-8 is a ValueError
-        raise invalid(str(path), "a readable TOML file in UTF-8", str(error)) from None
-    _require_names(kind, source.toml_data)
-    _require_kinds(kind, source.toml_data)
-    return source
-
-
-def _require_names(kind: type[BaseSettings], given: Mapping[str, Any]) -> None:
-    """Raise ``InvalidInput`` for a name that is not exactly a setting's: beside ``port``, ``Port`` would be ignored."""
-    for name in given:
-        if name not in kind.model_fields:
-            near = get_close_matches(name.lower(), kind.model_fields, n=1)
-            like = f", such as {near[0]}" if near else ""
-            raise invalid(f"settings.{name}", f"the name of a setting{like} (docs/settings.md)", name)
-
-
-_MOST_FILE_BYTES = 1024 * 1024
-_KINDS: dict[Any, str] = {int: "an integer", float: "a number", bool: "true or false"}
-
-
-def _require_kinds(kind: type[BaseSettings], given: Mapping[str, Any]) -> None:
-    """Raise ``InvalidInput`` where a file has a text or a boolean for a number: TOML, unlike a variable, has all three.
-
-    Pydantic, which also reads variables, would take them: ``port = true`` was port 1.
-    """
-    for name, field in kind.model_fields.items():
-        required, value = _KINDS.get(field.annotation), given.get(name)
-        if required and isinstance(value, bool | str) and type(value) is not field.annotation:
-            raise invalid(f"settings.{name}", required, value)
-        if field.annotation is bool and not isinstance(value, bool | None):
-            raise invalid(f"settings.{name}", _KINDS[bool], value)
-
-
-def _place(of_user: Callable[[str], Path]) -> Path | None:
-    """A folder of the user's; None for an account without a home directory."""
-    try:
-        return of_user("safestart")
-    except RuntimeError:
-        return None
 
 
 def url_or_setting(given: str | None) -> str:

@@ -26,7 +26,7 @@ def alone(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     for name in [name for name in os.environ if name.upper().startswith("SAFESTART_")]:
         monkeypatch.delenv(name)
     settings.cache_clear()
-    monkeypatch.setattr("safestart.runtime.settings.user_config_path", lambda _: Path("/nonexistent"))
+    monkeypatch.setattr("safestart.runtime.settings_sources.user_config_path", lambda _: Path("/nonexistent"))
     yield
     settings.cache_clear()
 

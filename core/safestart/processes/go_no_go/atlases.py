@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from collections import OrderedDict
 
 from safestart.atlas.atlas import Atlas
@@ -12,6 +11,7 @@ from safestart.errors import InvalidInput
 from safestart.exact.question import Question
 from safestart.model.scenario import MAX_RANGE
 from safestart.runtime.cache import Shelf
+from safestart.runtime.children.forks import ForkableLock
 from safestart.runtime.progress import Context
 
 CUTS_M = (50.0, 150.0, 500.0, 1500.0, 5000.0, MAX_RANGE)
@@ -19,7 +19,7 @@ CUTS_M = (50.0, 150.0, 500.0, 1500.0, 5000.0, MAX_RANGE)
 _IN_MEMORY = 64
 
 _kept: OrderedDict[str, Atlas] = OrderedDict()
-_lock = threading.Lock()
+_lock = ForkableLock()
 
 
 def atlas_for(question: Question, farthest: float, context: Context) -> Atlas:

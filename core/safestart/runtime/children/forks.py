@@ -7,6 +7,8 @@ database, or waits for threads that are the parent's alone.
 from __future__ import annotations
 
 import os
+from threading import RLock
+from types import TracebackType
 from weakref import WeakSet
 
 
@@ -25,6 +27,29 @@ class Forkable:
 
 
 _TOLD: WeakSet[Forkable] = WeakSet()
+
+
+class ForkableLock(Forkable):
+    """A lock that is free in a child, whichever thread of the parent held it; its own thread may take it again.
+
+    What it guards must be whole at every moment, as a fork does not wait for the lock.
+    """
+
+    def __init__(self) -> None:
+        self.forked()
+        self.tell_of_forks()
+
+    def forked(self) -> None:
+        """Be free."""
+        self._lock = RLock()
+
+    def __enter__(self) -> None:
+        self._lock.acquire()
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._lock.release()
 
 
 def _before() -> None:
