@@ -156,3 +156,18 @@ def test_a_run_is_named_as_it_is_submitted(list_page: Visit, jobs: JobRepository
     page.click("#form button[type=submit]")
     page.wait_for_url(re.compile("/dashboard/jobs/[0-9a-f-]{36}"))
     assert (jobs.list().jobs[0].name, jobs.list().jobs[0].tags) == ("named", ["a", "b"])
+
+
+@pytest.mark.parametrize("width", [390, 768])
+def test_where_the_table_does_not_fit_nothing_is_out_of_sight(
+    list_page: Visit, jobs: JobRepository, width: int
+) -> None:
+    """On a phone the outcome lay beyond the right edge."""
+    add(jobs, "a name that is long enough for two lines of a phone", ("first", "second"))
+    page = list_page.go("/dashboard/jobs")
+    page.set_viewport_size({"width": width, "height": 844})
+    expect(page.locator(".jobs tbody tr")).to_have_count(1)
+    beyond = "[...document.querySelectorAll('.jobs *')].filter((one) => one.getBoundingClientRect().right > innerWidth)"
+    assert page.evaluate(f"{beyond}.map((one) => one.outerHTML)") == []
+    region = page.locator("#list .scroll")
+    assert region.evaluate("(one) => one.scrollWidth - one.clientWidth") == 0
