@@ -11,6 +11,7 @@ import sys
 import threading
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -192,31 +193,57 @@ def test_it_starts_without_a_thread(tmp_path, monkeypatch):
         assert client.get("/healthz").status_code == 200
 
 
-@pytest.fixture(scope="module")
-def cramped(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """A real service whose user may have three processes and threads: it has them as soon as it serves."""
+@contextmanager
+def cramped(folder: Path, most: int) -> Iterator[tuple[str, Path]]:
+    """The address of a real service whose user may have so many processes and threads, and what it says.
+
+    With three it has them as soon as it serves.
+    """
     if sys.platform != "linux" or os.geteuid() != 0 or shutil.which("setpriv") is None:
         pytest.skip("only root can be another user")
-    folder: Path = tmp_path_factory.mktemp("cramped")
     folder.chmod(0o777)
-    code = (
-        f"import safestart_service.commands as c; c._serve({{'port': 0, 'database_url': {url_of(folder)!r}}})"
-    )
-    command = [*AS_USER, "bash", "-c", 'ulimit -u 3; exec "$@"', "bash", sys.executable, "-B", "-c", code]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    limited = ["bash", "-c", f'ulimit -u {most}; exec "$@"', "bash"]
+    asked = [
+        sys.executable,
+        "-B",
+        "-m",
+        "safestart",
+        "serve",
+        "--port",
+        "0",
+        "--database-url",
+        url_of(folder),
+    ]
+    said = folder / "said"
+    with said.open("w") as errors:
+        command = [*AS_USER, *limited, *asked]
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=errors, text=True)
     assert process.stdout is not None
     line = process.stdout.readline()
     if not line:
         process.wait(PATIENCE_S)
         pytest.skip("this machine gives us no other user")
-    yield line.split()[1]
-    process.terminate()
-    process.wait(PATIENCE_S)
+    try:
+        yield line.split()[1], said
+    finally:
+        process.terminate()
+        process.wait(PATIENCE_S)
 
 
-def test_a_user_without_processes(cramped):
+def test_a_user_without_processes(tmp_path):
     """No answer of the store finds a thread; those that need none are given."""
-    for path in STORED:
-        assert_problem(httpx.get(cramped + path, timeout=PATIENCE_S), 503)
-    for path in ("/healthz", "/conformance", "/go-no-go?omega_t_deg_s=3&a_max_m_s2=0.1&x_m=5&y_m=40"):
-        assert httpx.get(cramped + path, timeout=PATIENCE_S).status_code == 200
+    with cramped(tmp_path, 3) as (address, _):
+        for path in STORED:
+            assert_problem(httpx.get(address + path, timeout=PATIENCE_S), 503)
+        for path in ("/healthz", "/conformance", "/go-no-go?omega_t_deg_s=3&a_max_m_s2=0.1&x_m=5&y_m=40"):
+            assert httpx.get(address + path, timeout=PATIENCE_S).status_code == 200
+
+
+@pytest.mark.parametrize("most", [1, 4, 5, 6, 7])
+def test_whatever_finds_no_process_says_so_in_one_line(tmp_path, most):
+    with cramped(tmp_path, most) as (address, said):
+        inputs = {"omega_t_deg_s": 3, "a_max_m_s2": 0.1, "states": [{"x_m": 5, "y_m": 40}], "method": "exact"}
+        answer = httpx.post(address + "/go-no-go", json=inputs, timeout=PATIENCE_S)
+        assert answer.status_code in {200, 503}
+        assert httpx.get(address + "/healthz", timeout=PATIENCE_S).status_code == 200
+    assert "Traceback" not in said.read_text()

@@ -33,7 +33,11 @@ def main(control: socket.socket) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # at Ctrl-C the service ends its answers, and then us
     end_with_parent()
     keep_little(MEGABYTE)
-    threading.Thread(target=_end_without, args=(control,), daemon=True).start()
+    try:
+        threading.Thread(target=_end_without, args=(control,), daemon=True).start()
+    except RuntimeError as error:  # the account may have no more threads
+        _say(error)
+        return
     loaded = load()
     # One end at a time: a helper that was forked with the end of another one would keep that connection open, and
     # nobody would see that the other one has ended.
@@ -46,8 +50,8 @@ def main(control: socket.socket) -> None:
                 control.close()
                 serve(Connection(end), MOST_GROWN)
                 return
-        except OSError:
-            traceback.print_exc()  # the other end sees that its connection is closed
+        except OSError as error:
+            _say(error)  # the other end sees that its connection is closed
         os.close(end)
 
 
@@ -92,6 +96,11 @@ def end_with_parent() -> None:
     """
     with suppress(AttributeError, OSError):
         ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+
+
+def _say(error: Exception) -> None:
+    with suppress(OSError, ValueError, AttributeError):  # nobody may listen
+        print(f"safestart: no helper process for heavy answers: {error}", file=sys.stderr, flush=True)
 
 
 def _bury() -> None:
