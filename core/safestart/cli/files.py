@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import io
 import json
-import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from stat import S_ISREG
-from typing import Any, BinaryIO
+from typing import Any
 
 from safestart.errors import InvalidInput, invalid
 from safestart.runtime.files.bounded import bytes_within, stream_within
+from safestart.runtime.files.whole import File, Whole
 from safestart.runtime.plain_json import NameTwice, loads
 
 MOST_INPUT_BYTES = 64 * 1024 * 1024
@@ -62,66 +61,91 @@ def read_json(option: str, source: str) -> Any:
 
 
 class Target:
-    """A file that is opened before the work; its old content stays until the result is written."""
+    """A file that is opened before the work, and files beside it; see :class:`~safestart.runtime.files.whole.Whole`."""
 
-    def __init__(self, option: str, path: Path, file: BinaryIO) -> None:
+    def __init__(self, option: str, file: File, files: Whole) -> None:
         self._option = option
-        self.path = path
         self._file = file
+        self._files = files
+        self.written = [file.path]
 
     def write(self, data: bytes) -> None:
         """Write all of it; raises ``InvalidInput``."""
-        with writable(self._option, self.path):
-            if S_ISREG(os.fstat(self._file.fileno()).st_mode):  # a pipe or a device holds nothing
-                self._file.truncate(0)
+        with writable(self._option, self._file.path):
             self._file.write(data)
-            self._file.flush()
 
     def write_json(self, document: Any, indent: int | None = None) -> None:
         """Write a document as JSON in UTF-8 with a newline at its end; raises ``InvalidInput``."""
         self.write((json.dumps(document, allow_nan=False, indent=indent) + "\n").encode())
+
+    def write_beside(self, name: str, data: bytes) -> None:
+        """Write ``STEM.name`` beside ``STEM.json``; raises ``InvalidInput``."""
+        path = self._file.path.with_name(f"{self._file.path.stem}.{name}")
+        with writable(self._option, path):
+            self._files.add(path, data)
+        self.written.append(path)
 
 
 @contextmanager
 def target(option: str, path: Path | None) -> Iterator[Target | None]:
     """Open ``path`` for the block; None for None. Raises ``InvalidInput``, also where its directory is missing.
 
-    A misspelt directory that were made would hide the result. The block removes a new file when it fails.
+    A misspelt directory that were made would hide the result. What was written is at its name when the block has ended;
+    where the block fails, nothing has changed.
     """
     if path is None:
         yield None
         return
-    with writable(option, path):
-        new = not path.exists()
-        file = path.open("ab", buffering=0)
+    files = Whole()
     try:
-        with file:
-            yield Target(option, path, file)
-    except BaseException:
-        if new:
-            path.unlink(missing_ok=True)
-        raise
+        with writable(option, path):
+            file = files.open(path)
+        yield Target(option, file, files)
+        with writable(option, path):
+            files.appear()
+    finally:
+        files.drop()
+
+
+class Folder:
+    """A directory that is made before the work, and files in it."""
+
+    def __init__(self, option: str, path: Path, files: Whole) -> None:
+        self._option = option
+        self._path = path
+        self._files = files
+
+    def write_json(self, name: str, document: Any) -> None:
+        """Write a document as JSON in UTF-8 with a newline at its end; raises ``InvalidInput``."""
+        with writable(self._option, self._path):
+            self._files.add(self._path / name, (json.dumps(document) + "\n").encode())
 
 
 @contextmanager
-def folder(option: str, path: Path | None) -> Iterator[None]:
+def folder(option: str, path: Path | None) -> Iterator[Folder | None]:
     """Make the directory ``path`` for the block, before its work; its parent must be there. Raises ``InvalidInput``.
 
-    The block removes a new directory when it fails and left nothing in it.
+    What was written is there when the block has ended. Where the block fails nothing has changed, and no new directory
+    stays.
     """
     if path is None:
-        yield
+        yield None
         return
     with _refused(option, "a directory, or a name for one in a directory that is there", path):
         new = not path.is_dir()
         path.mkdir(exist_ok=True)
+    files = Whole()
     try:
-        yield
+        yield Folder(option, path, files)
+        with writable(option, path):
+            files.appear()
     except BaseException:
+        files.drop()
         if new:
             with suppress(OSError):
                 path.rmdir()
         raise
+    files.drop()
 
 
 @contextmanager

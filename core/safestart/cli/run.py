@@ -8,8 +8,8 @@ from typing import Annotated
 import typer
 
 from safestart.cli.console import Json, err, print_json, reporting
-from safestart.cli.files import Target, read_json, target, writable
-from safestart.processes.execute import Execution, execute
+from safestart.cli.files import read_json, target
+from safestart.processes.execute import execute
 from safestart.processes.registry import PROCESS_IDS, process
 
 
@@ -43,17 +43,10 @@ def register(app: typer.Typer) -> None:
             for note in result.document["provenance"].get("notes", ()):
                 err.print(note, soft_wrap=True, markup=False)
             if file is not None:
-                _write(file, result)
+                file.write_json(result.document, indent=2)
+                for artifact in result.artifacts:
+                    file.write_beside(artifact.name, artifact.data)
+        for item in file.written if file is not None else ():
+            err.print(f"wrote {item}", soft_wrap=True, markup=False)
         if as_json or output_file is None:
             print_json(result.document)
-
-
-def _write(file: Target, result: Execution) -> None:
-    file.write_json(result.document, indent=2)
-    written = [file.path]
-    for artifact in result.artifacts:
-        written.append(file.path.with_name(f"{file.path.stem}.{artifact.name}"))
-        with writable("--output", written[-1]):
-            written[-1].write_bytes(artifact.data)
-    for item in written:
-        err.print(f"wrote {item}", soft_wrap=True, markup=False)

@@ -21,6 +21,7 @@ from safestart.model.scenario import Scenario
 from safestart.proofs.checker import check
 from safestart.records.provenance import versions
 from safestart.runtime.files.bounded import bytes_within
+from safestart.runtime.files.whole import Whole
 from safestart.runtime.plain_json import loads
 from safestart.runtime.progress import Context
 
@@ -37,10 +38,11 @@ class Exported:
     manifest: dict[str, Any]
 
     def write(self, folder: Path) -> None:
-        """Write every file into ``folder``, which is made where it is missing."""
+        """Write every file into ``folder``, which is made where it is missing; none, where one cannot be written."""
         folder.mkdir(exist_ok=True)
-        for name, data in self.files.items():
-            (folder / name).write_bytes(data)
+        with Whole() as files:
+            for name, data in self.files.items():
+                files.add(folder / name, data)
 
 
 def points_of(

@@ -12,6 +12,7 @@ from safestart.processes.registry import process
 from safestart.processes.tables import Rows, typed_tables
 from safestart.public.shown import frame_of, html_of
 from safestart.records.artifact import Artifact
+from safestart.runtime.files.whole import Whole
 
 if TYPE_CHECKING:
     import os
@@ -61,17 +62,21 @@ class Result:
         return frame_of(tables[name].cells)
 
     def save(self, folder: str | os.PathLike[str]) -> list[Path]:
-        """Write the document (``result.json``) and the files into a folder; returns the paths."""
+        """Write the document (``result.json``) and the files into a folder; returns the paths.
+
+        Raises ``OSError``, and then none of them has changed.
+        """
         import json
 
         place = Path(folder)
         place.mkdir(parents=True, exist_ok=True)
-        written = [place / "result.json"]
-        written[0].write_text(json.dumps(self.document, allow_nan=False, indent=2) + "\n", encoding="utf-8")
-        for one in self.artifacts:
-            written.append(place / Path(one.name).name)
-            written[-1].write_bytes(one.data)
-        return written
+        text = json.dumps(self.document, allow_nan=False, indent=2) + "\n"
+        contents = {place / "result.json": text.encode()}
+        contents |= {place / Path(one.name).name: one.data for one in self.artifacts}
+        with Whole() as files:
+            for path, data in contents.items():
+                files.add(path, data)
+        return list(contents)
 
     def _repr_png_(self) -> bytes | None:
         return next(iter(self.pictures.values()), None)

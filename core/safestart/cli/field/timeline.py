@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from safestart.cli.console import Json, err, out, print_json, reporting
-from safestart.cli.files import folder, target, writable
+from safestart.cli.files import Folder, folder, target
 from safestart.errors import invalid
 from safestart.processes.base import WireModel
 from safestart.processes.execute import Execution
@@ -95,14 +95,19 @@ def register(app: typer.Typer) -> None:
         if corridor:
             inputs["corridors"] = [_corridor(text) for text in corridor]
         parsed = process("commit-timeline").parse(inputs)
-        with target("--output", output) as file, folder("--proofs", proofs):
+        with target("--output", output) as file, folder("--proofs", proofs) as kept:
             with reporting("commit-timeline") as context:
                 result = execute_side_by_side("commit-timeline", parsed, context, _workers(parsed))
             if file is not None:
                 file.write_json(result.document, indent=2)
-                _beside(file.path, result)
-            if proofs is not None:
-                _write_proofs(proofs, result)
+                for artifact in result.artifacts:
+                    file.write_beside(artifact.name, artifact.data)
+            if kept is not None:
+                _write_proofs(kept, result)
+        for item in file.written[1:] if file is not None else ():
+            err.print(f"wrote {item}", soft_wrap=True, markup=False)
+        if proofs is not None:
+            err.print(f"wrote proofs to {proofs}", soft_wrap=True, markup=False)
         print_json(result.document) if as_json else _show(result.document["outputs"])
 
 
@@ -135,26 +140,15 @@ def _corridor(text: str) -> Any:
         raise invalid("--corridor", "JSON", text) from None
 
 
-def _beside(path: Path, result: Execution) -> None:
-    for artifact in result.artifacts:
-        beside = path.with_name(f"{path.stem}.{artifact.name}")
-        with writable("--output", beside):
-            beside.write_bytes(artifact.data)
-        err.print(f"wrote {beside}", soft_wrap=True, markup=False)
-
-
-def _write_proofs(directory: Path, result: Execution) -> None:
+def _write_proofs(directory: Folder, result: Execution) -> None:
     """One file for each end of an interval, numbered in time: 001-GO-begin.json."""
     (kept,) = (artifact for artifact in result.artifacts if artifact.name == "proofs.json")
     found = json.loads(kept.data)
-    with writable("--proofs", directory):
-        for number, one in enumerate(result.document["outputs"]["intervals"], 1):
-            for end in ("begin", "end"):
-                digest = one[f"{end}_proof"]
-                if digest is not None:
-                    file = directory / f"{number:03d}-{one['verdict']}-{end}.json"
-                    file.write_text(json.dumps(found[digest]) + "\n", encoding="utf-8")
-    err.print(f"wrote proofs to {directory}", soft_wrap=True, markup=False)
+    for number, one in enumerate(result.document["outputs"]["intervals"], 1):
+        for end in ("begin", "end"):
+            digest = one[f"{end}_proof"]
+            if digest is not None:
+                directory.write_json(f"{number:03d}-{one['verdict']}-{end}.json", found[digest])
 
 
 def _show(outputs: dict[str, Any]) -> None:
