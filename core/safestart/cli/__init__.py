@@ -11,6 +11,8 @@ import typer
 
 from safestart.cli.streams import run_command
 from safestart.cli.strict import strictly
+from safestart.errors import Misregistered
+from safestart.runtime.logs import legible
 from safestart.runtime.variables import require_known
 
 if TYPE_CHECKING:
@@ -64,9 +66,24 @@ def build(asked: str = "") -> typer.Typer:
     for name in wanted:
         import_module(f"safestart.cli.{name}").register(app)
     for point in points:
-        point.load()(app)
+        _add(point, app, alone=len(points) == 1)
     strictly(app)
     return app
+
+
+def _add(point: EntryPoint, app: typer.Typer, *, alone: bool) -> None:
+    """Add the command of another distribution; one that is broken is named, and raises only where it is asked for."""
+    try:
+        point.load()(app)
+    except Exception as error:  # whatever a module does
+        whose = point.value if point.dist is None else f"{point.dist.name} {point.dist.version}"
+        required = f"the command {point.name} of {whose} to load"
+        refusal = Misregistered(
+            f"required {required}, received {type(error).__name__}: {error}", required=required
+        )
+        if alone:
+            raise refusal from error
+        sys.stderr.write(f"safestart: {legible(refusal.detail)}\n")
 
 
 def main() -> None:

@@ -9,7 +9,9 @@ from __future__ import annotations
 
 import errno
 import os
+import signal
 import sys
+import threading
 from collections.abc import Callable, MutableMapping
 
 from safestart.errors import InvalidInput, SafestartError
@@ -47,6 +49,9 @@ def own_configuration(environment: MutableMapping[str, str] = os.environ) -> Non
         if name.startswith(_READ_BY_LIBRARIES) and name not in _PLACES and not name.startswith(_PROOFS):
             del environment[name]
     environment.update(_OURS)
+    # Some parents leave it ignored, and then nobody learns how a child has ended.
+    if hasattr(signal, "SIGCHLD") and threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGCHLD, signal.SIG_DFL)
 
 
 def exit_code(run: Callable[[], object]) -> int:

@@ -24,7 +24,11 @@ class NameTwice(ValueError):
 
 
 def loads(text: str | bytes) -> Any:
-    """Parse a document; raises ``NameTwice`` and ``NoNumber``, or the errors of :func:`json.loads`."""
+    """Parse a document; raises ``NameTwice``, ``NoNumber``, or the errors of :func:`json.loads`.
+
+    Bytes are UTF-8 without a byte order mark (RFC 8259).
+    """
+    text = text if isinstance(text, str) else bytes(text).decode()
     return json.loads(text, object_pairs_hook=_unique, parse_constant=_finite, parse_float=_finite)
 
 

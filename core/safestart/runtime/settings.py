@@ -131,7 +131,7 @@ class Settings(BaseSettings):
         192_000_000,
         ge=1000,
         description="Most bytes of all long answers together that their clients have not read yet; one API key may "
-        "hold half of them.",
+        "hold half of them. One answer alone may be longer.",
     )
     max_connections: int = Field(
         800,

@@ -12,6 +12,7 @@ import os
 import sqlite3
 from contextlib import closing, suppress
 from pathlib import Path
+from stat import S_ISREG
 from threading import Lock
 from typing import Any
 
@@ -48,7 +49,7 @@ class SameFile:
 
     def make(self) -> None:
         """Make an empty file where none is and none was; a path that cannot be is reported by the connection."""
-        if self._known is None:
+        if self._known is None and not self._is_no_file():
             with suppress(OSError):
                 os.close(os.open(self._path, os.O_CREAT | os.O_WRONLY, _MODE))
 
@@ -61,6 +62,8 @@ class SameFile:
         self, dialect: Any, record: Any, _arguments: Any, options: dict[str, Any]
     ) -> sqlite3.Connection:
         """Open the file that is there, never a new one, and remember which one it is."""
+        if self._is_no_file():  # SQLite would wait for whoever opens the other end of a pipe
+            raise sqlite3.OperationalError("a regular file is required at its path")
         for _ in range(_TRIES):
             before = self._there()
             if before is None and self._known is not None:
@@ -87,6 +90,12 @@ class SameFile:
         except OSError:
             return None
         return found.st_dev, found.st_ino
+
+    def _is_no_file(self) -> bool:
+        try:
+            return not S_ISREG(os.stat(self._path).st_mode)
+        except OSError:
+            return False
 
     def _meet(self, found: Identity, opened: sqlite3.Connection) -> None:
         """Take another file in the place of the known one only if it is a copy of it, at our schema."""

@@ -110,7 +110,7 @@ class Access:
     def _without_keys(self, scope: Scope, needed: Role) -> SafestartError | None:
         """No key was ever made: open to callers over loopback, except for administration."""
         if not self._keyring.known and get_route_path(scope) not in INSTANT | {"/metrics"}:
-            return Unavailable("the API keys cannot be read from the database", required="the database")
+            return _unread(self._keyring)
         if not from_this_machine(scope):
             return Unauthorized(
                 f"a request from another machine needs a key, and no key exists; required {REMEDY}",
@@ -127,6 +127,13 @@ class Access:
                 f"too many requests without a valid key; required at most {MOST_FAILURES_PER_S:g} per second"
             )
         return ended_key()
+
+
+def _unread(keyring: Keyring) -> Unavailable:
+    if keyring.begun:
+        return Unavailable("the API keys cannot be read from the database", required="the database")
+    required = "its lifespan, which a server enters (app.router.lifespan_context(app) where it is mounted)"
+    return Unavailable(f"the application has not begun; required {required}", required=required)
 
 
 def ended_key() -> Unauthorized:

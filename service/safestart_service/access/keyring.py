@@ -34,8 +34,8 @@ log = logging.getLogger("safestart.service")
 class Keyring:
     """Digests and records of all keys.
 
-    ``known`` is False until the first read. ``required``: a key was made at some time, so callers need one, even if
-    no key is in force now.
+    ``known`` is False until the first read, ``begun`` until somebody reads at all. ``required``: a key was made at some
+    time, so callers need one, even if no key is in force now.
     """
 
     def __init__(self, keys: KeyRepository) -> None:
@@ -45,7 +45,7 @@ class Keyring:
         self._in_force: frozenset[str] = frozenset()
         self._used: set[str] = set()
         self._noted: dict[str, float] = {}
-        self.known = False
+        self.begun = self.known = False
         self.required = False
 
     def check(self, presented: bytes) -> ApiKey | None:
@@ -84,6 +84,7 @@ class Keyring:
     async def kept_fresh(self) -> AsyncIterator[None]:
         """Read the keys now and repeatedly until the end."""
         # In its own thread, so that a key revoked elsewhere is refused in time even under heavy computing.
+        self.begun = True
         reader = ThreadPoolExecutor(1, "keyring")
         await self._try_load(reader)
         task = asyncio.create_task(self._keep(reader))

@@ -11,18 +11,18 @@ from functools import lru_cache
 from starlette.types import Scope
 
 _CLIENT = re.compile(
-    r"forwarded-for|(client|connecting|real|remote|originating|user|source|peer)-?ip|remote-addr"
+    r"forward(ed)?-for|coming-from|^x-client$|tunnel-client|(client|connecting|real|remote|originating|user|source|peer)-?ip|remote-addr"
     r"|envoy-external-address|cf-pseudo-ipv4"
 )
 """In the names of header fields in which proxies name their clients, as a list of addresses."""
 _FORWARDED = re.compile(r"(x-)?forwarded")
 """The names of fields that do so in the form of RFC 7239."""
 _PASSED_ON = re.compile(
-    r"(via|cdn-loop|x-varnish)|(cf|fastly|fly|incap|akamai|ali|eagleeye|x-amz-cf|x-amzn|x-azure|x-akamai|x-appengine"
+    r"(via|cdn-loop|x-varnish|surrogate-capability)|(cf|fastly|fly|incap|akamai|ali|eagleeye|x-amz-cf|x-amzn|x-azure|x-akamai|x-appengine"
     r"|x-cloud-trace|x-fastly|x-fd|x-sucuri|x-vercel|x-nf|x-goog)-.*"
 )
 """The names of fields that say that a proxy passed the request on, for nobody knows whom."""
-_NO_CLIENT = re.compile(r"(x-)?forwarded-.*|x-envoy-.*|x-original-.*|.*proxy.*")
+_NO_CLIENT = re.compile(r"(x-)?forwarded-.*|x-envoy-.*|x-original-.*|x-real-port|.*proxy.*")
 """The names of fields of a proxy that must name its client in another one."""
 _LINKS = frozenset({"x-forwarded-proto", "x-forwarded-host", "x-forwarded-prefix"})
 """They say where a service is, and whoever makes links for a place of its own may say so; names of hosts are checked
@@ -39,7 +39,8 @@ class Says(Enum):
     PROXY_OF_A_STRANGER = auto()
 
 
-_FOR = re.compile(r'\s*for\s*=\s*(?:"([^"\\]*)"|([^\s",;=]*))\s*', re.IGNORECASE)
+_FOR = re.compile(r'[ \t]*for[ \t]*=[ \t]*(?:"([^"\\]*)"|([^\s",;=]*))[ \t]*', re.IGNORECASE)
+_SPACE = " \t"
 MAX_PORT = 65_535
 _ELEMENTS = re.compile(r'((?:[^,;"]|"[^"]*")*)([,;]|$)')
 _HOST_PORT = re.compile(r"\[([^\]]*)\](?::(\d{1,5}))?|([^:]*):(\d{1,5})", re.ASCII)
@@ -116,6 +117,8 @@ def _nodes(text: str) -> list[str]:
         pair = _FOR.fullmatch(match[1])
         if pair is not None:
             node = "" if node else pair[1] or pair[2] or ""
+        elif "=" not in match[1] and match[1].strip(_SPACE):
+            return [*found, ""]  # no pair at all
         at = match.end()
         if match[2] != ";":
             found.append(node)
@@ -126,7 +129,7 @@ def _nodes(text: str) -> list[str]:
 
 def without_port(node: str) -> str:
     """The address of a node of ``X-Forwarded-For`` or ``Forwarded``; the node itself where the port is none."""
-    node = node.strip()
+    node = node.strip(_SPACE)
     match = _HOST_PORT.fullmatch(node)
     if match is None or int(match[2] or match[4] or 0) > MAX_PORT:
         return node

@@ -16,8 +16,9 @@ from pydantic import BaseModel, ConfigDict, Field
 from starlette._utils import get_route_path
 from starlette.exceptions import HTTPException
 
-from safestart.errors import SafestartError
+from safestart.errors import SafestartError, Unavailable
 from safestart.model.validation import refusal
+from safestart.runtime.logs import about
 from safestart_service.pages import render as pages
 
 MEDIA_TYPE = "application/problem+json"
@@ -101,7 +102,12 @@ def encode(problem: dict[str, Any]) -> bytes:
 
 
 def of_error(error: SafestartError, instance: str, request_id: str | None = None) -> dict[str, Any]:
-    """Problem document of one of our exceptions."""
+    """Problem document of one of our exceptions. Where the database is says the log alone."""
+    if error.field == "database_url":
+        log.warning("%s: %s", instance, error.detail, extra=about(request=request_id) if request_id else None)
+        error = Unavailable(
+            "the database does not answer; the service's log says why", required="a database that answers"
+        )
     return document(
         error.slug,
         error.title,

@@ -102,6 +102,8 @@ class Protocol(Read):
     def on_headers_complete(self) -> None:
         """The head is whole."""
         self._wait_no_longer()
+        if b"#" in self.url:  # uvicorn would answer what stands before it
+            raise ValueError("a fragment in the target")
         named = named_host(self.url)
         if named is not None and named not in [
             _plain(value) for name, value in self.headers if name == b"host"

@@ -76,6 +76,14 @@ STRANGERS = [
     ("CF-Ray", "8f0000000000-FRA"),
     ("X-Amz-Cf-Id", "x"),
     ("X-Azure-Ref", "x"),
+    ("Forwarded", "for=127.0.0.1;8.8.8.8"),
+    ("Forwarded", "8.8.8.8;for=127.0.0.1"),
+    ("X-Forward-For", "8.8.8.8"),
+    ("X-Coming-From", "8.8.8.8"),
+    ("X-Client", "8.8.8.8"),
+    ("X-Tunnel-Client", "8.8.8.8"),
+    ("X-Real-Port", "4711"),
+    ("Surrogate-Capability", "a=ESI/1.0"),
 ]
 NEIGHBOURS = [
     ("X-Forwarded-For", "127.0.0.1"),
@@ -129,6 +137,20 @@ def test_who_comes_through_a_proxy_is_a_stranger(base, name, value):
         assert_problem(client.get("/jobs"), 401)
         assert_problem(client.post("/processes/benchmark/execution", json=HEAVY), 401)
         assert client.get("/healthz").status_code == 200
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        (b"x-forwarded-for", b"\xa0127.0.0.1"),
+        (b"x-real-ip", b"127.0.0.1\x85"),
+        (b"forwarded", b"for=\xa0127.0.0.1"),
+    ],
+)
+def test_only_spaces_and_tabs_are_space(name, value):
+    scope: dict[str, Any] = {"client": ("127.0.0.1", 1), "server": ("127.0.0.1", 80)}
+    assert not from_this_machine({**scope, "headers": [(name, value)]})
+    assert from_this_machine({**scope, "headers": [(name, value.strip(b"\xa0\x85").replace(b"\xa0", b"\t"))]})
 
 
 @pytest.mark.parametrize(("name", "value"), NEIGHBOURS)

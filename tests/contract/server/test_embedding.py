@@ -63,6 +63,9 @@ def test_an_application_that_never_began_answers(tmp_path: Path, folder: Path) -
     client = TestClient(app, base_url=BASE, client=("127.0.0.1", 1))  # an event loop for each request
     try:
         assert [asked(client).status_code for _ in range(3)] == [200, 200, 200]
+        stored = client.get("/jobs")
+        assert stored.status_code == 503
+        assert "app.router.lifespan_context" in stored.json()["detail"]
         assert not list(folder.iterdir())
     finally:
         app.state.services.close()

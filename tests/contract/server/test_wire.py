@@ -26,6 +26,11 @@ NO_HTTP = {
     "length and chunks": POST
     + b"Content-Length: 4\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\nGET / HTTP/1.1\r\n\r\n",
     "bad chunk": POST + b"Transfer-Encoding: chunked\r\n\r\nZZ\r\n{}\r\n0\r\n\r\n",
+    "fragment": b"GET /go-no-go?omega_t_deg_s=3&a_max_m_s2=0.1&x_m=5&y_m=40#&disturbance_m_s2=0.05 HTTP/1.1\r\n"
+    + HOST
+    + b"\r\n",
+    "fragment before a body": b"POST /certificates#a HTTP/1.1\r\n" + HOST + b"Content-Length: 2\r\n\r\n{}",
+    "empty fragment": b"GET /healthz# HTTP/1.1\r\n" + HOST + b"\r\n",
     "endless path": b"GET /" + b"a" * 70_000 + b" HTTP/1.1\r\n" + HOST + b"\r\n",
 }
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import logging
+import os
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -121,6 +123,29 @@ def test_any_name_of_a_file_is_opened(tmp_path: Path) -> None:
     put(JobRepository(database))
     database.close()
     assert [found.name for found in tmp_path.iterdir()] == [file.name]
+
+
+@pytest.mark.parametrize("make", [os.mkfifo, os.mkdir])
+def test_what_is_no_file_is_refused_at_once(tmp_path: Path, make: Callable[[Path], None]) -> None:
+    """SQLite waits for ever for the other end of a pipe."""
+    make(tmp_path / FILE)
+    database = Database(f"sqlite:///{tmp_path / FILE}")
+    with pytest.raises(Unavailable, match="regular file"):
+        database.migrate()
+    with pytest.raises(Unavailable, match="regular file"), database.session() as session:
+        session.connection()
+
+
+def test_a_database_that_is_away_is_named_in_the_log_alone(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    with service(tmp_path) as client:
+        move(tmp_path, tmp_path / "elsewhere")
+        for answer in (client.get("/jobs"), client.post(EXECUTION, json=HEAVY), client.get("/readyz")):
+            assert_problem(answer, 503)
+            assert str(tmp_path) not in answer.text
+            assert "log says why" in answer.text
+    assert str(tmp_path) in caplog.text
 
 
 def test_a_uri_is_refused() -> None:

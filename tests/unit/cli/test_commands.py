@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from importlib.metadata import entry_points
+from importlib.metadata import EntryPoint, entry_points
+from pathlib import Path
 
 import pytest
 from typer.main import get_command
 
 from safestart.cli import COMMAND_GROUP, COMMANDS, build
+from safestart.errors import Misregistered
 from safestart.runtime.own_process import exit_code
 
 OURS = [name for names in COMMANDS.values() for name in names]
@@ -52,6 +54,22 @@ def test_a_command_alone_is_what_it_is_among_all(name: str) -> None:
 @pytest.mark.parametrize("asked", ["nonsense", "--help", ""])
 def test_everything_else_has_all_commands(asked: str) -> None:
     assert set(_commands(asked)) == set(_commands())
+
+
+@pytest.mark.parametrize("fault", ["broken_plugin:add", "os:getcwd", "no.such.module:add"])
+def test_a_broken_command_of_another_distribution_is_named(
+    fault: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "broken_plugin.py").write_text("raise RuntimeError('torn')")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    broken = EntryPoint("theirs", fault, COMMAND_GROUP)
+    others = [*entry_points(group=COMMAND_GROUP), broken]
+    monkeypatch.setattr("importlib.metadata.entry_points", lambda **_: others)
+    with pytest.raises(Misregistered, match=r"the command theirs of .* to load"):
+        build("theirs")
+    assert set(_commands()) == {*OURS, "serve", "worker"}, "the others are there"
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("safestart: required the command theirs of")
 
 
 @pytest.mark.parametrize(("command", "most"), BUDGETS, ids=[" ".join(words[:2]) for words, _ in BUDGETS])

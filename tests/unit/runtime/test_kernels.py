@@ -202,6 +202,21 @@ def test_a_damaged_cache_is_compiled_again(tmp_path: Path, suffix: str, damage: 
     assert toy(tmp_path) == (12.0, 1)
 
 
+@pytest.mark.slow
+def test_the_code_of_another_kernel_is_compiled_again(tmp_path: Path) -> None:
+    """A restored folder or a file system may mix files up; each of them is whole."""
+    places = tmp_path / "one", tmp_path / "other"
+    for place in places:
+        place.mkdir()
+    assert toy(places[0]) == (12.0, 0)
+    assert toy(places[1], numbers="FACTOR = 5.0\n") == (30.0, 0)
+    own, other = (next(place.rglob("kernel.run*.nbc")) for place in places)
+    own.write_bytes(other.read_bytes())
+    assert toy(places[0]) == (12.0, 0)
+    assert "cannot be read and is compiled again" in toy.log  # type: ignore[attr-defined]
+    assert toy(places[0]) == (12.0, 1)
+
+
 def test_no_place_for_a_cache_is_one_line(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:

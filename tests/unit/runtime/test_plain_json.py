@@ -32,6 +32,15 @@ def test_what_is_not_finite_is_refused(text):
         loads(text)
 
 
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "utf-16-le", "utf-32"])
+def test_bytes_are_utf_8_without_a_mark(encoding):
+    assert loads('{"a": "é"}'.encode()) == {"a": "é"}
+    with pytest.raises(ValueError, match=r"utf-8|UTF-8|Expecting"):
+        loads('{"a": "é"}'.encode(encoding))
+    with pytest.raises(UnicodeDecodeError):
+        loads(b'"\xed\xa0\x80"')  # half of a surrogate pair
+
+
 @pytest.mark.parametrize(
     "text", ['{"a":1,"a":1}', '[[{"b":{"a":1,"c":2,"a":3}}]]', '{"":1,"":2}', '{"a":1,"\\u0061":2}']
 )

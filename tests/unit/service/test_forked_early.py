@@ -113,6 +113,42 @@ def test_beside_threads_there_is_none() -> None:
             done.set()
 
 
+def test_where_threads_cannot_be_counted_there_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A container may have no /proc."""
+    monkeypatch.setattr(os, "listdir", lambda _: os.open("/nowhere", os.O_RDONLY))
+    assert forked(()) is None
+
+
+def test_it_ends_where_nobody_is_told_of_an_end() -> None:
+    """``SIGCHLD`` that is ignored passes on to a program; a service that waited for ever had to be killed."""
+    ours, theirs = socket.socketpair()
+    before = signal.signal(signal.SIGCHLD, signal.SIG_IGN)
+    try:
+        with ours, theirs:
+            child = Child(theirs, (ours,))
+            assert child.poll() is None
+            child.kill()
+            assert child.wait(PATIENCE_S) is not None
+            assert child.poll() is not None
+    finally:
+        signal.signal(signal.SIGCHLD, before)
+
+
+@pytest.mark.parametrize("how", [signal.SIGTERM, signal.SIGINT])
+def test_a_service_ends_whose_parent_ignored_ends(how: signal.Signals, tmp_path: Path) -> None:
+    before = signal.signal(signal.SIGCHLD, signal.SIG_IGN)
+    try:
+        served = Served(tmp_path)
+    finally:
+        signal.signal(signal.SIGCHLD, before)
+    try:
+        assert served.heavy() == 200
+        served.process.send_signal(how)
+        served.process.wait(PATIENCE_S)
+    finally:
+        served.process.kill()
+
+
 def test_several_threads_learn_of_its_end() -> None:
     """The system tells it once: a second one that asked heard that the child lives."""
     ours, theirs = socket.socketpair()

@@ -17,6 +17,7 @@ from __future__ import annotations
 import hashlib
 import logging
 import pickle
+import re
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import suppress
@@ -34,6 +35,9 @@ from safestart.runtime.kernels.parts import part
 log = logging.getLogger("safestart.kernels")
 
 _OURS = "safestart"
+_ADDRESS = re.compile("0x[0-9a-f]+")
+_FORM = 2
+"""Of the kept files. Those of another one are not looked for."""
 _CONSTANTS = (bool, int, float, complex, str, bytes, type(None), np.generic, tuple, frozenset)
 
 
@@ -90,7 +94,7 @@ class KernelCache(FunctionCache):
         if kept is None:
             return None
         digest, content = kept
-        if hashlib.sha256(content).hexdigest() != digest:
+        if self._digest(sig, content) != digest:
             raise ValueError("its content does not have its digest")
         return self._impl.rebuild(target_context, pickle.loads(content))  # noqa: S301  (as Numba reads its own)
 
@@ -99,12 +103,19 @@ class KernelCache(FunctionCache):
             return
         self._impl.locator.ensure_cache_path()
         content = pickle.dumps(self._impl.reduce(data), protocol=-1)
-        kept = (hashlib.sha256(content).hexdigest(), content)
+        kept = (self._digest(sig, content), content)
         self._cache_file.save(self._index_key(sig, data.codegen), kept)
+
+    def _digest(self, sig: Any, content: bytes) -> str:
+        """Of the code and whose it is: files of other kernels, put in its place, are not it."""
+        function = self._py_func
+        named = f"{function.__module__} {function.__qualname__} {_ADDRESS.sub('', str(sig))}"
+        whose = f"{named} {self.options} {dependencies(function)} "
+        return hashlib.sha256(whose.encode() + content).hexdigest()
 
     def _index_key(self, sig: Any, codegen: Any) -> Any:
         records = tuple(_record for argument in sig for _record in _records(argument))
-        return (*super()._index_key(sig, codegen), self.options, dependencies(self._py_func), records)
+        return (*super()._index_key(sig, codegen), self.options, dependencies(self._py_func), records, _FORM)
 
 
 @cache

@@ -22,6 +22,7 @@ from safestart_service.computing.helpers import nursery
 from safestart_service.computing.helpers.sources import Forked
 
 _EVERY_S = 0.005
+_UNKNOWN = -1
 
 
 class Child:
@@ -36,7 +37,16 @@ class Child:
     def poll(self) -> int | None:
         """Its exit status; None while it lives."""
         with self._asking:  # the system tells it once
-            return self._process.exitcode
+            found = self._process.exitcode
+        return _UNKNOWN if found is None and self._is_gone() else found
+
+    def _is_gone(self) -> bool:
+        """Whether the system has buried it and tells nobody, as it does for who ignores ``SIGCHLD``."""
+        try:
+            os.kill(self._process.pid or 0, 0)
+        except ProcessLookupError:
+            return True
+        return False
 
     def wait(self, timeout: float | None = None) -> int:
         """Its exit status, when it has ended; raises ``subprocess.TimeoutExpired``."""
@@ -58,7 +68,7 @@ def forked(others: Iterable[socket.socket]) -> Forked | None:
     The child closes ``others``. None where a process with loaded libraries cannot be forked safely (elsewhere than on
     Linux, or beside threads, whose locks would stay taken in the child), or there is no room for one.
     """
-    if sys.platform != "linux" or len(os.listdir("/proc/self/task")) > 1:
+    if not _alone():
         return None
     ours, theirs = socket.socketpair()
     # Pages whose objects nobody scans stay shared.
@@ -71,6 +81,14 @@ def forked(others: Iterable[socket.socket]) -> Forked | None:
             ours.close()
             return None
     return Forked((child, ours))
+
+
+def _alone() -> bool:
+    """Whether this process is known to have no other thread."""
+    try:
+        return sys.platform == "linux" and len(os.listdir("/proc/self/task")) == 1
+    except OSError:  # a container may have no /proc
+        return False
 
 
 def _run(control: socket.socket, others: Iterable[socket.socket]) -> None:
