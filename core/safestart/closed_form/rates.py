@@ -13,6 +13,10 @@ GUARD = 1e-9
 """Reserved share of the thrust, far above the rounding of every sum that decides whether thrust suffices."""
 
 
+SLOWEST = 1e-6
+"""A slower start counts as this fast where its braking reach ends: there the angle to the stop becomes 0 over 0."""
+
+
 @dataclass(frozen=True, slots=True)
 class Rates:
     """Units: ``rate`` is W = omega_t + n (rad/s), ``scale`` W^2 / a_max (1/m): a range r counts as rho = r scale.
@@ -52,7 +56,8 @@ def _rates(omega: float, mean_motion: float, a_max: float, rest: Rest) -> Rates:
     turning = 1.0 + 0.5 * nu * nu
     across = max(turning, 2.0 * speed - turning)
     lost = 1.5 * nu * nu * math.sqrt(1.0 + speed * speed / (2.0 * turning))
-    limit = 1.0 / (lost + math.sqrt(across * across + 2.0 * turning * speed * speed))
+    slowest = max(speed, SLOWEST) if speed > 0.0 else 0.0
+    limit = 1.0 / (lost + math.sqrt(across * across + 2.0 * turning * slowest * slowest))
     return Rates(
         omega,
         mean_motion,

@@ -186,3 +186,21 @@ def test_a_term_without_a_coefficient_changes_no_bit() -> None:
         ]
         assert plain == room[:, k].tolist()
     assert rates.omega > 0.0
+
+
+@pytest.mark.parametrize("tumble", [5e-324, 1e-200, 1e-160, 1e-14, 1e-11, 1e-9])
+def test_a_target_that_hardly_tumbles(tumble: float) -> None:
+    """At the end of the braking reach the angle to the stop was 0 over 0: NaN for many starts, an error for one."""
+    scenario = Scenario(ss.Target(tumble, 1.1e-3), ss.Chaser(1e-4), CorridorShape())
+    rates = rates_of(scenario, Rest.LVLH)
+    given = prepare(tumble, 1.1e-3, 1e-4, scenario.corridor, Rest.LVLH, spatial=False)
+    range_m = rates.brake_limit / rates.scale
+    around = [range_m + k * math.ulp(range_m) for k in range(-200, 201)]
+    starts = np.array([(0.0, y) for y in (*around, 2.0 * range_m, 1e5)])
+    with np.errstate(all="raise", under="ignore"):
+        found = certify(scenario, starts)
+    alone = [certify_point(given, *start) for start in starts.tolist()]
+    assert found.margin.tolist() == [one.margin for one in alone]
+    assert np.isfinite(found.margin).all()
+    assert found.go[0]
+    assert not found.go[-1]
